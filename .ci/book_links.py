@@ -1,6 +1,7 @@
-"""Checks the links and pictures of the guide: of its sources, or of the book if its folder is given.
+"""Checks the links and pictures of the guide's Markdown sources, or of the built book.
 
-Usage: book_links.py GUIDE [BOOK]. Prints a line for each problem; the exit status is 1 if there is any.
+Usage: book_links.py GUIDE [BOOK]. GUIDE is the folder of the sources. With BOOK, the folder of the built book, only the
+book is checked. Prints a line for each problem; the exit status is 1 if there is a problem, else 0.
 """
 
 import re
@@ -23,13 +24,17 @@ def is_external(target):
 
 
 def anchors(text):
-    """Returns the ids of the headings of a text, as rustdoc and mdBook make them."""
+    """Returns the ids that rustdoc and mdBook generate for the headings of a Markdown text."""
     kept = (re.sub(r"[^\w\- ]", "", heading.lower()) for heading in HEADING.findall(text))
     return {heading.strip().replace(" ", "-") for heading in kept}
 
 
 def source_findings(guide):
-    """Yields what the Markdown files lack: files, headings, definitions, descriptions of pictures, chapters."""
+    """Yields a message for each problem of the Markdown files.
+
+    A problem is a link without a definition, a file or a heading, a picture with a description of less than 20
+    characters, a page that is not in SUMMARY.md, an unused picture, or a total picture size above MAX_TOTAL bytes.
+    """
     texts = {page.name: FENCE.sub("", page.read_text()) for page in sorted(guide.glob("*.md"))}
     used = set()
     for name, text in texts.items():
@@ -65,7 +70,7 @@ def source_findings(guide):
 
 
 class Page(HTMLParser):
-    """The ids of a page, and the targets of its links and pictures."""
+    """The ids of an HTML page, and the targets of its links and pictures."""
 
     def __init__(self, text):
         super().__init__()
@@ -81,7 +86,7 @@ class Page(HTMLParser):
 
 
 def book_findings(book):
-    """Yields the broken links and missing pictures of the HTML pages."""
+    """Yields a message for each broken link and missing picture of the HTML pages."""
     pages = {page.resolve(): Page(page.read_text()) for page in sorted(book.glob("*.html"))}
     for path, page in pages.items():
         for target in page.targets:

@@ -1,7 +1,8 @@
-//! Makes rivals run as their authors release them.
+//! Checks that the rivals are compiled without assertions, as their authors release them.
 //!
 //! The crates around Box2D and Box3D compile the C code without `NDEBUG`, with all assertions. The
-//! file `.cargo/config.toml` of `impinge-compare` sets the flags where nobody else does.
+//! file `.cargo/config.toml` of `impinge-compare` therefore sets `CFLAGS`, unless it is already
+//! set.
 
 fn main() {
     println!("cargo::rerun-if-env-changed=CFLAGS");
@@ -18,7 +19,8 @@ fn main() {
     coal();
 }
 
-/// Compiles the calls of Coal, which is in the directories of COAL_PREFIX as wheels or packages install it.
+/// Compiles the C++ calls of Coal. `COAL_PREFIX` lists the directories in which Coal, Boost and
+/// Eigen are installed, by a wheel or a package.
 #[cfg(feature = "coal")]
 fn coal() {
     println!("cargo::rerun-if-env-changed=COAL_PREFIX");

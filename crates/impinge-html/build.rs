@@ -1,4 +1,5 @@
-//! With the feature `page`: builds the engine of the page as a WebAssembly module and compresses it.
+//! Builds the engine of the page as a WebAssembly module and compresses it, if the feature `page`
+//! is enabled.
 
 #[cfg(feature = "page")]
 mod engine {
@@ -7,7 +8,8 @@ mod engine {
     use std::process::Command;
     use std::{env, fs};
 
-    /// The variable with the path of a module, which is used instead of building one.
+    /// The environment variable with the path of a finished module, which is then used instead of
+    /// building one.
     const READY: &str = "IMPINGE_PAGE_MODULE";
 
     const TARGET: &str = "wasm32-unknown-unknown";
@@ -36,7 +38,8 @@ mod engine {
         env::var_os(name).map(PathBuf::from).ok_or_else(|| format!("cargo does not set {name}"))
     }
 
-    /// Builds the engine in a separate folder: the outer cargo holds the lock of the usual one.
+    /// Builds the engine with its own target folder, since the outer cargo holds the lock of the
+    /// default one. Returns the path of the module.
     fn build(folder: &Path) -> Result<PathBuf, String> {
         let crates = variable("CARGO_MANIFEST_DIR")?.join("..");
         for name in

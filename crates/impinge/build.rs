@@ -1,5 +1,5 @@
-//! Tells the library whether it is compiled without optimization: then a vector operation is a
-//! chain of calls, and kernels compute one lane (`Level::vectors`).
+//! Sets the cfg `unoptimized` if the library is compiled with optimization level 0. There each
+//! vector operation is a chain of calls, so kernels compute one lane at a time (`Level::vectors`).
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");

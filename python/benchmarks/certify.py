@@ -1,8 +1,9 @@
-"""Who is right: bounds of signed distances that come from no library.
+"""Bounds of signed distances that do not depend on any library, to decide which library is right.
 
-The signed distance of two convex solids is the greatest gap over all unit directions: the distance if they are apart,
-minus the depth if they overlap. The gap along any direction, by support functions, is a lower bound; that of two points
-which lie in the solids an upper one. Between them is searched: directions spread over the sphere, the best refined.
+The signed distance of two convex solids is the largest gap over all unit directions: the distance if they are apart,
+minus the depth if they overlap. The gap along any direction, computed by support functions, is a lower bound. The
+distance of two points that lie in the solids is an upper bound. The lower bound is maximised over directions spread
+over the sphere, of which the best are refined.
 """
 
 from __future__ import annotations
@@ -11,16 +12,16 @@ import numpy as np
 
 from solids import Array, Solid
 
-# Rows that are searched at once, to bound memory.
+# Rows that are searched together, to bound memory.
 CHUNK = 200
-# Directions tried around each of the best at once.
+# Directions tried around each of the best directions in one iteration.
 TRIES = 20
 
 
 def gaps(one: Solid, poses1: Array, two: Solid, poses2: Array, directions: Array) -> Array:
-    """The gaps (n, m) of n pairs along unit directions (n, m, 3) from the first to the second.
+    """The gaps (n, m) of n pairs along unit directions (n, m, 3) from the first to the second solid.
 
-    With a half-space only the direction of its normal counts, whatever is given.
+    With a half-space the direction of its normal replaces `directions`, because no other direction has a finite gap.
     """
     if one.is_half_space:
         directions = np.broadcast_to(poses1[:, None, :3, 1], directions.shape)
@@ -37,7 +38,8 @@ def _farthest(solid: Solid, poses: Array, directions: Array) -> Array:
 
 
 def upper_bound(one: Solid, poses1: Array, two: Solid, poses2: Array, points: tuple[Array, Array]) -> Array:
-    """What the distance is at most if these points (n, 3) lie in the solids; how far they do not is added."""
+    """An upper bound (n,) of the distance from points (n, 3) of the solids; their distances outside the solids are
+    added."""
     total = np.linalg.norm(points[0] - points[1], axis=1)
     for solid, poses, at in ((one, poses1, points[0]), (two, poses2, points[1])):
         local = np.einsum("nji,nj->ni", poses[:, :3, :3], at - poses[:, :3, 3])
@@ -46,7 +48,7 @@ def upper_bound(one: Solid, poses1: Array, two: Solid, poses2: Array, points: tu
 
 
 def greatest_gaps(one: Solid, poses1: Array, two: Solid, poses2: Array) -> Array:
-    """The greatest gaps (n,) found by a search that knows no answer of any library."""
+    """The largest gaps (n,), found by a search that uses no result of any library."""
     found = [
         _search(one, poses1[rows], two, poses2[rows])
         for rows in (slice(begin, begin + CHUNK) for begin in range(0, len(poses1), CHUNK))
@@ -64,11 +66,11 @@ def _search(one: Solid, poses1: Array, two: Solid, poses2: Array) -> Array:
     directions = spread[best]
     values = np.take_along_axis(values, best, 1)
     rng = np.random.default_rng(1)
-    # Each direction's own step and last move: longer after a better try, shorter after none.
+    # The step length of each direction and its last successful move: doubled after a better try, else reduced.
     step, move = np.full(values.shape, 0.06), np.zeros(directions.shape)
     for _ in range(150):
         noise = rng.normal(size=(*directions.shape[:2], TRIES, 3))
-        # Half of the tries go along the last move: kinks of the gap are narrow ridges.
+        # Half of the tries follow the last move, because the gap has narrow ridges at its kinks.
         along = rng.normal(size=(*values.shape, TRIES, 1)) * (np.arange(TRIES) % 2)[:, None] * 2
         thin = np.where(np.arange(TRIES) % 2, 0.1, 1.0)[:, None]
         tried = unit(directions[:, :, None] + step[..., None, None] * noise * thin + along * move[:, :, None])
@@ -85,7 +87,7 @@ def _search(one: Solid, poses1: Array, two: Solid, poses2: Array) -> Array:
 
 
 def unit(vectors: Array) -> Array:
-    """Unit vectors; up for those that are zero or no numbers."""
+    """Unit vectors (..., 3); the y axis replaces zero vectors and vectors with NaN."""
     length = np.linalg.norm(vectors, axis=-1, keepdims=True)
     up = np.array([0.0, 1, 0])
     return np.where(length > 0, np.nan_to_num(vectors) / np.where(length > 0, length, 1), up)
@@ -100,6 +102,6 @@ def spiral(count: int) -> Array:
 
 
 def _axes() -> Array:
-    """The axes and the diagonals, where aligned solids have their answers."""
+    """The axes and the diagonals, which are the best directions of aligned solids."""
     grid = np.stack(np.meshgrid(*[[-1.0, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     return unit(grid[np.any(grid != 0, axis=1)])

@@ -1,4 +1,4 @@
-"""How many configurations of a robot are checked in a second: the scenes of MotionBenchMaker, robots as spheres.
+"""Measures configurations of a robot checked per second: the scenes of MotionBenchMaker, robots as spheres.
 
     python configurations.py FOLDER [--quick] [--scenes 700] [--count 2048] [--threads 1] [--out FOLDER]
 
@@ -6,8 +6,8 @@ Writes configurations.md.
 
 FOLDER has `vamp_panda.json` and `vamp_panda.npz`, and those of ur5 and fetch: the spherised robots of vamp (W. Thomason, Z.
 Kingston, L. E. Kavraki, 2024) and the problems of MotionBenchMaker (C. Chamzas et al., 2021). Configurations are random
-within the joint limits. Links may touch that are joined, touch at the start, or do so in nearly all configurations; the
-links that do not move may touch obstacles. A sample is compared with all pairs, one by one.
+within the joint limits. Links may touch if they are joined, touch at the start, or touch in nearly all configurations; links
+that do not move may touch obstacles. A sample of the results is compared with single queries of all pairs.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ HEADER = (
     *("robot", "scalar", "scenes", "spheres", "pairs", "part not free"),
     *("million configurations a second", "of the target", "differing"),
 )
-# Turns y, along which impinge lays cylinders, into z.
+# Rotates the y axis, along which cylinders of impinge lie, to the z axis.
 Y_TO_Z = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
 
 
 class Robot:
-    """A robot of a file, its pairs, and its scenes."""
+    """A robot from a file, its pairs, and its scenes."""
 
     def __init__(self, folder: Path, name: str, dtype: str) -> None:
         self.data = json.loads((folder / f"vamp_{name}.json").read_text())
@@ -110,7 +110,7 @@ class Robot:
 
 
 def matrix(pose: Any) -> Any:
-    """A place and a quaternion w, x, y, z as a matrix."""
+    """The matrix of a position and a quaternion w, x, y, z."""
     w, x, y, z = pose[3:] / np.linalg.norm(pose[3:])
     found = np.eye(4)
     found[:3, :3] = [
@@ -123,7 +123,7 @@ def matrix(pose: Any) -> Any:
 
 
 def by_pairs(robot: Robot, rows: Any, shapes: list[Any], obstacles: Any) -> Any:
-    """Which configurations are free, by a single call for each pair."""
+    """Whether each configuration is free, by single queries of all pairs."""
     poses, still = robot.checker.poses(rows), set(robot.still())
     balls = [impinge.Ball(radius, dtype=robot.dtype) for radius in robot.spheres[:, 3]]
     free = np.ones(len(rows), dtype=bool)
@@ -136,9 +136,9 @@ def by_pairs(robot: Robot, rows: Any, shapes: list[Any], obstacles: Any) -> Any:
 
 
 def measure(robot: Robot, options: argparse.Namespace) -> tuple[float, float, int]:
-    """Configurations a second, the share that is not free, and how many answers differ from those by pairs."""
+    """Configurations per second, the fraction that is not free, and the number of results that differ from `by_pairs`."""
     generator, seconds, hits, wrong = np.random.default_rng(7), 0.0, 0, 0
-    # One thread is timed by its processor time, so that others on the machine count little.
+    # One thread is timed by its processor time, so that other processes have little influence.
     clock = time.process_time if options.threads == 1 else time.perf_counter
     numbers = np.linspace(0, len(robot.scenes["counts"]) - 1, options.scenes).astype(int)
     for index, number in enumerate(numbers):

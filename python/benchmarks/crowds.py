@@ -1,4 +1,4 @@
-"""trimesh's collision manager beside impinge's with many objects: what moves take, and each call of the manager after them.
+"""Compares trimesh's collision manager with that of impinge for many objects: the time of moves, and of each call after them.
 
     python crowds.py [--objects 10 1000 10000] [--out FOLDER]
 """
@@ -18,7 +18,7 @@ import trimesh
 
 from timing import arguments, machine, markdown
 
-# FCL's distances of meshes are right to some 1e-7.
+# FCL's distances of meshes have errors of some 1e-7.
 TOLERANCE = 1e-4
 
 ABOUT = """\
@@ -29,7 +29,7 @@ median of {rounds} rounds (of one where more than 2000 move), both sides in turn
 is FCL's time for both as a multiple of impinge's.
 """
 
-# Of more objects all are moved in one round.
+# If there are more objects, a single round moves all of them.
 FEW = 2000
 
 SIDES = {"impinge": impinge.trimesh.CollisionManager, "trimesh": trimesh.collision.CollisionManager}
@@ -47,7 +47,7 @@ def run(options: argparse.Namespace, line: str) -> None:
             for scene in ("free", "touching"):
                 crowd = Crowd(mesh, count, scene == "touching")
                 rows += [[count, kind, scene, *row] for row in crowd.rows(options.rounds)]
-                # After each scene: the large ones take minutes.
+                # Written after each scene, because the large scenes take minutes.
                 text = ["# Managers of many objects\n", ABOUT.format(line=line, rounds=options.rounds), markdown(header, rows)]
                 (options.out / "crowds.md").write_text("\n".join(text))
 
@@ -59,7 +59,7 @@ def _meshes() -> dict[str, trimesh.Trimesh]:
 
 
 class Crowd:
-    """A manager of each library with the same meshes, another one beside, and how they move."""
+    """A manager of each library with the same meshes, a second manager of each, and the moves of the meshes."""
 
     def __init__(self, mesh: trimesh.Trimesh, count: int, touches: bool) -> None:
         self.mesh, self.rng = mesh, np.random.default_rng(1)
@@ -72,7 +72,7 @@ class Crowd:
         self.names = [f"m{number}" for number in range(count)]
         self.managers = {name: self._made(kind, self.places) for name, kind in SIDES.items()}
         self.others = {name: self._made(kind, beside) for name, kind in SIDES.items()}
-        # Smaller, so that it is free between the others.
+        # A smaller mesh, which fits between the others without touching them.
         self.small = mesh.copy()
         self.small.apply_scale(0.75)
         self.probe = np.eye(4)
@@ -85,7 +85,7 @@ class Crowd:
         return manager
 
     def rows(self, rounds: int) -> list[list[object]]:
-        # FCL takes seconds to move thousands.
+        # FCL takes seconds to move thousands of meshes.
         few = rounds if len(self.names) <= FEW else 1
         ways = {"one": rounds, "all": few}
         return [[moved, name, *self.times(ask, moved, ways[moved])] for moved in ways for name, ask in self.calls().items()]
@@ -105,7 +105,7 @@ class Crowd:
         }
 
     def times(self, ask: Ask, moved: str, rounds: int) -> list[float]:
-        """Medians: a move, the call and both, each of impinge and FCL, and the ratio of both."""
+        """Medians in microseconds: one move, the call, and both, each for impinge and FCL; then the ratio of both."""
         seconds: dict[str, list[tuple[float, float]]] = {name: [] for name in SIDES}
         gc.collect()
         gc.disable()
@@ -139,7 +139,7 @@ class Crowd:
 
     @staticmethod
     def compare(answers: dict[str, Any]) -> None:
-        """Says where answers differ: of names whether there are any, of distances those that are positive."""
+        """Prints differing results: for names whether there are any, for distances only positive ones."""
         ours, theirs = (answer[0] if isinstance(answer, tuple) else answer for answer in answers.values())
         if isinstance(ours, bool):
             if ours != theirs:

@@ -1,4 +1,4 @@
-"""Compares the answers of all libraries, and judges every difference by certificates."""
+"""Compares the results of all libraries, and decides by bounds which library is right."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ from rivals import COMPARED, Answers, Coal, Impinge
 from solids import Array, Solid
 from timing import markdown, write_csv
 
-# Differences above this part of the sum of both radii are judged.
+# Differences above this fraction of the sum of both radii are examined.
 TOLERANCE = 1e-6
-# Rows of differences.csv for each pair, family, rival and answer: the largest. All are counted.
+# The number of rows in differences.csv for each pair, family, library and result: the largest. All differences are
+# counted.
 KEPT = 5
 
 ABOUT = """\
@@ -34,28 +35,28 @@ HEADER = ("pair", "poses", "row", "answer", "rival", "impinge", "theirs", "lower
 
 @dataclass
 class Group:
-    """The differences of one pair to one rival in one answer."""
+    """The differences of one pair from one other library in one kind of result."""
 
     compared: int
     verdicts: Counter[str]
     largest: float
-    # Of the largest difference: impinge, theirs, bounds, who is right, the family and its row.
+    # The largest difference: impinge, the other library, bounds, which is right, the family and its row.
     example: tuple[object, ...]
-    # The greatest errors of impinge and of the rival in the rows that differ.
+    # The largest errors of impinge and of the other library in the rows that differ.
     errors: tuple[float, float]
 
 
 class Judge:
-    """Collects what is compared, and writes what differs."""
+    """Collects comparisons, and writes the differences."""
 
     def __init__(self) -> None:
         self.groups: dict[tuple[str, str, str], Group] = {}
         self.rows: list[list[object]] = []
-        # How often the own normal does not show the own signed distance, and by how much at most.
+        # The number of checked normals, of those that do not match the signed distance, and the largest mismatch.
         self.unproven: dict[tuple[str, str], tuple[int, int, float]] = {}
-        # How far the search stays below the gaps along the answers' normals, as a part of the size.
+        # The largest deficit of the search against the gaps along the libraries' normals, as a fraction of the size.
         self.short = 0.0
-        # Where FCL did not return.
+        # The poses for which FCL did not return.
         self.failed: list[list[object]] = []
 
     def summary(self) -> str:
@@ -90,7 +91,7 @@ class Judge:
     def _check_normals(
         self, name: str, answers: Answers, pair: tuple[Solid, Solid], placed: tuple[Array, Array]
     ) -> None:
-        """The gap along the answer's own normal must be its own signed distance."""
+        """Checks that the gap along a library's own normal is its own signed distance."""
         one, two = pair
         size = one.radius + two.radius
         has_normal = np.isfinite(answers.normal).all(axis=1) & (np.linalg.norm(answers.normal, axis=1) > 1e-9 * size)
@@ -102,7 +103,7 @@ class Judge:
         off = np.abs(gaps(one, poses[0], two, poses[1], unit[:, None])[:, 0] - answers.signed[has_normal]) / size
         key = (name, f"{one.name}, {two.name}")
         asked, wrong, most = self.unproven.get(key, (0, 0, 0.0))
-        # A normal through points that nearly coincide shows little: a looser bound for FCL alone, which returns none.
+        # FCL returns no normal. The direction between nearly coincident points is inaccurate, so its bound is looser.
         allowed = 1e-4 if name == "FCL" else TOLERANCE
         self.unproven[key] = asked + len(off), wrong + int((off > allowed).sum()), max(most, float(off.max()))
 
@@ -114,7 +115,7 @@ class Judge:
         sides: tuple[Answers, Answers],
         bounds: tuple[Array, Array, Array],
     ) -> None:
-        """Counts the verdicts of the rows that differ, and keeps the largest."""
+        """Counts which library is right in the rows that differ, and keeps the largest differences."""
         (name, answer), (rows, lower, upper) = kind, bounds
         title, size = f"{pair[0].name}, {pair[1].name}", pair[0].radius + pair[1].radius
         values = [getattr(side, answer)[rows] for side in sides]
@@ -219,12 +220,12 @@ class Judge:
 
 
 def _comparable(values: Array) -> Array:
-    """Contacts that are none count as answers."""
+    """The values, with 0 for missing contacts (minus infinity), which count as results."""
     return np.where(np.isneginf(values), 0, values)
 
 
 def _differing(ours: Answers, theirs: Answers, answer: str, tolerance: float) -> Array:
-    """Where answers differ; a contact against none only if it is deeper than the tolerance."""
+    """Whether results differ. A contact and a missing contact differ only if the depth exceeds the tolerance."""
     one, two = getattr(ours, answer), getattr(theirs, answer)
     return np.asarray(_size_of_difference(one, two) > tolerance)
 
@@ -237,7 +238,8 @@ def _size_of_difference(one: Array, two: Array) -> Array:
 def _bounds(
     pair: tuple[Solid, Solid], placed: tuple[Array, Array], rows: Array, sides: dict[str, Answers]
 ) -> tuple[Array, Array, float]:
-    """Bounds (n,) of the true signed distances of rows, and how far the search alone stays below the lower ones."""
+    """Bounds (n,) of the true signed distances of rows, and the largest deficit of the search alone below the lower
+    bounds."""
     one, two = pair
     poses1, poses2 = (poses[rows] for poses in placed)
     normals = np.stack([answers.normal[rows] for answers in sides.values()], axis=1)
@@ -249,12 +251,12 @@ def _bounds(
         points = answers.point1[rows], answers.point2[rows]
         found = upper_bound(one, poses1, two, poses2, points)
         apart = np.where(np.isfinite(found), np.minimum(apart, found), apart)
-    # Points in both solids bound only how far they are apart. Of overlaps the search is the measure.
+    # Points in both solids bound only the distance of separated solids. For overlaps the search is the reference.
     return lower, np.where(lower > 0, np.maximum(apart, lower), lower), short
 
 
 def _errors(values: Array, answer: str, lower: Array, upper: Array) -> Array:
-    """How far answers are from the bounds."""
+    """The distances of results from the interval between the bounds; zero inside it."""
     if answer == "distance":
         lower, upper = np.maximum(lower, 0), np.maximum(upper, 0)
     if answer == "depth":

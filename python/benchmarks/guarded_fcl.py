@@ -1,4 +1,5 @@
-"""python-fcl behind the interface of `rivals`, asked in a process of its own, which it may end or never."""
+"""python-fcl with the interface of `rivals`, in a separate process, because a call may end the process or not
+return."""
 
 from __future__ import annotations
 
@@ -13,16 +14,17 @@ import numpy as np
 from rivals import Answers, empty
 from solids import Array, Solid
 
-# Seconds after which a call that takes microseconds is taken not to end, and a process not to start.
+# Seconds after which a call, which takes microseconds, counts as not returning, and a process as not starting.
 PATIENCE, START = 1.0, 20.0
-# After so many failures signed distances are not asked for any more.
+# The number of failures after which signed distances are no longer requested.
 MOST_FAILURES = 2
 
 _FORK = multiprocessing.get_context("fork")
 
 
 class Fcl:
-    """python-fcl: two objects that are moved. It has no distances to half-spaces (they end the process)."""
+    """python-fcl with two objects that are moved. Its distances to half-spaces end the process and are not
+    requested."""
 
     def __init__(self, one: Solid, poses1: Array, two: Solid, poses2: Array) -> None:
         self.objects = fcl.CollisionObject(one.fcl), fcl.CollisionObject(two.fcl)
@@ -32,7 +34,7 @@ class Fcl:
         self.failed: list[int] = []
 
     def answers(self) -> Answers:
-        """All rows, in processes that begin behind the row at which the one before failed."""
+        """The results of all rows. After a failure a new process continues behind the failed row."""
         found, count = empty(len(self.poses[0])), len(self.poses[0])
         row = 0
         while row < count:
@@ -46,7 +48,7 @@ class Fcl:
         return found
 
     def _run(self, found: Answers, begin: int, is_signed: bool) -> int:
-        """Answers from a row on; returns the row that failed, or how many there are."""
+        """Computes results from row `begin` on; returns the row that failed, or the number of rows."""
         receiver, sender = _FORK.Pipe(duplex=False)
         process = _FORK.Process(target=self._answer, args=(sender, begin, is_signed))
         process.start()
@@ -86,7 +88,8 @@ class Fcl:
             sender.send(("done", None))
 
     def loop(self, question: str, count: int) -> Callable[[], Any] | None:
-        """A loop over the first poses; none if FCL cannot answer, or did not in a process of its own."""
+        """A loop over the first poses; `None` if FCL has no such query, or the loop does not end in a separate
+        process."""
         if question != "contact" and not self.has_distance:
             return None
         (one, two), poses = self.objects, [side[:count] for side in self.poses]
@@ -106,7 +109,7 @@ class Fcl:
 
 
 def _returns(run: Callable[[], Any]) -> bool:
-    """Whether a loop comes to its end, tried in a process of its own."""
+    """Whether a loop ends, tested in a separate process."""
 
     def quietly() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)

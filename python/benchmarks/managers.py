@@ -1,4 +1,5 @@
-"""trimesh's collision manager beside impinge's of the same interface: meshes of primitives, answers and times."""
+"""Compares trimesh's collision manager with that of impinge, which has the same interface: meshes of primitives,
+results and times."""
 
 from __future__ import annotations
 
@@ -16,7 +17,7 @@ from placements import aligned_poses, matrices
 from solids import Solid, corners_alone
 from timing import Side, interleaved, markdown
 
-# Of distances between meshes of size one.
+# The tolerance of distances between meshes of size one.
 TOLERANCE = 1e-6
 
 ABOUT = """\
@@ -85,10 +86,10 @@ def _row(pair: tuple[str, str], poses: Any, rounds: int) -> list[object]:
 
 
 def _wrong(solids: list[Solid], poses: Any, distances: list[Any], is_differing: Any) -> tuple[int, int]:
-    """In how many of the rows that differ each side is wrong: the meshes are convex, so support functions tell."""
+    """The numbers of differing rows in which each side is wrong, by support functions, since the meshes are convex."""
     rows = poses[is_differing]
     true = greatest_gaps(solids[0], np.tile(np.eye(4), (len(rows), 1, 1)), solids[1], rows)
-    # One inside the other has surfaces apart, and no gap.
+    # If one mesh is inside the other, their surfaces are separated, but there is no gap: such rows are not judged.
     judged = [np.abs(side[is_differing] - true)[true > 0] for side in distances]
     ours, theirs = (int((error > 10 * TOLERANCE).sum()) for error in judged)
     return ours, theirs

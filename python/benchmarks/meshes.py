@@ -1,9 +1,9 @@
-"""Triangle meshes: impinge beside Coal, and rays beside trimesh with Embree; answers first, then times.
+"""Triangle meshes: compares impinge with Coal, and rays with trimesh and Embree; first results, then times.
 
     python meshes.py [--quick] [--triangles 1000 10000 100000] [--ray-triangles 1000 82000] [--poses 200] [--rays 300000]
                      [--only WORD] [--out FOLDER]
 
-Writes meshes.md, a table of each question of meshes with meshes and with convex solids, and rays.md. Needs impinge, coal,
+Writes meshes.md, a table of each query of meshes with meshes and with convex solids, and rays.md. Needs impinge, coal,
 trimesh, embreex and scipy.
 """
 
@@ -25,21 +25,21 @@ from trimesh.ray.ray_pyembree import RayMeshIntersector
 
 PACKAGES = ("impinge", "coal", "trimesh", "embreex", "numpy")
 QUESTIONS = ("distance", "witness", "collide", "contacts")
-# More than two meshes here have.
+# More contacts than any two meshes of this benchmark have.
 ALL_CONTACTS = 1_000_000
 
-# Answers that differ by more than this part of the size of the solids are reported.
+# Results that differ by more than this fraction of the size of the solids are reported.
 TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True)
 class Body:
-    """A solid as both libraries know it, at rest in its frame. `reach` is about how far it extends."""
+    """A solid in both libraries, at rest in its local frame. `reach` is its approximate extent."""
 
     name: str
     impinge: Any
     coal: Any
-    # From the frame of impinge to that of Coal: its axes differ for cylinders, cones and capsules.
+    # The rotation from the frame of impinge to that of Coal: the axes differ for cylinders, cones and capsules.
     turn: Any
     reach: float
 
@@ -77,7 +77,7 @@ def pairs(options: argparse.Namespace) -> Iterator[tuple[Body, Body]]:
 
 
 def surface(count: int) -> tuple[Any, Any]:
-    """Vertices and triangles of a bumpy ball of radius about 1: a cube's grids blown up, so that no triangle is thin."""
+    """Vertices and triangles of a bumpy ball of radius about 1: grids on a cube, projected so that no triangle is thin."""
     steps = max(round((count / 12) ** 0.5), 1)
     line = np.linspace(-1, 1, steps + 1)
     grid = np.stack(np.meshgrid(line, line, indexing="ij"), axis=-1).reshape(-1, 2)
@@ -139,7 +139,7 @@ def solids() -> list[Body]:
 
 
 def cases(one: Body, other: Body) -> dict[str, float]:
-    """How far apart the middles are."""
+    """The distance of the centres in each case."""
     reach = one.reach + other.reach
     if other.reach < one.reach:
         return {"apart": 1.5 * reach, "near": 1.08 * reach, "overlap": one.reach, "inside": 0.5 * one.reach}
@@ -175,7 +175,7 @@ def pair_rows(one: Body, other: Body, options: argparse.Namespace) -> Iterator[l
 
 
 def difference(question: str, mine: Any, theirs: Any) -> tuple[int, float]:
-    """How many answers differ, and by how much at most."""
+    """The number of results that differ, and the largest difference."""
     if question == "distance":
         mine, theirs = np.maximum(mine, 0), np.maximum(theirs, 0)
     off = np.abs(mine - theirs)
@@ -203,7 +203,7 @@ def ours(question: str) -> Callable[..., Any]:
 
 
 def coals(question: str, one: Body, other: Body, poses: Any) -> Callable[[], Any]:
-    """Functors with requests and results that are used again. Of two meshes that overlap the distance is zero."""
+    """A loop of Coal's functors, which reuse requests and results. For two overlapping meshes the distance is zero."""
     here = coal.Transform3s()
     there = [coal.Transform3s(pose[:3, :3] @ other.turn, pose[:3, 3]) for pose in poses]
     is_collision = question in ("collide", "contacts")
@@ -221,7 +221,7 @@ def coals(question: str, one: Body, other: Body, poses: Any) -> Callable[[], Any
 
 
 def ray_rows(count: int, options: argparse.Namespace) -> Iterator[list[object]]:
-    """First hits: time along the ray and triangle from impinge, triangle from trimesh, and with its place."""
+    """Rows of first hits: time and triangle from impinge; from trimesh the triangle, or the triangle and the hit point."""
     vertices, triangles = surface(count)
     mesh = trimesh.Trimesh(vertices, triangles, process=False)
     intersector = RayMeshIntersector(mesh)
@@ -249,7 +249,7 @@ def ours_rays(vertices: Any, triangles: Any, origins: Any, directions: Any) -> C
 
 
 def rays(count: int) -> dict[str, tuple[Any, Any]]:
-    """Those of a camera, row by row, and rays from around the mesh to places in it."""
+    """Rays of a camera, row by row, and rays from around the mesh to random points in it."""
     side = max(int(count**0.5), 1)
     x, y = np.meshgrid(np.linspace(-0.35, 0.35, side), np.linspace(-0.35, 0.35, side))
     directions = np.stack([x.ravel(), y.ravel(), np.ones(side * side)], axis=-1)

@@ -1,9 +1,9 @@
-"""Pairs of convex solids: impinge beside Coal, python-fcl and trimesh, answers first, then times.
+"""Pairs of convex solids: compares impinge with Coal, python-fcl and trimesh; first results, then times.
 
     python pairs.py [--quick] [--out FOLDER]
 
-Writes differences.md and differences.csv (what differs, who is right), pairs.md and pairs.csv (times), and managers.md
-(trimesh's collision manager). Needs impinge, coal, python-fcl, trimesh and scipy.
+Writes differences.md and differences.csv (differing results, and which library is right), pairs.md and pairs.csv
+(times), and managers.md (trimesh's collision manager). Needs impinge, coal, python-fcl, trimesh and scipy.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from timing import Side, arguments, interleaved, machine, markdown, write_csv
 
 PACKAGES = ("impinge", "coal", "python-fcl", "trimesh", "numpy")
 
-# How much faster a batch is meant to be than a loop over Coal.
+# The target ratio of the times of a loop over Coal and of a batch.
 GOAL_PRIMITIVES, GOAL_HULLS = 50.0, 10.0
 
 HEADER = (
@@ -73,7 +73,7 @@ def main() -> None:
 
 
 def compare(options: argparse.Namespace, line: str) -> None:
-    """The answers of all pairs."""
+    """Compares the results of all pairs."""
     judge = Judge()
     for one, two in pairs(options):
         for family in FAMILIES:
@@ -83,7 +83,7 @@ def compare(options: argparse.Namespace, line: str) -> None:
 
 
 def measure(options: argparse.Namespace, line: str) -> None:
-    """The times of all pairs."""
+    """Measures the times of all pairs."""
     rows: list[list[object]] = []
     for one, two in pairs(options):
         for family in FAMILIES:
@@ -100,7 +100,7 @@ def pairs(options: argparse.Namespace) -> Iterator[tuple[Solid, Solid]]:
 
 
 def times(family: str, one: Solid, two: Solid, options: argparse.Namespace) -> list[list[object]]:
-    """The rows of one pair: for each question, nanoseconds for a pair of poses."""
+    """The rows of one pair: for each query, nanoseconds per pair of poses."""
     placed: tuple[Array, Array] = placements(family, one, two, options.poses)
     sides = [library(one, placed[0], two, placed[1]) for library in (Impinge, Coal, Fcl)]
     return [_times(sides, f"{one.name}, {two.name}", family, question, options) for question in QUESTIONS]
@@ -139,7 +139,7 @@ def _times(sides: list, pair: str, family: str, question: str, options: argparse
 
 
 def loops(poses: int) -> int:
-    """Loops in Python go through the first poses alone: they cost the same for each."""
+    """The number of poses for loops in Python, a quarter of all: each iteration costs the same."""
     return max(poses // 4, 1)
 
 
@@ -148,7 +148,7 @@ def goal(pair: str) -> float:
 
 
 def write_times(rows: list[list[object]], line: str, options: argparse.Namespace) -> None:
-    """The table of all, a summary by question, and what is slower than it should be, the worst first."""
+    """Writes a summary by query, the cases that miss their target, the slowest first, and the table of all cases."""
     write_csv(options.out / "pairs.csv", HEADER, rows)
     slow_single = sorted((row for row in rows if row[9] > 1), key=lambda row: -row[9])
     slow_batch = sorted((row for row in rows if row[10] < goal(row[0])), key=lambda row: row[10] / goal(row[0]))

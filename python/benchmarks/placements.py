@@ -14,7 +14,7 @@ FAMILIES = ("apart", "near", "aligned")
 
 
 def placements(family: str, one: Solid, two: Solid, count: int) -> tuple[Array, Array]:
-    """Poses (count, 4, 4) of both: the same each time for the same pair of names."""
+    """Poses (count, 4, 4) of both solids. They depend only on the family and the names of the pair."""
     seed = [FAMILIES.index(family), *f"{one.name}{two.name}".encode()]
     rng = np.random.default_rng(seed)
     if family == "aligned":
@@ -22,7 +22,7 @@ def placements(family: str, one: Solid, two: Solid, count: int) -> tuple[Array, 
     poses1 = matrices(Rotation.random(count, random_state=rng).as_matrix(), rng.normal(size=(count, 3)))
     poses2 = matrices(Rotation.random(count, random_state=rng).as_matrix(), np.zeros((count, 3)))
     directions = _directions(rng, one, two, poses1, poses2)
-    # How far they are apart along the direction in which the second lies.
+    # The gap along the direction in which the second solid lies.
     size = one.radius + two.radius
     _move(size * rng.uniform(0.05, 2, count), directions, (one, poses1), (two, poses2))
     if family == "near":
@@ -32,13 +32,13 @@ def placements(family: str, one: Solid, two: Solid, count: int) -> tuple[Array, 
 
 
 def _move(wanted: Array, directions: Array, fixed: tuple[Solid, Array], moved: tuple[Solid, Array]) -> None:
-    """Moves the second ones along directions (n, 3) until the gaps along these are as wanted."""
+    """Moves the second solids along directions (n, 3) until the gaps along these directions are `wanted`."""
     found = gaps(*fixed, *moved, directions[:, None])[:, 0]
     moved[1][:, :3, 3] += directions * (wanted - found)[:, None]
 
 
 def _widest(one: Solid, poses1: Array, two: Solid, poses2: Array) -> Array:
-    """Of a hundred directions the one with the widest gap, for each pair."""
+    """The direction with the largest gap, among a hundred, for each pair."""
     if one.is_half_space or two.is_half_space:
         return poses1[:, :3, 1] if one.is_half_space else -poses2[:, :3, 1]
     spread, found = spiral(100), []
@@ -65,7 +65,8 @@ def matrices(rotations: Array, translations: Array) -> Array:
 
 
 def aligned_poses(rng: np.random.Generator, count: int) -> Array:
-    """Quarter turns, and places on a grid of quarters: faces in one plane, edges in one line, equal centres."""
+    """Rotations by quarter turns, and positions on a grid of spacing 1/4: coplanar faces, collinear edges, equal
+    centres."""
     turns = np.array(quarter_turns())[rng.integers(24, size=count)]
     return matrices(turns, rng.integers(-2, 3, size=(count, 3)) / 4)
 

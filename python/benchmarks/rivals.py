@@ -1,6 +1,6 @@
-"""Coal and impinge behind one interface: the answers of a pair at many poses, and loops to time.
+"""Coal and impinge with one interface: the results of a pair at many poses, and loops to time.
 
-Poses are made ready before a loop is timed: transforms of Coal, matrices (4, 4) for single calls of impinge.
+Poses are converted before a loop is timed: to transforms of Coal, and to matrices (4, 4) for single calls of impinge.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ COMPARED = ("distance", "signed", "depth")
 
 @dataclass
 class Answers:
-    """What a library says of n pairs; NaN where it has no answer."""
+    """The results of a library for n pairs; NaN where it has none."""
 
-    # Zero where they touch.
+    # Zero for touching or overlapping solids.
     distance: Array
-    # Signed: minus the depth where they overlap.
+    # The signed distance: minus the depth of overlapping solids.
     signed: Array
     normal: Array
     point1: Array
     point2: Array
-    # Of the contact; minus infinity without.
+    # The depth of the contact; minus infinity without a contact.
     depth: Array
 
 
@@ -68,7 +68,7 @@ class Impinge:
 
 
 class Coal:
-    """Coal: functors that hold the pair and the function for it, requests and results that are used again.
+    """Coal: functors that hold the pair and its function, with requests and results that are reused.
 
     A result must be cleared before each call: one that already holds a touching pair is returned unchanged.
     """
@@ -94,13 +94,13 @@ class Coal:
         return found
 
     def loop(self, question: str, count: int) -> Callable[[], Any]:
-        """Nothing but the calls: the answers stay in the result."""
+        """A loop of calls only: the results are not read."""
         call, request, result = self._functor(question)
         clear, (poses1, poses2) = result.clear, (side[:count] for side in self.poses)
         return lambda: [(clear(), call(one, two, request, result)) for one, two in zip(poses1, poses2, strict=True)]
 
     def plain(self, question: str, count: int) -> Callable[[], Any]:
-        """The plain functions with shapes, and a new result each time."""
+        """A loop of the plain functions, which take shapes, with a new result for each call."""
         call, kind = (
             (coal.collide, coal.CollisionResult) if question == "contact" else (coal.distance, coal.DistanceResult)
         )
@@ -111,7 +111,7 @@ class Coal:
         ]
 
     def read(self, question: str, count: int) -> Callable[[], Any]:
-        """Calls whose points and normals are read, as the batch of impinge returns them."""
+        """A loop of calls whose points and normals are read, since the batch of impinge returns them."""
         call, request, result = self._functor(question)
         clear, (poses1, poses2) = result.clear, (side[:count] for side in self.poses)
         if question == "contact":

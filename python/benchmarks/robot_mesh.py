@@ -1,8 +1,8 @@
-"""Robots beside a mesh of 100 000 triangles: impinge and Coal behind Pinocchio; answers first, then times.
+"""Robots against a mesh of 100 000 triangles: impinge and Coal called through Pinocchio; first results, then times.
 
     python robot_mesh.py [--quick] [--triangles 100000] [--configurations 20000] [--out FOLDER]
 
-Writes robot_mesh.md. Needs what robots.py and meshes.py need.
+Writes robot_mesh.md. Needs the packages of robots.py and meshes.py.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from timing import Side, arguments, interleaved, machine, markdown
 
 HEADER = ("robot", "bodies", "question", "configurations", "touching", "differ", "impinge us", "Coal us", "Coal / impinge")
 
-# The mesh is a bumpy ball about as large as the reach of the robots, and stands beside them.
+# The mesh is a bumpy ball, about as large as the workspace of the robots, beside them.
 RADIUS, PLACE = 0.4, (0.6, 0.1, 0.5)
 
 
@@ -34,7 +34,7 @@ class Beside:
         self._add(meshes.coal_mesh(vertices, faces))
 
     def _add(self, model: Any) -> None:
-        """Replaces the pairs of Pinocchio by those of each body with the mesh."""
+        """Replaces the pairs of Pinocchio by the pairs of each body with the mesh."""
         side, place = self.sides.pinocchio, pinocchio.SE3(np.eye(3), np.array(PLACE))
         side.geometry.removeAllCollisionPairs()
         mesh = side.geometry.addGeometryObject(pinocchio.GeometryObject("the mesh", 0, 0, place, model))

@@ -1,8 +1,8 @@
-"""Self-collisions of robots whose meshes are surfaces of triangles: `impinge.Checker` beside Coal through Pinocchio.
+"""Self-collisions of robots with surface meshes: compares `impinge.Checker` with Coal through Pinocchio.
 
     python robot_surfaces.py [--quick] [--out FOLDER]
 
-Robots of the package example-robot-data as Pinocchio reads them, meshes as they are. Writes robot_surfaces.md. Needs impinge,
+Robots of the package example-robot-data as read by Pinocchio, with unmodified meshes. Writes robot_surfaces.md. Needs impinge,
 pin and example-robot-data.
 """
 
@@ -22,7 +22,7 @@ from timing import Side, arguments, interleaved, machine, markdown
 PACKAGES = ("impinge", "pin", "coal", "example-robot-data", "numpy")
 SHARE = Path(pinocchio.__file__).resolve().parents[4] / "share"
 SOLIDS, PICTURES = pinocchio.GeometryType.COLLISION, pinocchio.GeometryType.VISUAL
-# The file, the meshes that are used, how the bodies are named, and how many configurations are asked.
+# The file, the kind of meshes, the prefixes of the names of the bodies, and the number of configurations.
 ROBOTS = {
     "UR5": ("ur_description/urdf/ur5_robot.urdf", SOLIDS, ("",), 10_000),
     "Allegro hand": ("allegro_hand_description/urdf/allegro_right_hand.urdf", PICTURES, ("",), 10_000),
@@ -34,14 +34,14 @@ HEADER = (
     *("robot", "bodies", "triangles", "pairs", "configurations", "about", "colliding", "differ"),
     *("impinge us", "Coal us", "Coal / impinge"),
 )
-# How far configurations about zero are from it, in radians: the standard deviation.
+# The standard deviation of configurations near zero, in radians.
 NEAR = 0.3
-# Turns z, along which Coal lays cylinders, into y.
+# Rotates the z axis, along which cylinders of Coal lie, to the y axis.
 Z_TO_Y = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 
 
 class Robot:
-    """A robot in both libraries, with those pairs of bodies on joints apart that do not touch at zero."""
+    """A robot in both libraries. Its pairs are bodies of joints that are not consecutive and do not touch at zero."""
 
     def __init__(self, name: str) -> None:
         file, kind, names, _ = ROBOTS[name]
@@ -55,7 +55,7 @@ class Robot:
         self.bodies = list(self.geometry.geometryObjects)
         self._pair()
         joints = [self.model.joints[number] for number in range(1, self.model.njoints)]
-        # Where the numbers of each joint begin; joints without limits have a cosine and a sine.
+        # The index at which the values of each joint begin; a joint without limits has a cosine and a sine.
         self.columns = [(joint.idx_q, joint.nq == 2) for joint in joints]
         low, high = self.model.lowerPositionLimit, self.model.upperPositionLimit
         limits = [(-np.pi, np.pi) if is_circle else (low[at], high[at]) for at, is_circle in self.columns]
@@ -80,7 +80,7 @@ class Robot:
             self.geometry.addCollisionPair(pinocchio.CollisionPair(one, two))
 
     def _checker(self) -> impinge.Checker:
-        """The same for impinge: a frame for each joint, the first the world."""
+        """The checker of impinge with the same bodies and pairs: the world as the first frame, then a frame for each joint."""
         data = self.model.createData()
         pinocchio.computeJointJacobians(self.model, data, pinocchio.neutral(self.model))
         frames = [impinge.Frame()]
@@ -98,14 +98,14 @@ class Robot:
         return sum(body.geometry.num_tris for body in self.bodies if isinstance(body.geometry, coal.BVHModelBase))
 
     def configurations(self, about: str, count: int) -> Any:
-        """Random ones anywhere within the limits, or about zero, where few collide."""
+        """Random configurations anywhere within the limits, or near zero, where few collide."""
         random, (low, high) = np.random.default_rng(5), self.limits.T
         if about == "anywhere":
             return random.uniform(low, high, (count, len(low)))
         return np.clip(np.clip(0, low, high) + random.normal(0, NEAR, (count, len(low))), low, high)
 
     def rows(self, configurations: Any) -> Any:
-        """Configurations of the model's own order, by columns."""
+        """Configurations in the layout of the Pinocchio model, one per column."""
         rows = np.zeros((len(configurations), self.model.nq))
         for (at, is_circle), values in zip(self.columns, configurations.T, strict=True):
             rows[:, at] = np.cos(values) if is_circle else values
@@ -114,12 +114,12 @@ class Robot:
         return np.asfortranarray(rows.T)
 
     def collides(self, rows: Any) -> Any:
-        """By Coal: one call for all, on one thread, that ends a configuration at its first collision."""
+        """The results of Coal: one call for all configurations, on one thread; each ends at its first collision."""
         return np.array(pinocchio.computeCollisionsInParallel(1, self.pool, rows, True), dtype=bool)
 
 
 def _shape(body: Any) -> tuple[Any, Any]:
-    """A shape of impinge, and its pose on its joint."""
+    """A shape of impinge, and its pose in the frame of its joint."""
     solid, pose = body.geometry, body.placement.homogeneous
     if isinstance(solid, coal.BVHModelBase):
         faces = [[solid.tri_indices(face)[corner] for corner in range(3)] for face in range(solid.num_tris)]

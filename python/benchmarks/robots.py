@@ -1,9 +1,10 @@
-"""Self-collisions of robots: `impinge.urdf.Robot` beside Coal through Pinocchio and python-fcl, answers, then times.
+"""Self-collisions of robots: compares `impinge.urdf.Robot` with Coal through Pinocchio and with python-fcl; results,
+then times.
 
     python robots.py [--quick] [--out FOLDER]
 
-Robots of the package example-robot-data, meshes as their convex hulls on all sides, the same pairs of bodies. Writes
-robots.md and robots.csv. Needs impinge, pin, example-robot-data, python-fcl, trimesh and yourdfpy.
+Robots of the package example-robot-data, with meshes as convex hulls and the same pairs of bodies in all libraries.
+Writes robots.md and robots.csv. Needs impinge, pin, example-robot-data, python-fcl, trimesh and yourdfpy.
 """
 
 from __future__ import annotations
@@ -27,14 +28,14 @@ from solids import Solid, corners_alone
 from timing import Side, arguments, interleaved, machine, markdown, write_csv
 
 PACKAGES = ("impinge", "pin", "coal", "python-fcl", "example-robot-data", "numpy")
-# Where cmeel's packages keep their data.
+# The data folder of cmeel's packages.
 SHARE = Path(pinocchio.__file__).resolve().parents[4] / "share"
 ROBOTS = {
     "UR5": "ur_description/urdf/ur5_robot.urdf",
     "Panda": "panda_description/urdf/panda.urdf",
     "Talos": "talos_data/robots/talos_reduced.urdf",
 }
-# Rows that differ which are judged, the first.
+# The number of differing rows that are examined.
 MOST_JUDGED = 20
 
 HEADER = (
@@ -75,7 +76,7 @@ def main() -> None:
     rows: list[list[object]] = []
     answers: list[list[object]] = []
     for name in list(ROBOTS)[: 1 if options.quick else None]:
-        # Talos has twelve hundred pairs.
+        # Talos has twelve hundred pairs, so fewer configurations.
         sides = Sides(name, options.configurations // (50 if name == "Talos" else 1))
         answers += sides.differences()
         rows += sides.times(options.rounds)
@@ -94,11 +95,11 @@ class Sides:
         self.configurations = np.random.default_rng(5).uniform(*limits.T, (count, len(limits)))
         self.pinocchio = Pinocchio(path, self.robot)
         self.rows = self.pinocchio.rows(self.configurations)
-        # FCL is a loop in Python over every pair.
+        # FCL is a loop in Python over all pairs, so it gets fewer configurations.
         self.few = min(count, 100_000 // max(len(self.robot.pairs), 1) // 5)
 
     def differences(self) -> list[list[object]]:
-        """How often the sides disagree whether a configuration is free, and about which pairs they do."""
+        """Rows with the number of configurations whose results differ, and the pairs concerned."""
         ours = self.robot.self_collides(self.configurations)
         theirs = {
             "Coal": (self.pinocchio.collides(self.rows), len(self.rows)),
@@ -120,7 +121,8 @@ class Sides:
         return table
 
     def _touches(self, row: int) -> bool | None:
-        """Whether a configuration has a pair without a gap, by support functions; none if others may decide."""
+        """Whether a pair overlaps in a configuration, by support functions; `None` if a pair without corners may
+        decide."""
         poses = self.robot.poses(self.configurations[row])[:, None]
         corners, is_sure = self.pinocchio.corners, True
         for one, two in self.robot.pairs:
@@ -131,7 +133,7 @@ class Sides:
         return False if is_sure else None
 
     def _note(self, row: int, ours: bool, rival: str, theirs: bool) -> str:
-        """The answers of a configuration, and its least signed distances, each configuration asked alone."""
+        """A text with the results of a configuration and its smallest signed distances, computed by single queries."""
         poses = self.robot.poses(self.configurations[row])
         bodies = self.robot.bodies
         signed = [
@@ -144,7 +146,7 @@ class Sides:
         return f"{row}, {bodies[one].name}, {bodies[two].name}: {answers}, {least}"
 
     def times(self, rounds: int) -> list[list[object]]:
-        """Microseconds for a configuration, by question and side: processor time, and wall time with all threads."""
+        """Microseconds per configuration, by query and library: processor time, and wall time with all threads."""
         count, some = len(self.configurations), min(len(self.configurations), 2_000)
         first = self.configurations[:some]
         fcl_side = Fcl(self, self.few)
@@ -184,7 +186,7 @@ class Sides:
 
 
 class Pinocchio:
-    """Coal behind Pinocchio: frames and collisions in C++."""
+    """Coal called through Pinocchio: frames and collisions in C++."""
 
     def __init__(self, path: Path, robot: Robot) -> None:
         self.model = pinocchio.buildModelFromUrdf(str(path))
@@ -193,11 +195,11 @@ class Pinocchio:
         for solid in self.geometry.geometryObjects:
             solid.geometry = _hull(solid.geometry)
         names = {solid.name: number for number, solid in enumerate(self.geometry.geometryObjects)}
-        # The place of each of the robot's bodies.
+        # The index of each of the robot's bodies.
         self.numbers = [names["_".join(body.name.rsplit("/", 1))] for body in robot.bodies]
         for one, two in robot.pairs:
             self.geometry.addCollisionPair(pinocchio.CollisionPair(self.numbers[one], self.numbers[two]))
-        # Pairs may be stored the other way round, but in their order.
+        # The two bodies of a pair may be stored swapped, but the pairs keep their order.
         assert len(self.geometry.collisionPairs) == len(robot.pairs)
         self.columns = _columns(path, self.model, robot)
         self.data, self.placed = self.model.createData(), self.geometry.createData()
@@ -205,7 +207,8 @@ class Pinocchio:
         self.pool = pinocchio.GeometryPool(self.model, self.geometry, 1)
 
     def rows(self, configurations: Any) -> Any:
-        """Configurations of the model's own order, mimicking joints and pairs of cosine and sine included."""
+        """Configurations in the layout of the Pinocchio model, with mimic joints and with cosine and sine of circular
+        joints."""
         rows = np.zeros((len(configurations), self.model.nq))
         for index, is_circle, column, multiplier, offset in self.columns:
             value = multiplier * configurations[:, column] + offset
@@ -216,7 +219,7 @@ class Pinocchio:
         return rows
 
     def collides(self, rows: Any) -> Any:
-        """One call for all, on one thread, that ends a configuration at its first collision."""
+        """One call for all configurations, on one thread; each ends at its first collision."""
         return np.array(
             pinocchio.computeCollisionsInParallel(1, self.pool, np.asfortranarray(rows.T), True), dtype=bool
         )
@@ -226,7 +229,7 @@ class Pinocchio:
         return [pinocchio.computeCollisions(model, data, geometry, placed, row, True) for row in rows]
 
     def distance(self, row: Any) -> float:
-        """The least distance of all pairs."""
+        """The smallest distance of all pairs."""
         at = pinocchio.computeDistances(self.model, self.data, self.geometry, self.placed, row)
         return float(self.placed.distanceResults[at].min_distance)
 
@@ -244,7 +247,7 @@ def _hull(geometry: Any) -> Any:
 
 
 def _corners(shape: Any) -> Solid | None:
-    """What certificates ask of hulls and boxes."""
+    """The vertices of hulls and boxes as a solid for `certify`; `None` for other shapes."""
     if isinstance(shape, coal.Box):
         signs = np.array(list(product((-1.0, 1), repeat=3)))
         return corners_alone("box", signs * shape.halfSide)
@@ -254,7 +257,7 @@ def _corners(shape: Any) -> Solid | None:
 
 
 def _columns(path: Path, model: Any, robot: Robot) -> list[tuple[int, bool, int, float, float]]:
-    """For each joint of the model: where it begins, whether it is a circle, and by which column of ours it moves."""
+    """For each joint of the model: its index, whether it is a circle, and the column of the robot that drives it."""
     mimics = {}
     for joint in ElementTree.parse(path).getroot().iter("joint"):
         if (mimic := joint.find("mimic")) is not None:
@@ -268,7 +271,7 @@ def _columns(path: Path, model: Any, robot: Robot) -> list[tuple[int, bool, int,
 
 
 class Fcl:
-    """python-fcl: a loop in Python, with frames that are given to it ready."""
+    """python-fcl: a loop in Python, with frames computed beforehand."""
 
     def __init__(self, sides: Sides, count: int) -> None:
         robot, geometry = sides.robot, sides.pinocchio.geometry
@@ -294,7 +297,7 @@ class Fcl:
 
 
 def _fcl_shape(shape: Any) -> Any:
-    """The same solid for FCL: boxes, balls, cylinders, and convex hulls."""
+    """The solid as a shape of FCL: a box, a ball, a cylinder, or a convex hull."""
     if isinstance(shape, coal.Box):
         return fcl.Box(*(2 * shape.halfSide))
     if isinstance(shape, coal.Sphere):

@@ -1,10 +1,10 @@
-"""The self-join of many objects on local processes: wall time, and the memory of each worker.
+"""The self-join of many objects on local processes: wall time, and memory of each worker.
 
     python benchmarks/self_join.py --objects 10000000 --workers 2 --tiles 128
     python benchmarks/self_join.py --objects 1000000 --check
 
-Balls, boxes and capsules in heaps of 50 000 on average, the densest a thousand times as dense as the loosest, in no order. With
-`--check` the pairs are compared with those of one call in this process.
+Balls, boxes and capsules in clusters of 50 000 on average, in random order; the densest cluster is a thousand times as dense
+as the loosest. With `--check` the pairs are compared with those of one call in this process.
 """
 
 import argparse
@@ -27,7 +27,7 @@ CLEARANCE = 0.05
 
 
 def objects(count, seed=1):
-    """The objects, one row group after the other: ids, shapes, poses."""
+    """Yields the objects by row groups: ids, shapes, poses."""
     heaps = max(1, count // 50_000)
     rng = np.random.default_rng(seed)
     places = rng.uniform(0, 400 * heaps ** (1 / 3), (heaps, 3))
@@ -58,14 +58,14 @@ def in_one(count):
 
 
 def memory():
-    """The most that this process ever held, in MB."""
+    """The peak memory of this process, in MB."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 
 
 def main(given, folder):
     source, output = folder / f"objects-{given.objects}.parquet", folder / f"pairs-{given.objects}"
     if not source.exists():
-        # Elsewhere: what this process once held, its children count as their own.
+        # In another process, because child processes inherit the peak memory of this one.
         process = multiprocessing.get_context("spawn").Process(target=write, args=(source, given.objects))
         process.start()
         process.join()

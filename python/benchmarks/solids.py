@@ -1,6 +1,7 @@
-"""The solids of the benchmarks: for each library, and as support functions in NumPy that know no library.
+"""The solids of the benchmarks: for each library, and as support functions in NumPy that are independent of any
+library.
 
-All in impinge's frame: capsules, cylinders and cones lie along y there, along z in Coal and FCL.
+All are in the frame of impinge, in which capsules, cylinders and cones lie along y; in Coal and FCL they lie along z.
 """
 
 from __future__ import annotations
@@ -18,25 +19,25 @@ from scipy.spatial import ConvexHull
 
 Array = NDArray[np.float64]
 
-# From the frame of Coal and FCL into impinge's: z becomes y.
+# From the frame of Coal and FCL to that of impinge: z becomes y.
 Z_TO_Y = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
 
 
 @dataclass(frozen=True)
 class Solid:
-    """One solid: its shape in each library, and what certificates ask about it."""
+    """One solid: its shape in each library, and its functions for `certify`."""
 
     name: str
     impinge: Any
     coal: Any
     fcl: Any
-    # Turns the frame of the rivals into impinge's.
+    # The rotation from the frame of Coal and FCL to that of impinge.
     turn: Array
     # The farthest points (..., 3) of the solid along directions (..., 3).
     support: Callable[[Array], Array]
-    # At least how far points (..., 3) lie outside; zero inside.
+    # A lower bound of the distance of points (..., 3) outside the solid; zero inside.
     excess: Callable[[Array], Array]
-    # The radius of a ball around the origin that holds it; of a half-space a number to place others by.
+    # The radius of a ball around the origin that contains the solid; for a half-space a scale for placements.
     radius: float
     is_half_space: bool = False
 
@@ -46,7 +47,7 @@ class Solid:
 
 
 def solids(quick: bool = False) -> list[Solid]:
-    """All kinds that the libraries have in common."""
+    """All solids that the libraries have in common."""
     rng = np.random.default_rng(7)
     triangle = np.array([[-0.5, 0, -0.5], [0.5, 0, -0.5], [0, 0, 0.5]])
     made = [_sphere(0.5), _box(np.array([0.5, 0.25, 0.75])), _hull("hull12", _on_ball(rng, 12))]
@@ -119,7 +120,7 @@ def _capsule(half_height: float, radius: float) -> Solid:
 
 
 def _rim(n: Array, radius: float) -> Array:
-    """The points of a circle around y that are farthest along directions."""
+    """The farthest points, along directions, of a circle around the y axis."""
     flat = n.copy()
     flat[..., 1] = 0
     return radius * _unit(flat)
@@ -151,7 +152,7 @@ def _cone(half_height: float, radius: float) -> Solid:
         return np.where(is_apex[..., None], apex, base)
 
     def excess(p: Array) -> Array:
-        # How far behind the base and outside the mantle, in the half-plane of the axis and the point.
+        # The distances below the base and outside the mantle, in the half-plane of the axis and the point.
         aside, along = np.hypot(p[..., 0], p[..., 2]), p[..., 1]
         slant = np.hypot(2 * half_height, radius)
         mantle = (aside * 2 * half_height + (along - half_height) * radius) / slant
@@ -182,7 +183,7 @@ def _half_space() -> Solid:
         coal.Halfspace(up, 0.0),
         fcl.Halfspace(up, 0.0),
         Z_TO_Y,
-        # Along its normal alone; certificates ask for no other direction.
+        # Only along its normal; certify uses no other direction.
         np.zeros_like,
         lambda p: np.maximum(p[..., 1], 0),
         0.5,
@@ -216,13 +217,14 @@ def _outward(points: Array, face: Any, plane: Array) -> list[int]:
 
 
 def corners_alone(name: str, points: Array) -> Solid:
-    """The hull of points as certificates need it, without a shape of any library."""
+    """The hull of points for `certify`, without shapes of the libraries."""
     size = float(np.linalg.norm(points, axis=1).max())
     return Solid(name, None, None, None, np.eye(3), of_points(points), lambda p: np.zeros(p.shape[:-1]), size)
 
 
 def _flat(name: str, corners: Array) -> Solid:
-    """A triangle: for the rivals, whose triangles answer nothing, a convex of three points with a face to each side."""
+    """A triangle. For Coal and FCL, whose triangles return no results, it is a convex of three points with a face on
+    each side."""
     normal = _unit(np.cross(corners[1] - corners[0], corners[2] - corners[0]))
     sides = [np.cross(corners[(i + 1) % 3] - corners[i], normal) for i in range(3)]
     planes = [(_unit(side), float(_unit(side) @ corners[i])) for i, side in enumerate(sides)]
@@ -238,7 +240,7 @@ def _flat(name: str, corners: Array) -> Solid:
 
 
 def coal_convex(points: Array, faces: list[list[int]]) -> Any:
-    """A convex of Coal with the neighbours of its vertices."""
+    """A convex of Coal with the adjacency of its vertices."""
     vertices, triangles = coal.StdVec_Vec3s(), coal.StdVec_Triangle()
     for point in points:
         vertices.append(point)

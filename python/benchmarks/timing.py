@@ -1,4 +1,4 @@
-"""Timing side by side: all sides in turn in one process, several rounds, medians; tables and machine."""
+"""Times several libraries alternately in one process, in several rounds, by medians; writes tables and the machine."""
 
 from __future__ import annotations
 
@@ -20,7 +20,8 @@ DEFAULT_OUT = Path(__file__).resolve().parents[2] / "bench" / "python"
 
 @dataclass(frozen=True)
 class Timed:
-    """Seconds for each element: the median, the least and the greatest processor time of the rounds, and wall time."""
+    """Seconds per element: the median, the minimum and the maximum processor time of the rounds, and the median wall
+    time."""
 
     median: float
     least: float
@@ -29,22 +30,22 @@ class Timed:
 
     @property
     def spread(self) -> float:
-        """The range of the rounds as a part of the median."""
+        """The range of the rounds as a fraction of the median."""
         return (self.greatest - self.least) / self.median if self.median > 0 else 0.0
 
 
 @dataclass(frozen=True)
 class Side:
-    """What is timed: a call that does its work for so many elements."""
+    """A timed call, and the number of elements that it processes."""
 
     run: Callable[[], Any]
     elements: int
 
 
 def interleaved(sides: Mapping[str, Side], rounds: int = 5) -> dict[str, Timed]:
-    """Runs all sides in turn, once unmeasured and then `rounds` times, each round from another side on.
+    """Runs all sides alternately, once unmeasured and then `rounds` times; each round starts with the next side.
 
-    Processor time is that of the whole process with all its threads: others may share the machine.
+    Processor time is that of the whole process with all its threads, since other processes may share the machine.
     """
     names = list(sides)
     for name in names:
@@ -71,7 +72,7 @@ def _timed(seconds: list[tuple[float, float]], elements: int) -> Timed:
 
 
 def machine(packages: Sequence[str]) -> str:
-    """The processor, how many cores, the load, and the versions of Python and of these packages."""
+    """The processor, the number of cores, the load, and the versions of Python and of these packages."""
     load = f"load {os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else "load unknown"
     versions = ", ".join(f"{name} {_version(name)}" for name in packages)
     when = time.strftime("%Y-%m-%d")
@@ -96,7 +97,7 @@ def _version(package: str) -> str:
 
 
 def markdown(header: Sequence[str], rows: Sequence[Sequence[Any]]) -> str:
-    """A table; columns of numbers to the right."""
+    """A table in Markdown; columns of numbers are right-aligned."""
     texts = [[_cell(cell) for cell in row] for row in rows]
     right = [bool(rows) and all(_is_number(row[column]) for row in rows) for column in range(len(header))]
     rule = ["---:" if is_right else "---" for is_right in right]
@@ -116,7 +117,7 @@ def _cell(cell: Any) -> str:
 
 
 def write_csv(path: Path, header: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
-    """A table as CSV, numbers with six digits."""
+    """Writes a table as CSV, numbers with six digits."""
     with path.open("w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(header)
@@ -125,7 +126,7 @@ def write_csv(path: Path, header: Sequence[str], rows: Sequence[Sequence[Any]]) 
 
 
 def arguments(description: str | None) -> argparse.ArgumentParser:
-    """The options of all benchmarks."""
+    """The parser with the options of all benchmarks."""
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--quick", action="store_true", help="a smoke run with few elements and rounds")
     parser.add_argument("--out", type=Path, default=DEFAULT_OUT, help="the folder of the tables")

@@ -1,4 +1,4 @@
-"""When a thousand moving balls hit a turned box, and where: no tunnelling at any speed."""
+"""When and where a thousand moving balls hit a rotated box, without tunnelling at any speed."""
 
 import impinge
 import numpy as np

@@ -1,4 +1,4 @@
-"""Clashes and lacking clearance in an assembly of ten thousand parts."""
+"""Clashes and insufficient clearances in an assembly of ten thousand parts."""
 
 import impinge
 import numpy as np

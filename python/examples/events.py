@@ -1,4 +1,4 @@
-"""A world whose objects move: who began and ceased to touch whom."""
+"""A world whose objects move: which pairs started and stopped touching."""
 
 import impinge
 import numpy as np

@@ -1,11 +1,11 @@
-"""A robot of balls among shelves: which of a hundred thousand configurations are free, and by how much."""
+"""A robot of balls among shelves: which of a hundred thousand configurations are free, and their distances."""
 
 import time
 
 import impinge
 import numpy as np
 
-# Six joints, alternately about z and y, each a third of a metre from the last; four balls along each link.
+# Six joints, alternately about z and y, each a third of a metre after the previous one; four balls along each link.
 LENGTH = 1 / 3
 step = impinge.Poses([0, 0, LENGTH])
 frames = [impinge.Frame(joint="revolute", axis=[0, 0, 1], column=0)]
@@ -19,7 +19,7 @@ places = impinge.Poses(np.column_stack([np.zeros((24, 2)), heights]))
 pairs = [(one, two) for one in range(24) for two in range(one + 1, 24) if on[two] - on[one] > 1]
 robot = impinge.Checker(frames, 6, [impinge.Ball(0.06)] * 24, on, places, pairs)
 
-# Two boards, two posts and the floor, which the first link stands on.
+# Two boards, two posts, and the floor, on which the first link stands.
 shapes = [impinge.Cuboid([0.4, 0.6, 0.02])] * 2 + [impinge.Cylinder(0.75, 0.03)] * 2 + [impinge.HalfSpace([0, 0, 1])]
 turn = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
 poses = np.tile(np.eye(4), (5, 1, 1))

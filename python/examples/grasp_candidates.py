@@ -1,4 +1,4 @@
-"""Which of many gripper poses around a cup are free, and how deep the fingers of the others are in it."""
+"""Which of many gripper poses around a cup are free, and the depths of the fingers in the cup for the others."""
 
 import impinge
 import numpy as np

@@ -1,4 +1,4 @@
-"""A turning range finder in a scene of boxes: one million distances."""
+"""A rotating range finder in a scene of boxes: one million distances."""
 
 import impinge
 import numpy as np

@@ -1,4 +1,4 @@
-"""Which cells of a grid are inside a scene, and how far the others are from it."""
+"""Which cells of a grid are inside a scene, and the distances of the other cells."""
 
 import impinge
 import numpy as np

@@ -1,6 +1,6 @@
-"""What a notebook shows, as files: a picture of a scene, and a page that replays how blocks fall onto a table.
+"""Writes files of what a notebook displays: a picture of a scene, and a page that replays blocks falling onto a table.
 
-In a notebook a shape, a `Scene`, a `World` or a `Recording` at the end of a cell is shown without any of this.
+A notebook displays a shape, a `Scene`, a `World` or a `Recording` at the end of a cell without such code.
 """
 
 import tempfile
@@ -30,7 +30,7 @@ try:
     recording.save(folder / "table.html")
     written = "table.html, which opens in any browser"
 except RuntimeError:
-    # Built without the page: the command `impinge export table.implog -o table.html` makes it.
+    # Built without the page; the command `impinge export table.implog -o table.html` writes it.
     recording.save(folder / "table.implog")
     written = "table.implog"
 assert len(world.contacts()) >= 12 * 4 and recording.updates > 50

@@ -1,4 +1,4 @@
-"""Which of many poses of a gripper are free, on two processes: each makes the scene once from its bytes."""
+"""Which of many poses of a gripper are free, on two processes, each of which builds the scene once from its bytes."""
 
 import dask.array
 import impinge

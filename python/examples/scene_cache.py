@@ -1,4 +1,4 @@
-"""A scene sent to workers by its bytes, and made there once: the answers are the same to the bit."""
+"""A scene sent to workers as bytes, and built once by each: the results are equal to the bit."""
 
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
@@ -13,7 +13,7 @@ scene = impinge.Scene(shapes, impinge.Poses(rng.uniform(-5, 5, (100, 3)), rng.no
 
 @lru_cache
 def made(data: bytes) -> impinge.World:
-    """The world of a scene; a worker keeps it by its bytes."""
+    """The world of a scene; a worker caches it with the bytes as the key."""
     given = impinge.Scene.from_bytes(data)
     world = impinge.World()
     world.add(given.shapes, given.poses)

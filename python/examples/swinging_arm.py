@@ -1,4 +1,4 @@
-"""A roboticist asks when arms that swing at different speeds hit a post, and which are quick enough to pass before it moves."""
+"""When arms that swing at different speeds hit a post."""
 
 import impinge
 import numpy as np
@@ -7,7 +7,7 @@ arm = impinge.Capsule(ends=[[0, 0, 0], [1.2, 0, 0]], radius=0.08)
 post = impinge.Cylinder(1.0, 0.1)
 speeds = np.linspace(0.5, 3.0, 6)
 turning = np.column_stack([np.zeros(6), speeds, np.zeros(6)])
-# The post stands on the way of the arm, an eighth of a turn ahead: a turn about y takes x to -z.
+# The post stands in the path of the arm, an eighth of a turn ahead: a rotation about y takes x to -z.
 post_at = impinge.Poses([np.cos(np.pi / 4), 0, -np.sin(np.pi / 4)])
 found = impinge.impact(arm, None, [0, 0, 0], post, post_at, [0, 0, 0], max_time=2.0, angular_velocity1=turning)
 angles = found.time * speeds

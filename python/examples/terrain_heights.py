@@ -1,4 +1,4 @@
-"""Heights of a terrain under many points, and the slope there, by rays."""
+"""Heights and slopes of a terrain below many points, by rays."""
 
 import impinge
 import numpy as np

@@ -8,8 +8,8 @@
 ((1000,), 8.5)
 
 `pip install ./python` in the repository of impinge builds it from source. The build needs Rust 1.95 or later with cargo
-(https://rustup.rs), a C compiler as linker, and some minutes; pip fetches maturin and NumPy. The page of recordings is an
-optional part, built as `python/README.md` describes. `impinge.__version__` is the version.
+(https://rustup.rs) and a C compiler as linker, and takes some minutes; pip fetches maturin and NumPy. The page of
+recordings is an optional part, built as `python/README.md` describes. `impinge.__version__` is the version.
 """
 
 from impinge._checker import NO_BODY, Checker, Frame, NearestPairs

@@ -23,9 +23,10 @@ NO_BODY = 4294967295
 class Frame(NamedTuple):
     """A frame on a joint: its pose is `parent @ origin @ motion`.
 
-    `parent` is the index of a frame, `None` for the world, and `origin` a matrix (D+1, D+1), `None` for the identity.
-    A revolute joint rotates by radians about `axis` (D,), in 2D counter-clockwise without one; a prismatic joint translates
-    along it. The joint value is that in `column` of the configuration times `factor`, plus `offset`.
+    `parent` is the index of a frame, `None` for the world, and `origin` a matrix (D+1, D+1), `None` for the identity. A
+    revolute joint rotates by radians about `axis` (D,); in 2D it needs no axis and rotates counter-clockwise. A prismatic
+    joint translates along `axis`. The joint value is the value in `column` of the configuration times `factor`, plus
+    `offset`.
     """
 
     parent: int | None = None
@@ -38,7 +39,7 @@ class Frame(NamedTuple):
 
 
 class NearestPairs(NamedTuple):
-    """For each configuration the least distance (n,) and its pair (n, 2); infinite and `NO_BODY` beyond the limit."""
+    """The smallest distance (n,) of each configuration, and its pair (n, 2); infinite and `NO_BODY` beyond the limit."""
 
     distance: Floats
     pair: Indices
@@ -51,9 +52,9 @@ class Checker:
     shapes: the bodies, a sequence of b `Shape`; on: the frame of each (b,); poses: their poses in these frames,
     (b, D+1, D+1), or `None` for the identity. pairs (m, 2): the bodies that must not touch.
 
-    Configurations are arrays (n, columns), or a single one (columns,); results have a row for each. Pairs are numbers of
-    bodies, and of obstacles beginning with b; the lower one comes first, and among several pairs the first is returned. A
-    configuration that is not finite is not free, has the distance NaN and no pair.
+    Configurations are arrays (n, columns), or a single one (columns,); results have a row for each. A pair is two indices of
+    bodies; obstacles have the indices from b on. The lower index comes first, and among several pairs the first is returned.
+    A configuration that is not finite is not free, has the distance NaN and no pair.
 
     >>> import impinge, numpy as np
     >>> arm = [impinge.Frame(joint="revolute", axis=[0, 0, 1], column=0),
@@ -69,7 +70,7 @@ class Checker:
     >>> round(float(checker.nearest(configurations[0]).distance[0]), 6)
     0.25
 
-    It can be pickled, with its obstacles.
+    A checker pickles with its obstacles.
     """
 
     def __init__(
@@ -98,8 +99,8 @@ class Checker:
         self._obstacles: tuple[Any, ...] | None = None
 
     def set_obstacles(self, shapes: Sequence[Shape], poses: PosesLike = None, ignored: ArrayLike = ()) -> None:
-        """Replaces all obstacles by shapes (o,) at poses (o, D+1, D+1); `ignored` (m, 2) are pairs of a body and an obstacle,
-        by index from zero, that may touch."""
+        """Replaces all obstacles by shapes (o,) at poses (o, D+1, D+1). `ignored` (m, 2) are pairs that may touch: the index
+        of a body and that of an obstacle, from zero."""
         obstacles = list(shapes)
         placed = self._poses(poses, len(obstacles), "poses")
         may_touch = _pairs(ignored, "ignored")
@@ -126,7 +127,7 @@ class Checker:
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> NDArray[np.bool_]:
-        """Whether all pairs are farther apart than the clearance; with clearance 0, whether none touch: (n,)."""
+        """Whether all pairs are farther apart than `clearance`; with clearance 0, whether no pair touches: (n,)."""
         free: NDArray[np.bool_] = self._ask("free", configurations, clearance, threads, progress)[0]
         return free
 
@@ -138,7 +139,7 @@ class Checker:
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> Indices:
-        """The first pair whose distance is at most the clearance: (n, 2), `NO_BODY` twice for a free configuration."""
+        """The first pair whose distance is at most `clearance`: (n, 2); `NO_BODY` twice for a free configuration."""
         pair: Indices = self._ask("pair", configurations, clearance, threads, progress)[1].reshape(-1, 2)
         return pair
 
@@ -150,7 +151,7 @@ class Checker:
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> NearestPairs:
-        """The distance of the nearest pair up to a limit, zero if it touches: `NearestPairs(distance, pair)`."""
+        """The nearest pair and its distance, up to `limit`; 0 if the pair touches: `NearestPairs(distance, pair)`."""
         _, pair, distance = self._ask("nearest", configurations, limit, threads, progress)
         return NearestPairs(distance, pair.reshape(-1, 2))
 
@@ -172,7 +173,7 @@ class Checker:
         if self.columns:
             poses = self._native.place(rows.reshape(-1), of_bodies)
         else:
-            # One pose for each, for all configurations.
+            # Without columns the poses are the same for all configurations.
             poses = np.tile(self._native.place(rows.reshape(-1), of_bodies), (math.prod(rows.shape[:-1]), 1, 1))
         return poses.reshape(*rows.shape[:-1], count, size, size)
 
@@ -238,7 +239,7 @@ def _columns(frames: Sequence[Frame], dim: int, dtype: str) -> tuple[Any, ...]:
 
 
 def _generator(frame: Frame, number: int, dim: int) -> NDArray[np.float64]:
-    """The matrix of axis x v, row by row."""
+    """The matrix of the cross product with the axis, x -> axis × x, row by row."""
     if dim == 2:
         return np.array([0.0, -1.0, 1.0, 0.0])
     x, y, z = _unit(frame, number, dim)

@@ -1,4 +1,4 @@
-"""The extension module: what `impinge` exports of it is documented there."""
+"""The extension module. `impinge` re-exports its public names, which are documented there."""
 
 from collections.abc import Sequence
 from typing import Any, Protocol, TypeAlias, final, overload
@@ -51,9 +51,9 @@ class Shape:
 Shapes: TypeAlias = Shape | Sequence[Shape] | Picked
 PosesLike: TypeAlias = ArrayLike | Poses | None
 
-# The answer is a scalar if the question has one `Shape` at one pose on each side and one point or vector, else an array.
-# The type of an argument tells one from many if it is `None`, a list of numbers, of rows or of shapes. A NumPy array or
-# `Poses` may be either, so the answer then has the type of either.
+# The result is a scalar if each side of the query has one `Shape` at one pose and there is one point or vector, else an
+# array. The type of an argument distinguishes one from many if it is `None`, or a list of numbers, of rows or of shapes.
+# A NumPy array or `Poses` may be either, so the result is then the union of both types.
 OnePose: TypeAlias = Sequence[Sequence[float]] | None
 OneVector: TypeAlias = Sequence[float]
 Vectors: TypeAlias = Sequence[Sequence[float]]
@@ -266,7 +266,7 @@ def nearest(
 def impact(
     shape1: Shape, poses1: OnePose, velocity1: OneVector, shape2: Shape, poses2: OnePose, velocity2: OneVector,
     max_time: float = ..., target_distance: float = 0.0, *,
-    # In 2D a list of numbers is an angular velocity for each element, in 3D it is one.
+    # In 2D a list of numbers has one angular velocity for each element; in 3D it is a single vector.
     angular_velocity1: float | None = None, angular_velocity2: float | None = None,
     threads: Threads = None, progress: ProgressLike = None,
 ) -> Impact[float, bool]: ...

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     Drawable: TypeAlias = _native.Shape | Scene | World
 
-# For more objects than this a notebook shows no picture unless `picture` is called.
+# The largest number of objects for which a notebook shows a picture without a call of `picture`.
 MANY = 300
 
 
@@ -35,7 +35,7 @@ class Picture(NamedTuple):
     title: str
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Writes a file. ValueError if its extension is not the format."""
+        """Writes a file. ValueError if its extension is not `format`."""
         if Path(path).suffix != f".{self.format}":
             raise ValueError(f"path is {path}: the picture is {self.format}, in which the name of the file ends")
         Path(path).write_bytes(self.data)

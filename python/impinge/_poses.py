@@ -31,7 +31,8 @@ class Poses:
     A pose x -> rotation x + translation maps the local frame of a shape to the world frame. Any function that takes poses
     also takes the matrices themselves; those in C order and of the dtype of the shape are not copied.
 
-    Errors: ValueError if an array has a wrong shape, a number is not finite or a quaternion is zero, with the row and the value.
+    Errors: ValueError names the row and the value if an array has a wrong shape, a number is not finite or a quaternion is
+    zero.
 
     translations: (D,) or (n, D), in the unit of the shapes. quaternions: (4,) or (n, 4), of any length but zero, in the
     order "xyzw" (SciPy, ROS) or "wxyz" (MuJoCo, trimesh), in 3D. angles: a number or (n,) in radians, counter-clockwise, in 2D.
@@ -86,7 +87,8 @@ class Poses:
 
     @classmethod
     def from_matrices(cls, matrices: ArrayLike) -> Poses:
-        """Creates poses from matrices (D+1, D+1) or (n, D+1, D+1), in 2D or 3D. They are validated where they are used.
+        """Creates poses from matrices (D+1, D+1) or (n, D+1, D+1), in 2D or 3D. They are validated by the functions that use
+        them.
 
         >>> Poses.from_matrices(np.eye(3))
         <impinge.Poses (3, 3)>
@@ -112,7 +114,7 @@ class Poses:
         poses = cls.from_matrices(matrices)
         given = _finite(poses.matrices, "matrices")
         left, _, right = np.linalg.svd(given[..., :-1, :-1])
-        # For a matrix with a reflection every rotation is far.
+        # If the matrix is a reflection, no rotation is within a small tolerance.
         turned = left * np.where(np.linalg.det(left @ right) < 0, -1.0, 1.0)[..., None, None] @ right
         nearest = _joined(turned, given[..., :-1, -1])
         off = np.abs(nearest - given).max(axis=(-2, -1))
@@ -165,7 +167,7 @@ def _of_quaternions(quaternions: Array, order: Order) -> Array:
     _finite(quaternions, "quaternions")
     if quaternions.ndim not in (1, 2) or quaternions.shape[-1] != 4:
         raise ValueError(f"quaternions has the shape {quaternions.shape}, where (4,) or (n, 4) is needed")
-    # Scaled to a largest component of 1 first, so that squares do not overflow or underflow.
+    # Scaled first so that the largest component is 1: then squares neither overflow nor underflow.
     largest = np.abs(quaternions).max(axis=-1, keepdims=True)
     if not (largest > 0).all():
         row = int(np.argmin(largest.ravel()))
@@ -191,7 +193,7 @@ def _of_angles(angles: Array) -> Array:
 
 
 def _joined(rotations: Array, translations: Array) -> Array:
-    """Returns homogeneous matrices; a single rotation or translation is used for all."""
+    """Returns homogeneous matrices; a single rotation or translation is broadcast."""
     many = {len(rotations)} if rotations.ndim == 3 else set()
     many |= {len(translations)} if translations.ndim == 2 else set()
     if len(many) > 1:

@@ -33,7 +33,8 @@ class ClosestPoints(NamedTuple):
 
 
 class Witness(NamedTuple):
-    """The nearest or deepest points of two shapes, and the parts of composites they lie on: (n,) and (n, D), or scalars."""
+    """The nearest or deepest points of two shapes, and the parts of composites at these points: (n,) and (n, D), or
+    scalars."""
 
     distance: float | Floats
     point1: Floats
@@ -70,7 +71,8 @@ class Nearest(NamedTuple):
 
 
 class Manifolds(NamedTuple):
-    """Contact points in rows: those of pair i are `starts[i]` to `starts[i + 1]` of the other columns, (m,) and (m, D)."""
+    """Contact points in rows. The rows of pair i are `starts[i]` to `starts[i + 1]` of the other columns, (m,) and (m,
+    D)."""
 
     starts: NDArray[np.int64]
     depth: Floats
@@ -82,7 +84,7 @@ class Manifolds(NamedTuple):
     part2: Indices
 
     def of(self, pair: int) -> Manifolds:
-        """The points of one pair.
+        """The contact points of one pair.
 
         >>> import impinge, numpy as np
         >>> poses = np.tile(np.eye(4), (2, 1, 1)); poses[:, 1, 3] = [5, 1.5]
@@ -107,7 +109,8 @@ class Manifolds(NamedTuple):
 
 
 class Projection(NamedTuple):
-    """The points of shapes nearest to given points: (n, D), (n,) and (n,), or scalars."""
+    """The points of shapes nearest to the query points, whether these are inside, and parts: (n, D), (n,) and (n,), or
+    scalars."""
 
     point: Floats
     is_inside: bool | Flags

@@ -1,7 +1,7 @@
-"""Types of `_results.py`: NamedTuples with type parameters, which Python 3.10 cannot run.
+"""Types of `_results.py`: NamedTuples with type parameters, which Python 3.10 does not support at run time.
 
 A parameter is the type of a scalar for one pair, or of an array (n,) for many, so that `Contact[float]` is the contact of one
-pair. Without parameters a class stands for both. Vectors are arrays in both cases, (D,) and (n, D).
+pair. A class without parameters stands for both. Vectors are arrays in both cases, (D,) and (n, D).
 """
 
 from enum import IntEnum

@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 class Scene:
     """Immutable shapes at poses, which compare, hash and pickle by their bytes.
 
-    shapes, poses: as of `impinge.distance`; at least one object. ValueError names the row of an invalid pose.
+    shapes, poses: as in `impinge.distance`; at least one object. ValueError names the row of an invalid pose.
 
     The bytes are a recording of the calls that add the objects (the format of `impinge-record`): versioned, with a checksum,
-    equal on every machine. Poses are stored as unit quaternions: `poses` has their matrices, which may differ in the last
-    digits from those given.
+    equal on every machine. Poses are stored as unit quaternions: the matrices of `poses` may differ from the arguments in the
+    last digits.
 
     >>> import impinge, pickle
     >>> scene = impinge.Scene([impinge.Ball(1), impinge.Cuboid([1, 2, 3])], impinge.Poses([[0, 0, 0], [5, 0, 0]]))
@@ -43,7 +43,7 @@ class Scene:
 
     @classmethod
     def from_bytes(cls, data: bytes, *, dim: int | None = None, dtype: DType | None = None) -> Scene:
-        """Restores the scene of `to_bytes`. ValueError names the offset of damage, or a dim or dtype other than the requested one.
+        """Restores the scene of `to_bytes`. ValueError names the offset of damage, or a `dim` or `dtype` that does not match.
 
         >>> import impinge
         >>> data = impinge.Scene(impinge.Ball(1, dim=2), None).to_bytes()

@@ -1,9 +1,9 @@
-"""The shapes, made from numbers and arrays.
+"""Constructors of shapes from numbers and arrays.
 
-All are centred at the origin of their local frame; capsules, cylinders and cones are along y. `dtype` is "float64" or "float32",
-or NumPy's type: the scalar in which the library computes with the shape. Two shapes are equal, with equal hashes, if they have
-the same kind and were made of the same numbers. `vertices` and `faces` return their geometry. Invalid arguments raise ValueError
-with the value.
+All shapes are centred at the origin of their local frame; capsules, cylinders and cones are along y. `dtype` is "float64" or
+"float32", or NumPy's type: the scalar in which the library computes with the shape. Two shapes are equal, with equal hashes,
+if they have the same kind and were created from the same numbers. `vertices` and `faces` return their geometry. Invalid
+arguments raise ValueError with the value.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ def _finite(rows: NDArray[np.float64], name: str) -> NDArray[np.float64]:
 
 
 def _rows(values: ArrayLike, name: str) -> NDArray[np.float64]:
-    """Points as rows of two or three numbers."""
+    """Points as an array (n, 2) or (n, 3)."""
     array = _finite(_floats(values, name), name)
     if array.ndim != 2 or array.shape[1] not in (2, 3):
         raise ValueError(f"{name} has the shape {array.shape}, where (n, 2) or (n, 3) is needed")
@@ -158,7 +158,7 @@ def HalfSpace(normal: ArrayLike, *, dtype: DType = "float64") -> Shape:
     if not (np.isfinite(length) and length > 0):
         raise ValueError(f"normal is {direction.tolist()}, which has no direction")
     unit = (direction / length).astype(dtype)
-    # It must be a unit vector after rounding to the scalar of the shape.
+    # The vector must have unit length after rounding to the scalar of the shape.
     unit = (unit / np.linalg.norm(unit)).astype(np.float64)
     return _make("HalfSpace", len(direction), dtype, unit)
 
@@ -296,13 +296,13 @@ def TriMesh(
 ) -> Shape:
     """A surface of triangles, filled in 2D: vertices (n, D) and vertex indices of the triangles (m, 3).
 
-    The corners are counter-clockwise from outside. ValueError names the row of an invalid triangle or vertex.
+    The corners are in counter-clockwise order as seen from outside. ValueError names the row of an invalid triangle or vertex.
 
     one_sided: there are no contacts from behind. keep_internal_edges: contacts treat each triangle separately.
 
-    A closed mesh has an inside for `contains`, `signed_distance` and `World.containing`; all other queries treat it as a surface,
-    unless it is solid: then shapes inside it are in contact, too, and are pushed out. ValueError, in 3D, names the edge
-    at which a solid is not closed, or a triangle whose front is inside.
+    A closed mesh has an inside for `contains`, `signed_distance` and `World.containing`; all other queries treat it as a
+    surface, unless `solid` is true: then shapes inside it are in contact too, and their contacts lead out. In 3D, ValueError
+    names the edge at which a solid is not closed, or a triangle whose front is inside.
 
     >>> import impinge
     >>> corners = [[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]]
@@ -336,10 +336,10 @@ def Polyline(
     keep_internal_edges: bool = False,
     dtype: DType = "float64",
 ) -> Shape:
-    """A chain of segments: vertices (n, D), and vertex indices of the segments (m, 2); without, consecutive vertices.
+    """A chain of segments: vertices (n, D), and vertex indices of the segments (m, 2); by default consecutive vertices.
 
-    In 2D a closed polyline has an inside for points, as a closed mesh in 3D. With solid, which requires a polyline that is closed
-    and counter-clockwise, it has one in all queries.
+    In 2D a closed polyline has an inside for points, as a closed mesh in 3D. With `solid`, which requires a closed and
+    counter-clockwise polyline, it has an inside in all queries.
 
     >>> Polyline([[0, 0], [1, 0], [1, 1]])
     <impinge.Polyline 2D float64>
@@ -375,10 +375,10 @@ def HeightField(
 
     scale: (D,), the extents of the whole grid along x (and z), and the factor of heights along y. holes: bools for missing
     cells, (n-1,) in 2D and (rows-1, columns-1) in 3D, or (rows-1, columns-1, 2) for the triangles of cells. ghosts: bools
-    for cells that nothing touches and the seams beside them know, (n-1,) or (rows-1, columns-1): the border that a tile of a
-    terrain shares with its neighbours, so that nothing bumps into the seam of two tiles. backward: a
-    bool, or one for each cell in 3D, whether its two triangles share the other diagonal. one_sided: there are no contacts from
-    below.
+    (n-1,) or (rows-1, columns-1) for cells that nothing touches, but whose edges to other cells are internal edges. Ghosts are
+    the border that a tile of a terrain shares with its neighbours; with it nothing bumps into the edge between two tiles.
+    backward: a bool, or one for each cell in 3D, whether the two triangles of the cell share the other diagonal. one_sided:
+    there are no contacts from below.
 
     >>> import impinge
     >>> field = HeightField([[0, 0, 0], [0, 2, 0], [0, 0, 0]], [4, 0.5, 4], holes=[[True, False], [False, False]])

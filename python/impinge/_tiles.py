@@ -1,4 +1,5 @@
-"""Tiles: a division of space into parts with about equally many objects, so that processes share the pairs of a large scene."""
+"""Tiles: a division of space into regions with about equally many objects, to compute the pairs of a large scene in many
+processes."""
 
 from __future__ import annotations
 
@@ -13,7 +14,7 @@ from impinge._results import Floats, Indices
 
 
 class TileRows(NamedTuple):
-    """Lists of tiles: those of object i are `starts[i]` to `starts[i + 1]`."""
+    """Lists of tiles. The tiles of object i are `tile[starts[i]:starts[i + 1]]`."""
 
     starts: NDArray[np.int64]
     tile: Indices
@@ -22,9 +23,9 @@ class TileRows(NamedTuple):
 class Tiles:
     """A division of space into tiles, with the clearance of the pairs; `tiles` creates it.
 
-    It consists of plain numbers, from which an equal one can be created elsewhere; it pickles. axes: (t - 1,) uint32, the axis
-    perpendicular to each cut. cuts: (t - 1,), its position. Each cut comes before the cuts of its parts, those of the lower
-    part first.
+    It consists of plain numbers, from which another process can create an equal value; it pickles. axes: (t - 1,) uint32, the
+    axis perpendicular to each cut. cuts: (t - 1,), its position. Each cut comes before the cuts of its two parts, and those of
+    the lower part come first.
 
     >>> import impinge
     >>> tiles = impinge.Tiles([0, 1], [2.5, 0.0], dim=2)
@@ -51,9 +52,9 @@ class Tiles:
         return self._bounds.copy()
 
     def meeting(self, boxes: ArrayLike) -> TileRows:
-        """Returns the tiles of each object: those that its box, enlarged by half the clearance, overlaps.
+        """Returns the tiles of each object: all tiles that its box, enlarged by half the clearance, overlaps.
 
-        boxes: (n, 2, D) of `impinge.boxes`. An object with a box of NaN has no tile; a huge object may be in all of them.
+        boxes: (n, 2, D) of `impinge.boxes`. An object with a box of NaN has no tile; a huge object may be in all tiles.
 
         >>> import impinge
         >>> impinge.Tiles([0], [2.5]).meeting(impinge.boxes(impinge.Ball(1), impinge.Poses([[0, 0, 0], [2, 0, 0]])))
@@ -62,7 +63,7 @@ class Tiles:
         return TileRows(*_native.tiles_meeting(self, _boxes(boxes, self.dim, self.dtype)))
 
     def owner(self, points: ArrayLike) -> Indices:
-        """Returns the tile that contains each point (n, D); on a cut the upper one."""
+        """Returns the tile that contains each point (n, D). A point on a cut is in the upper part."""
         return _native.tile_owners(self, points)
 
     def __eq__(self, other: object) -> bool:
@@ -78,7 +79,7 @@ class Tiles:
         return hash((self.dim, self.dtype, self.clearance, self.cuts.tobytes()))
 
     def __reduce__(self) -> tuple[object, ...]:
-        # As plain numbers: arrays from a network need not be aligned in memory.
+        # As plain numbers, because arrays received from a network may be unaligned in memory.
         return (_read, (self.axes.tolist(), self.cuts.tolist(), self.clearance, self.dim, self.dtype))
 
     def __repr__(self) -> str:
@@ -93,8 +94,8 @@ def tiles(boxes: ArrayLike, number: int, *, clearance: float = 0.0) -> Tiles:
     """Cuts space into tiles with about equally many objects in each.
 
     boxes: (n, 2, D) of `impinge.boxes`, of all objects or of a sample of some hundred for each tile; of float32 for shapes of
-    float32. clearance: the largest distance of pairs. The tiles follow from the arguments alone, and the
-    pairs do not depend on them: a poor sample only costs time. ValueError names the row of an invalid box.
+    float32. clearance: the largest distance of pairs. The tiles depend on the arguments alone. The pairs do not depend on the
+    tiles: a poor sample only costs time. ValueError names the row of an invalid box.
 
     >>> import impinge, numpy as np
     >>> poses = impinge.Poses(np.random.default_rng(1).normal(size=(1000, 3)) ** 3)
@@ -125,7 +126,7 @@ def _column(given: ArrayLike, dtype: Any, name: str) -> NDArray[Any]:
 
 
 def ids(given: ArrayLike) -> NDArray[np.uint64]:
-    """Converts an argument with numbers of objects to an array (n,)."""
+    """Converts an argument with ids of objects to an array (n,)."""
     array = np.asarray(given)
     if array.size and not np.issubdtype(array.dtype, np.integer):
         raise ValueError(f"ids is {array.dtype}, where integers are needed")

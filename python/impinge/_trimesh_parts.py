@@ -19,7 +19,7 @@ Matrix = NDArray[np.float64]
 # The key under which a mesh of trimesh caches its geometry, until its vertices or faces change.
 KEY = "impinge_geometry"
 
-# The key under which it caches its geometry as a solid body.
+# The key under which a mesh of trimesh caches its geometry as a solid body, until it changes.
 SOLID_KEY = "impinge_solid_geometry"
 
 # The largest difference of a linear map from the rotation that replaces it.
@@ -86,9 +86,9 @@ class DistanceData:
 
 
 class Geometry:
-    """A mesh as a shape: a solid for a convex mesh; a surface for others, or the body that it bounds.
+    """A mesh as a shape. A convex mesh is a convex solid; another mesh is a surface, or a solid mesh if `is_body`.
 
-    Flat meshes are convex and have no volume: they are surfaces. ValueError for a mesh that bounds no body, if one is required.
+    Flat meshes are convex but have no volume, so they are surfaces. ValueError if `is_body` and the mesh bounds no volume.
     """
 
     def __init__(self, vertices: ArrayLike, faces: ArrayLike, is_convex: bool, is_body: bool = False) -> None:
@@ -103,7 +103,7 @@ class Geometry:
 
     @classmethod
     def of(cls, mesh: trimesh.Trimesh, is_body: bool = False) -> Geometry:
-        """Returns the geometry of a mesh, which caches it: it is created once for each state of the mesh."""
+        """Returns the geometry of a mesh. The mesh caches it until its vertices or faces change."""
         cache, key = getattr(mesh, "_cache", None), SOLID_KEY if is_body else KEY
         found = None if cache is None else cache[key]
         if isinstance(found, cls):
@@ -115,13 +115,14 @@ class Geometry:
 
     @property
     def surface(self) -> Shape:
-        """The triangles, whose indices are those of faces."""
+        """The mesh as a `TriMesh`; its parts have the indices of `faces`."""
         if self._surface is None:
             self._surface = TriMesh(self.vertices, self.faces, solid=self.is_body and not self.is_solid)
         return self._surface
 
     def stretched(self, stretch: Matrix) -> Geometry:
-        """Returns the mesh after a linear map (3, 3). A map with a reflection reverses triangles, so that they face outwards."""
+        """Returns the mesh after a linear map (3, 3). If it is a reflection, triangles are reversed, so that they face
+        outwards."""
         faces = self.faces if np.linalg.det(stretch) > 0 else self.faces[:, ::-1]
         return Geometry(self.vertices @ stretch.T, faces, self.is_solid, self.is_body)
 
@@ -134,7 +135,7 @@ class Placed(NamedTuple):
     transform: Matrix
 
     def faces(self, parts: ArrayLike, points: ArrayLike) -> NDArray[np.int64]:
-        """Returns the faces of points: parts of the surface, for a solid the nearest triangles."""
+        """Returns the face of each point: the part of a surface; for a convex solid the nearest triangle."""
         if not self.geometry.is_solid:
             return np.asarray(parts, dtype=np.int64)
         found = project_points(self.geometry.surface, self.transform, points, False)
@@ -150,9 +151,9 @@ def matrix_of(transform: ArrayLike | None) -> Matrix:
 
 
 def rotation_and_stretch(transform: Matrix) -> tuple[Matrix, Matrix | None]:
-    """Returns a transform without scale, and the linear map (3, 3) to apply before it; None if there is none.
+    """Returns a transform without scale, and the linear map (3, 3) to apply before it; `None` if there is no such map.
 
-    ValueError if it is singular, not finite or has another last row than 0, 0, 0, 1.
+    ValueError if the transform is singular, not finite, or has a last row other than 0, 0, 0, 1.
     """
     linear = transform[:3, :3]
     if not np.isfinite(transform).all() or not np.array_equal(transform[3], [0, 0, 0, 1]):
@@ -162,7 +163,7 @@ def rotation_and_stretch(transform: Matrix) -> tuple[Matrix, Matrix | None]:
         raise ValueError(f"the transform flattens: its scales are {scales.tolist()}")
     if np.abs(scales - 1).max() <= ROUNDING and np.linalg.det(linear) > 0:
         return transform, None
-    # The polar decomposition; a reflection is applied before the rotation.
+    # The polar decomposition; a reflection belongs to the map applied before the rotation.
     rotation = left @ right
     if np.linalg.det(rotation) < 0:
         rotation = -rotation

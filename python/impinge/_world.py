@@ -86,7 +86,7 @@ class World(WorldQueries):
     ) -> Handles:
         """Adds objects, as many as there are shapes or poses, and returns their handles (n,) in this order.
 
-        shapes, poses: as of `impinge.distance`. prediction: contacts exist up to the sum of the predictions of both objects, a
+        shapes, poses: as in `impinge.distance`. prediction: contacts exist up to the sum of the predictions of both objects, a
         length. margin: proximity up to this length instead of contacts. The lists are of groups 0 to 29: two objects are a pair
         if each is in a group of the other's whitelist and in none of its blacklist.
 
@@ -230,7 +230,7 @@ class World(WorldQueries):
         return structured(EVENT, self._world.proximity_events())
 
     def contacts(self) -> NDArray[np.void]:
-        """All contact points as of the last update: a structured array (m,).
+        """All contact points found by the last update: a structured array (m,).
 
         Fields: `first`, `second` (handles), `depth` (a length, negative where they are apart), `normal` (D,) from the first to
         the second, `point1`, `point2` (D,) in the world frame, `part1`, `part2` (indices of parts, such as triangles).

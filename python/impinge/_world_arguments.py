@@ -17,7 +17,7 @@ class Filter:
     """The objects that a query of a `World` considers: all, except those that are excluded here.
 
     membership, whitelist, blacklist: indices of the groups, 0 to 29, of the query, as in `World.add`. exclude: handles of excluded
-    objects, for instance the one that the query is made for.
+    objects, for instance the object that makes the query.
 
     >>> import impinge
     >>> world = impinge.World()

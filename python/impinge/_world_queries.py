@@ -66,7 +66,7 @@ class WorldQueries:
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> HitRows:
-        """Returns all objects that each ray hits, each with its first hit; arguments as of `cast_rays`.
+        """Returns all objects that each ray hits, each with its first hit; arguments as in `cast_rays`.
 
         >>> from impinge import *
         >>> world = World()
@@ -91,7 +91,7 @@ class WorldQueries:
     ) -> WorldImpact:
         """Returns the first object that each moving shape comes within `target_distance` of; the shape does not rotate.
 
-        velocities: (D,) or (n, D), lengths per unit of time; the rest as of `impinge.impact`.
+        velocities: (D,) or (n, D), lengths per unit of time; other arguments as in `impinge.impact`.
 
         >>> from impinge import *
         >>> world = World()
@@ -116,7 +116,7 @@ class WorldQueries:
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> ImpactRows:
-        """Returns all objects that each moving shape hits on its path; arguments as of `cast_shape`."""
+        """Returns all objects that each moving shape hits on its path; arguments as in `cast_shape`."""
         question = Question("casts", limit(max_time, "max_time"), limit(target_distance, "target_distance"))
         return ImpactRows(*self._ask(question, [shape, poses, velocities], filter, threads, progress))
 
@@ -222,7 +222,8 @@ class WorldQueries:
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> WorldProjection:
-        """Returns for each point (D,) or (n, D) the nearest point on an object; a point inside is its own if `solid`.
+        """Returns for each point (D,) or (n, D) the nearest point on an object. If `solid`, a point inside an object is
+        returned itself.
 
         >>> from impinge import *
         >>> world = World()
@@ -257,9 +258,10 @@ class WorldQueries:
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> Rows:
-        """Returns for each axis-aligned box the objects whose bounding boxes overlap it: corners mins and maxs, (D,) or (n, D).
+        """Returns for each axis-aligned box, given by its corners `mins` and `maxs`, (D,) or (n, D), the objects whose
+        bounding boxes overlap it.
 
-        ValueError names the row of a box whose lower corner is above its upper one.
+        ValueError names the row of a box whose lower corner is above its upper corner.
         """
         return Rows(*self._ask(Question("in_boxes"), [mins, maxs], filter, threads, progress))
 

@@ -1,10 +1,11 @@
-"""Many processes or machines with Dask: queries of many poses against one scene, and the pairs of a scene too large for
-one.
+"""Queries by many processes or machines with Dask: many poses against one scene, and the pairs of a scene that is too large
+for one machine.
 
     from impinge.dask import ask_scene, self_join
 
-Two recipes on the functions of `impinge`. Tasks are pure, so that Dask can repeat the tasks of a lost worker. They run on
-the current `distributed.Client`, else on Dask's own threads. `pip install 'impinge[dask]'` installs the dependencies.
+`ask_scene` and `self_join` are recipes on top of the functions of `impinge`. Tasks are pure, so Dask can repeat the tasks of a
+lost worker. They run on the current `distributed.Client`, otherwise on the threads of Dask. `pip install 'impinge[dask]'`
+installs the dependencies.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
 
     Source: TypeAlias = str | os.PathLike[str] | list[str]
 
-# The block is `Any`: rows of Dask do not say whether it is an array of which dtype or a DataFrame, but a question does.
+# The block is `Any`: the type of the rows does not determine its type, an array of some dtype or a DataFrame.
 Question: TypeAlias = Callable[[World, Any], ArrayLike]
 
 
@@ -52,11 +53,13 @@ def ask_scene(
 ) -> Array | Series:
     """Runs a function for blocks of rows, such as poses or configurations of a robot, with the world of a scene.
 
-    rows: a Dask Array (n, ...), a Dask DataFrame, or a path or paths of Parquet. question(world, block): gets the scene as a
-    `World`, which each process builds once and caches by its bytes, and a NumPy array (m, ...) or a pandas DataFrame of m
-    rows; returns an array (m,) of this dtype. Other threads may use the same world: it must not be changed.
+    rows: a Dask Array (n, ...), a Dask DataFrame, or a path or paths of Parquet files. question(world, block): gets the scene
+    as a `World`, which each process builds once and caches with the bytes of the scene as key, and a NumPy array (m, ...) or a
+    pandas DataFrame of m rows; returns an array (m,) of dtype `dtype`. Threads share the world, so `question` must not change
+    it.
 
-    Returns a Dask Array (n,), or a Dask Series with the index of the DataFrame, in the order of the rows and not yet computed.
+    Returns a Dask Array (n,), or a Dask Series with the index of the DataFrame, in the order of the rows. It is not yet
+    computed.
 
     >>> import dask.array, impinge
     >>> from impinge.dask import ask_scene
@@ -97,18 +100,18 @@ def self_join(
 ) -> int:
     """Writes all pairs of objects whose distance is at most `clearance`, out of core, and returns their number.
 
-    source: Parquet, as file, files or folder, with the columns of `objects_table`: `id` (integers of 0 or more, all
-    different), `shape` (the number of an object of `shapes`, whose own poses are ignored), `pose` ((D+1)**2 numbers, a matrix
-    row by row, or D+1 lists of D+1 numbers, as pandas writes a column of matrices). output: a folder that all workers can
-    access, which is created; `part-*.parquet` there have the columns `id1` < `id2` (uint64), ascending from part to part.
+    source: Parquet as a file, files or a folder, with the columns of `objects_table`: `id` (integers of 0 or more, all
+    different), `shape` (the index of an object of `shapes`, whose own poses are ignored), `pose` ((D+1)**2 numbers, a matrix
+    row by row, or D+1 lists of D+1 numbers, as pandas writes a column of matrices). output: a folder, which is created and
+    which all workers can access. Its files `part-*.parquet` have the columns `id1` < `id2` (uint64), sorted across all parts.
 
-    The bytes of the output depend on `source`, `shapes`, `clearance` and `sample` alone, not on the number of tiles and workers
-    or on workers that die; `impinge.pairs_within` in one process finds the same pairs. About `sample` objects
-    define the tiles. The rows are read twice, row group by row group; a worker holds one row group, or one tile with its
-    pairs, or one part of the output. Intermediate files are in a folder beside the output with the suffix `.scratch`, which
-    is removed at the end.
+    The bytes of the output depend on `source`, `shapes`, `clearance` and `sample` alone, not on the number of tiles or
+    workers, or on workers that die. `impinge.pairs_within` in one process finds the same pairs. About `sample` objects define
+    the tiles. The rows are read twice, one row group at a time. A worker holds one row group, or one tile with its pairs, or
+    one part of the output. Intermediate files are in a folder beside the output with the suffix `.scratch`, which is removed
+    at the end.
 
-    ValueError names a column that is missing, has nulls or a wrong form, and a shape that does not exist; FileExistsError if
+    ValueError names a column that is missing, has nulls or a wrong type, and a shape that does not exist. FileExistsError if
     the output exists.
     """
     output = Path(output)
@@ -116,7 +119,7 @@ def self_join(
         raise FileExistsError(f"there is an output: {output}")
     units = _row_groups(source, shapes.dim)
     scratch = output.with_name(output.name + ".scratch")
-    # Left by a process that died.
+    # Intermediate files of a process that died.
     shutil.rmtree(scratch, ignore_errors=True)
     try:
         return _join(units, shapes, scratch, output, _Options(clearance, number_of_tiles, sample))
@@ -147,9 +150,9 @@ def _join(units: list[Any], shapes: Scene, scratch: Path, output: Path, options:
 
 
 def objects_table(ids: ArrayLike, picks: ArrayLike, poses: ArrayLike | Poses) -> pa.Table:
-    """Returns objects as a table of pyarrow, for writing as Parquet for `self_join`.
+    """Returns objects as a table of pyarrow, which can be written as Parquet for `self_join`.
 
-    ids: (n,) integers. picks: (n,) integers, the shape of each. poses: (n, D+1, D+1), or `Poses`.
+    ids: (n,) integers. picks: (n,) integers, the index of the shape of each object. poses: (n, D+1, D+1), or `Poses`.
 
     >>> import impinge
     >>> from impinge.dask import objects_table
@@ -172,7 +175,7 @@ def _world(scene: Scene) -> World:
 
 def _ask(block: Any, question: Question, scene: Scene) -> NDArray[Any]:
     if isinstance(block, np.ndarray):
-        # Data from a network need not be aligned in memory.
+        # Arrays received over a network may be unaligned.
         block = np.require(block, requirements=["C", "A"])
     found = np.asarray(question(_world(scene), block))
     if found.shape != (len(block),):
@@ -244,9 +247,9 @@ def _matrices(column: Any, width: int) -> NDArray[Any]:
 
 
 def _sample(unit: Any, start: int, shapes: Scene, step: int) -> tuple[NDArray[np.uint64], NDArray[Any]]:
-    """Returns the ids and boxes of a sample of the rows, one in `step`; `start` is the index of the first row."""
+    """Returns the ids and boxes of a random sample, about one of `step` rows; `start` is the index of the first row."""
     table = unit.to_table(columns=["id", "shape", "pose"])
-    # Not every step-th row: rows of a grid are periodic.
+    # Random rows, because rows of a grid are periodic.
     ids, picked, poses = _read(table.take(np.flatnonzero(_noise(start, len(table)) % step == 0)), shapes)
     return ids, boxes(picked, poses, threads=1)
 
@@ -260,7 +263,7 @@ def _noise(start: int, count: int) -> NDArray[np.uint64]:
 
 
 def _even_ranges(ids: list[NDArray[np.uint64]], parts: int) -> NDArray[np.uint64]:
-    """Returns the first ids of the second to the last part of the output; they do not depend on the tiles."""
+    """Returns the first id of each part of the output but the first; the ids do not depend on the tiles."""
     every = np.sort(np.concatenate(ids or [np.empty(0, np.uint64)]))
     return every[np.arange(1, parts) * len(every) // parts] if len(every) else every
 
@@ -302,20 +305,21 @@ def _pairs_table(pairs: NDArray[np.uint64]) -> pa.Table:
 def _write_parts(
     take: Callable[[NDArray[Any]], pa.Table], rows: NDArray[Any], counts: NDArray[Any], folder: Path, number: int
 ) -> None:
-    """Writes `counts[k]` of the rows, one after the other, to the folder of each key k."""
+    """Writes consecutive rows to the folders of their keys: `counts[k]` rows to the folder of key k, in ascending order of
+    keys."""
     ends = np.cumsum(counts)
     for key in np.flatnonzero(counts):
         _write(take(rows[ends[key] - counts[key] : ends[key]]), folder / f"key={key}" / f"part-{number:05}.parquet")
 
 
 def _read_parts(folder: Path, key: int) -> pa.Table | None:
-    """Returns the rows that were written for a key, in the order of the parts; None if there are none."""
+    """Returns the rows that were written for a key, in the order of the parts; None if there are no rows."""
     paths = sorted((folder / f"key={key}").glob("part-*.parquet"))
     return pa.concat_tables([pq.read_table(path, partitioning=None) for path in paths]) if paths else None
 
 
 def _write(table: pa.Table, path: Path) -> None:
-    """Writes a file atomically: it exists completely or not at all, also if the process dies or writes twice."""
+    """Writes a file atomically: it is complete or absent, even if the process dies or two processes write it."""
     path.parent.mkdir(parents=True, exist_ok=True)
     unfinished = path.with_name(f".{path.name}.{uuid.uuid4().hex}")
     pq.write_table(table, unfinished, compression="lz4")

@@ -2,12 +2,12 @@
 
     from impinge.trimesh import CollisionManager, scene_to_collision
 
-Convex meshes (`mesh.is_convex`) are solids and others are surfaces, as in trimesh: a mesh inside a surface that does not
-touch it does not collide. With `solid=True` all meshes are solids, and must be closed. Where meshes overlap, distances are
-negative: minus the depth; for surfaces that of the two triangles with the deepest overlap. Among several overlapping pairs one
+Convex meshes (`mesh.is_convex`) are solids and other meshes are surfaces, as in trimesh: a mesh inside a surface collides with
+it only if the two touch. With `solid=True` all meshes are solids, and must be closed. The distance of overlapping meshes is
+minus their depth; for surfaces, minus the depth of the two triangles that overlap most. If several pairs overlap, one of them
 is returned.
 
-A manager caches its results: the cost of a query depends on the changes since the last one, not on the number of meshes.
+A manager caches its results: the cost of a query depends on the changes since the last query, not on the number of meshes.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ Yes: TypeAlias = Literal[True]
 Found = TypeVar("Found")
 Names = TypeVar("Names")
 Data = TypeVar("Data")
-# An answer alone, or with what else was wanted: all forms, of which flags that are no literals choose one.
+# A result alone, or a tuple with the requested extras. Overloads narrow it if the flags are literals.
 Answer: TypeAlias = Found | tuple[Found, Names] | tuple[Found, Data] | tuple[Found, Names, Data]
 
 
@@ -68,13 +68,13 @@ class CollisionManager:
     def __init__(self, solid: bool = False) -> None:
         self._engine = Manager()
         self._solid = solid
-        # The index of each name in the engine, which has the transforms; name and mesh of each index.
+        # The index of each name in the engine, which stores the transforms; the name and the mesh of each index.
         self._indices: dict[str, int] = {}
         self._meshes: dict[int, tuple[str, Geometry]] = {}
 
     def add_object(self, name: str, mesh: trimesh.Trimesh, transform: ArrayLike | None = None) -> Shape:
-        """Adds a mesh, or replaces the one of this name. ValueError for a transform that is no rotation and translation, and,
-        if meshes are solid, for a mesh that is not closed or is inside out."""
+        """Adds a mesh, or replaces the mesh of this name. ValueError for a transform that is not a rotation and translation,
+        and, if meshes are solid, for a mesh that is not closed or is inside out."""
         return self._add(Placed(name, self._geometry(mesh, name), matrix_of(transform)))
 
     def remove_object(self, name: str) -> None:
@@ -84,7 +84,7 @@ class CollisionManager:
         del self._indices[name], self._meshes[index]
 
     def set_transform(self, name: str, transform: ArrayLike) -> None:
-        """Moves a mesh. ValueError for a transform that is no rotation and translation."""
+        """Moves a mesh. ValueError for a transform that is not a rotation and translation."""
         index = self._indices.get(name)
         if index is None:
             index = self._known(name)
@@ -120,7 +120,7 @@ class CollisionManager:
         return_names: bool = False,
         return_data: bool = False,
     ) -> Answer[bool, set[str], Contacts]:
-        """Whether a mesh touches one of the manager: `bool`, and optionally the names and the contacts."""
+        """Whether a mesh touches a mesh of the manager: `bool`, and optionally the names and the contacts."""
         external = Placed(EXTERNAL, self._geometry(mesh, EXTERNAL), matrix_of(transform))
         shape = external.geometry.shape
         if not (return_names or return_data):
@@ -175,7 +175,7 @@ class CollisionManager:
     def in_collision_other(
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
     ) -> Answer[bool, Pairs, Contacts]:
-        """Whether a mesh touches one of another manager; the names are pairs, the name of this manager first."""
+        """Whether a mesh touches a mesh of another manager; the names are pairs, the name in this manager first."""
         other = self._beside(other_manager)
         if not (return_names or return_data):
             return self._engine.is_touching_other(other._engine)
@@ -211,7 +211,7 @@ class CollisionManager:
         return_name: bool = False,
         return_data: bool = False,
     ) -> Answer[float, str, DistanceData | None]:
-        """The distance of a mesh from the nearest one of the manager."""
+        """The distance of a mesh from the nearest mesh of the manager."""
         external = Placed(EXTERNAL, self._geometry(mesh, EXTERNAL), matrix_of(transform))
         found = self._engine.nearest_to(external.geometry.shape, external.transform)
         if found is None:
@@ -244,7 +244,7 @@ class CollisionManager:
     def min_distance_internal(
         self, name: str | None = None, return_names: bool = False, return_data: bool = False
     ) -> Answer[float, Nearest, DistanceData | None]:
-        """The distance of the nearest two meshes; with a name, of the pairs with this mesh."""
+        """The distance of the two nearest meshes; with a name, of this mesh and the mesh nearest to it."""
         engine = self._engine
         found = engine.nearest() if name is None else engine.nearest_beside(self._known(name))
         if found is None:
@@ -277,7 +277,7 @@ class CollisionManager:
     def min_distance_other(
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
     ) -> Answer[float, Nearest, DistanceData | None]:
-        """The distance of the nearest meshes of two managers; the name of this manager is the first."""
+        """The distance of the two nearest meshes of two managers; the name in this manager comes first."""
         manager = self._beside(other_manager)
         found = self._engine.nearest_other(manager._engine)
         if found is None:
@@ -314,20 +314,20 @@ class CollisionManager:
         return [Placed(*self._meshes[index], matrix) for index, matrix in zip(indices, transforms, strict=True)]
 
     def _pairs(self, rows: list[tuple[int, int]], other: CollisionManager) -> list[tuple[Placed, Placed]]:
-        """Returns pairs of a mesh of this manager and one of another manager."""
+        """Returns the pairs of `rows`, each a mesh of this manager and a mesh of `other`."""
         ones, others = self._placed([one for one, _ in rows]), other._placed([index for _, index in rows])
         return list(zip(ones, others, strict=True))
 
     def _beside(self, other: CollisionManager) -> CollisionManager:
-        """Returns the other manager; a copy if it is this one."""
+        """Returns the other manager, or a copy of this manager if both are the same."""
         return other if other is not self else _manager(self._placed(list(self._meshes)), self._solid)
 
 
 def scene_to_collision(scene: trimesh.Scene, solid: bool = False) -> tuple[CollisionManager, dict[str, Shape]]:
-    """Returns a manager with the meshes of a scene of trimesh, by the names of its nodes, and their shapes; solid as of the
-    manager.
+    """Returns a manager with the meshes of a scene of trimesh, by the names of their nodes, and their shapes; `solid` as in
+    `CollisionManager`.
 
-    Scale, shear and reflection of a node are applied to the vertices of its shape; `set_transform` then places this shape
+    Scale, shear and reflection of a node are applied to the vertices of its shape; `set_transform` then moves this shape
     by a rotation and a translation. ValueError names a node whose transform is singular or not affine.
     """
     placed, known = [], {}
@@ -367,7 +367,7 @@ def _by_name(pair: tuple[Placed, Placed]) -> tuple[Placed, Placed]:
 def _answer(
     found: Found, names: Names, data: Data, with_names: bool, with_data: bool
 ) -> Answer[Found, Names, Data]:
-    """Returns a result in trimesh's form: alone, or a tuple with the requested extras."""
+    """Returns a result in the form of trimesh: alone, or a tuple with the requested extras."""
     if with_names and with_data:
         return found, names, data
     if with_names:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from impinge._native import PosesLike
 
-# Rotates z to y: cylinders are along z in URDF, along y in impinge.
+# Rotates the z axis, along which cylinders of URDF lie, to the y axis, along which cylinders of impinge lie.
 Z_TO_Y = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 
 Frames = NDArray[np.float64]
@@ -41,7 +41,8 @@ class Body:
 
 
 class NearestBodies(NamedTuple):
-    """For each configuration the least distance, and the indices of the two bodies; the second may be a shape of the scene."""
+    """The smallest distance in each configuration, and the indices of the nearest two: two bodies, or a body and a shape of
+    the scene."""
 
     distance: NDArray[np.float64]
     body1: NDArray[np.int64]
@@ -49,10 +50,11 @@ class NearestBodies(NamedTuple):
 
 
 class Robot:
-    """Links, joints and the bodies of the links.
+    """The links and joints of a robot, and the bodies that are fixed to the links.
 
-    `joints` has the names of the columns of a configuration, `limits` (joints, 2) their minima and maxima, infinite
-    for joints without limits. `pairs` (m, 2) are the bodies that must not touch: initially all of two links that share no joint.
+    `joints` are the names of the columns of a configuration, `limits` (joints, 2) their minima and maxima, infinite
+    for joints without limits. `pairs` (m, 2) are the bodies that must not touch: initially all pairs of bodies of
+    different links without a common joint.
     """
 
     def __init__(self, model: yourdfpy.URDF, meshes: Literal["hull", "surface"] = "hull") -> None:
@@ -72,33 +74,36 @@ class Robot:
             for body in _bodies(model, numbers[link.name], f"{link.name}/{number}", collision, meshes)
         ]
         self.pairs = self._separate_pairs()
-        # The checker of the last pairs, with these pairs: it caches hulls of its meshes.
+        # The checker of `pairs` and the pairs that it was created for. It caches convex hulls of meshes.
         self._kept: tuple[NDArray[np.int64], Checker] | None = None
 
     @classmethod
     def load(cls, path: str | Path, meshes: Literal["hull", "surface"] = "hull") -> Robot:
-        """Reads the robot of a file. Meshes become their convex hulls, or surfaces of triangles."""
+        """Reads a robot from a file. Meshes become their convex hulls, or surfaces of triangles."""
         import yourdfpy
 
         return cls(yourdfpy.URDF.load(str(path), load_meshes=False, build_scene_graph=False), meshes)
 
     def frames(self, configurations: ArrayLike) -> Frames:
-        """The poses of all links: (n, links, 4, 4) of configurations (n, joints), (links, 4, 4) of one."""
+        """The poses of all links: (n, links, 4, 4) for configurations (n, joints), (links, 4, 4) for a single
+        configuration."""
         return np.asarray(self._own().frames(self._checked(configurations)), np.float64)
 
     def poses(self, configurations: ArrayLike) -> Frames:
-        """The poses of all bodies: (n, bodies, 4, 4), or (bodies, 4, 4)."""
+        """The poses of all bodies: (n, bodies, 4, 4) for configurations (n, joints), (bodies, 4, 4) for a single
+        configuration."""
         return np.asarray(self._own().poses(self._checked(configurations)), np.float64)
 
     def checker(self, pairs: ArrayLike | None = None) -> Checker:
-        """Returns a checker of the robot with these pairs of bodies that must not touch, or with `pairs`; without obstacles."""
+        """Returns a checker of the robot without obstacles; `pairs` are the bodies that must not touch, by default
+        `self.pairs`."""
         shapes, on = [body.shape for body in self.bodies], [body.link for body in self.bodies]
         local = np.array([body.pose for body in self.bodies]).reshape(-1, 4, 4)
         wanted = self.pairs if pairs is None else pairs
         return Checker(self._frames, len(self.joints), shapes, on, local, wanted)
 
     def allow(self, link1: str, link2: str) -> None:
-        """Lets two links touch: their bodies are no longer among `pairs`."""
+        """Lets two links touch: removes the pairs of their bodies from `pairs`."""
         for name in (link1, link2):
             if name not in self.links:
                 raise ValueError(f"{name} is no link")
@@ -106,29 +111,30 @@ class Robot:
         self.pairs = self.pairs[[{self.bodies[one].link, self.bodies[two].link} != both for one, two in self.pairs]]
 
     def allow_touching_at(self, configurations: ArrayLike) -> None:
-        """Allows contacts of all bodies that touch in one of these configurations, as setup assistants do."""
+        """Removes the pairs of bodies that touch in one of these configurations from `pairs`, as setup assistants do."""
         rows = np.atleast_2d(self._checked(configurations))
         touching = [not self.checker([pair]).is_free(rows).all() for pair in self.pairs]
         self.pairs = self.pairs[~np.array(touching, dtype=bool)]
 
     def self_collides(self, configurations: ArrayLike) -> NDArray[np.bool_]:
-        """Whether two bodies touch, for each configuration (n, joints)."""
+        """Whether any of `pairs` touches, for each configuration (n, joints)."""
         return ~self._own().is_free(np.atleast_2d(self._checked(configurations)))
 
     def self_distance(self, configurations: ArrayLike) -> NearestBodies:
-        """The nearest pair of bodies for each configuration (n, joints): zero if they touch; infinite and -1 without pairs."""
+        """The nearest of `pairs` for each configuration (n, joints): distance zero if it touches; infinite, and bodies -1, if
+        there are no pairs."""
         return self._nearest(self._own(), configurations, 0)
 
     def collides(self, configurations: ArrayLike, shapes: Sequence[Shape], obstacles: PosesLike) -> NDArray[np.bool_]:
-        """Whether a body touches one of the shapes at these poses (m, 4, 4)."""
+        """Whether a body touches one of the shapes at the poses `obstacles` (m, 4, 4), for each configuration."""
         return ~self._among(shapes, obstacles).is_free(np.atleast_2d(self._checked(configurations)))
 
     def distance(self, configurations: ArrayLike, shapes: Sequence[Shape], obstacles: PosesLike) -> NearestBodies:
-        """The nearest pair of a body and a shape for each configuration: zero if they touch."""
+        """The nearest pair of a body and a shape for each configuration: distance zero if they touch."""
         return self._nearest(self._among(shapes, obstacles), configurations, len(self.bodies))
 
     def _own(self) -> Checker:
-        """The cached checker of the pairs, without obstacles, while the pairs are unchanged."""
+        """Returns the cached checker of `pairs`, without obstacles. It is created again if the pairs have changed."""
         kept = self._kept
         if kept is None or not np.array_equal(kept[0], self.pairs):
             kept = self._kept = np.array(self.pairs), self.checker()
@@ -141,7 +147,7 @@ class Robot:
         return checker
 
     def _nearest(self, checker: Checker, configurations: ArrayLike, first: int) -> NearestBodies:
-        """Returns the nearest bodies; `first` is subtracted from the second indices."""
+        """Returns the nearest bodies; `first`, the index of the first obstacle, is subtracted from the second indices."""
         distance, pair = checker.nearest(np.atleast_2d(self._checked(configurations)))
         body1, body2 = pair.astype(np.int64).T
         is_none = np.isinf(distance)

@@ -13,7 +13,7 @@ use crate::space::Numeric;
 /// The number of elements of a call.
 #[derive(Clone, Copy)]
 pub(crate) enum Extent {
-    /// A single element, whose result is scalars. A quick call takes hardly longer than releasing the interpreter.
+    /// A single element, whose result is scalars. A quick query takes about as long as releasing the interpreter.
     Lone { is_quick: bool },
     /// Several elements, whose result is arrays.
     Many(usize),
@@ -50,7 +50,7 @@ impl Extent {
     }
 }
 
-/// One value for a single element, without a list, or one for each of many.
+/// The values of all elements; the value of a single element needs no list.
 pub(crate) enum Slots<T> {
     One([T; 1]),
     Many(Vec<T>),
@@ -109,7 +109,7 @@ pub(crate) enum Column<N, const D: usize> {
     Handles(Slots<u64>),
 }
 
-/// For many elements an array with one row for each, for a single element a scalar or an array of `D` numbers.
+/// Many elements become an array with one row each; a single element becomes a scalar or an array of `D` numbers.
 impl<'py, N: Numeric<D>, const D: usize> IntoPyObject<'py> for Column<N, D> {
     type Target = PyAny;
     type Output = Bound<'py, PyAny>;
@@ -144,7 +144,7 @@ fn values<'py, T: Element + IntoPyObject<'py>>(
     }
 }
 
-/// Combines columns to one object: the first column if there is no class, else a tuple of the class.
+/// Combines columns to one object: a tuple of `class`, or the first column if `class` is `None`.
 pub(crate) fn into_python<'py, N: Numeric<D>, const D: usize>(
     py: Python<'py>,
     class: Option<&Class>,
@@ -156,7 +156,7 @@ pub(crate) fn into_python<'py, N: Numeric<D>, const D: usize>(
     }
 }
 
-/// A class of `impinge._results`, which is looked up once.
+/// A class of `impinge._results`. It is imported at its first use.
 pub(crate) struct Class {
     name: &'static str,
     found: PyOnceLock<Py<PyAny>>,
@@ -176,8 +176,8 @@ impl Class {
         Self { name, found: PyOnceLock::new() }
     }
 
-    /// Creates a value of the class. These classes are named tuples, so that the constructor of tuples creates values,
-    /// which takes half as long as their own.
+    /// Creates a value of the class. The classes are named tuples; `tuple.__new__` takes half as long as their own
+    /// constructors.
     fn value<'py>(&self, fields: Bound<'py, PyTuple>) -> PyResult<Bound<'py, PyAny>> {
         static MAKE: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
         let py = fields.py();

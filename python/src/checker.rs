@@ -22,16 +22,16 @@ use crate::shapes::Shape;
 use crate::space::{Kind, Numeric, Task, run_in};
 use crate::supervise::{Call, Threads, supervise};
 
-/// A checker of any kind; `impinge.Checker` reads the arguments.
+/// A checker of any scalar and dimension; `impinge.Checker` reads the arguments.
 #[pyclass(frozen, module = "impinge")]
 pub(crate) struct NativeChecker {
     kind: Kind,
-    /// An `Arc<Checker>` of the kind, which is replaced when its obstacles change.
+    /// An `Arc<Checker>` of this scalar and dimension, which is replaced when the obstacles change.
     checker: RwLock<Arc<dyn Any + Send + Sync>>,
 }
 
-/// The frames as columns: parents (-1 for the world), columns (-1 for fixed joints), generators of rotations and axes
-/// of translations (otherwise zeros), factors and offsets.
+/// The frames as columns: parents (-1 for the world), origins, columns of the configuration (-1 for fixed joints),
+/// generators of rotations and axes of translations (zero for other joints), factors and offsets.
 type FrameColumns<'py> = (
     Vec<i64>,
     Bound<'py, PyAny>,
@@ -194,7 +194,7 @@ impl Task for Surround<'_, '_> {
             Ok(Obstacle { shape: shape.clone(), pose: poses.pose(index) })
         });
         let obstacles = obstacles.collect::<PyResult<Vec<_>>>()?;
-        // A concurrent call continues with the old obstacles.
+        // A concurrent call continues with the previous obstacles.
         let replaced = Arc::make_mut(&mut checker);
         replaced.try_set_obstacles(obstacles, &self.ignored).map_err(refused)?;
         Ok(checker)

@@ -1,8 +1,8 @@
 //! The functions of batches for Python, with their docstrings.
 //!
-//! Common to all: a shape is a `Shape`, a sequence with one for each element, or `Picked`; poses are `None` (the
-//! identity), a matrix, an array of matrices, or `Poses`. A single element is paired with each element of the other
-//! side.
+//! Common to all functions: a shape is a `Shape`, a sequence with one shape for each element, or `Picked`; poses are
+//! `None` (the identity), a matrix, an array of matrices, or `Poses`. A single element is paired with each element of
+//! the other side.
 #![expect(clippy::too_many_arguments, reason = "Python's arguments are named")]
 
 use pyo3::prelude::*;
@@ -47,15 +47,17 @@ type Answer<'py> = PyResult<Object<'py>>;
 
 /// The distance of two solids: zero if they touch or overlap.
 ///
-/// shape1, shape2: a `Shape`, a sequence with one for each element, or `Picked`.
-/// poses1, poses2: `None`, a matrix (D+1, D+1), an array (n, D+1, D+1) or `Poses`. A single one is used for all.
-/// threads: their number; by default one for each core. progress: an object with `update(n)`, such as a bar of tqdm.
+/// shape1, shape2: a `Shape`, a sequence with one shape for each element, or `Picked`.
+/// poses1, poses2: `None`, a matrix (D+1, D+1), an array (n, D+1, D+1) or `Poses`. A single pose is used for all
+/// elements.
+/// threads: the number of threads, by default one for each core. progress: an object with `update(n)`, such as a bar of
+/// tqdm.
 ///
-/// Returns a float, or an array (n,) if an argument has many elements, a length in the unit of the shapes.
+/// Returns a float, or an array (n,) if an argument has many elements: a length in the unit of the shapes.
 ///
-/// Errors: `ValueError` names the argument and the row of a matrix that is no pose (not finite, not a rotation), an
-/// array of wrong shape, or arrays of different lengths; `TypeError` an argument of wrong type, or a shape of another
-/// dim or dtype. `KeyboardInterrupt` on Ctrl-C, and exceptions of `progress`, end the call.
+/// Errors: `ValueError` names the argument and the row of a matrix that is not a pose (not finite, not a rotation), an
+/// array of wrong shape, or arrays of different lengths; `TypeError` names an argument of wrong type, or a shape of
+/// another dim or dtype. `KeyboardInterrupt` on Ctrl-C, and exceptions of `progress`, end the call.
 ///
 /// >>> import impinge, numpy as np
 /// >>> poses = np.tile(np.eye(4), (3, 1, 1)); poses[:, 0, 3] = [0, 2, 5]
@@ -76,9 +78,9 @@ fn distance<'py>(
 
 /// The closest points of two solids whose distance is at most `max_distance`.
 ///
-/// Arguments and errors as of `distance`. Returns `ClosestPoints(distance, point1, point2)`, (n,) and (n, D) in the
-/// world frame. Where the solids touch or overlap, the distance is zero and the points are NaN; beyond the limit
-/// infinite and NaN.
+/// Arguments and errors as in `distance`. Returns `ClosestPoints(distance, point1, point2)`, (n,) and (n, D) in the
+/// world frame. If the solids touch or overlap, the distance is zero and the points are NaN. Beyond `max_distance` the
+/// distance is infinite and the points are NaN.
 ///
 /// >>> import impinge, numpy as np
 /// >>> pose = np.eye(4); pose[0, 3] = 4
@@ -101,9 +103,10 @@ fn closest_points<'py>(
 
 /// The nearest or deepest points of two shapes, with the signed distance, the normal and the parts.
 ///
-/// Arguments and errors as of `distance`. Returns `Witness(distance, point1, point2, normal, part1, part2)`, (n,) and (n,
-/// D) in the world frame; the normal is from the first to the second. The distance is negative where the shapes overlap,
-/// and `point2 = point1 + distance * normal`. Beyond `max_distance` it is infinite, points are NaN and parts 4294967295.
+/// Arguments and errors as in `distance`. Returns `Witness(distance, point1, point2, normal, part1, part2)`, (n,) and
+/// (n, D) in the world frame; the normal points from the first to the second shape. The distance is negative if the
+/// shapes overlap, and `point2 = point1 + distance * normal`. Beyond `max_distance` the distance is infinite, points
+/// and normal are NaN and parts are 4294967295.
 ///
 /// >>> import impinge, numpy as np
 /// >>> pose = np.eye(4); pose[0, 3] = 1.75
@@ -126,7 +129,7 @@ fn witness<'py>(
 
 /// Whether two solids intersect (0), are at most `margin` apart (1), or farther (2): see `Proximity`.
 ///
-/// Arguments and errors as of `distance`. Returns an int, or an array (n,) of uint8. Touching counts as intersecting.
+/// Arguments and errors as in `distance`. Returns an int, or an array (n,) of uint8. Touching counts as intersecting.
 ///
 /// >>> import impinge, numpy as np
 /// >>> poses = np.tile(np.eye(4), (3, 1, 1)); poses[:, 0, 3] = [2, 3, 4]
@@ -148,10 +151,10 @@ fn proximity<'py>(
 
 /// The contact of two solids that overlap, touch, or are at most `prediction` apart.
 ///
-/// Arguments and errors as of `distance`. Returns `Contact(depth, normal, point1, point2)`, (n,) and (n, D) in the
-/// world frame. The depth is positive where they overlap and minus the distance where they are apart; `-inf` and NaN
-/// without a contact. The normal is from the first to the second. For composites it is the deepest contact of their
-/// manifolds.
+/// Arguments and errors as in `distance`. Returns `Contact(depth, normal, point1, point2)`, (n,) and (n, D) in the
+/// world frame. The depth is positive if the solids overlap, minus the distance if they are apart, and `-inf` without a
+/// contact; normal and points are then NaN. The normal points from the first to the second solid. For composites the
+/// contact is the deepest one of their manifolds.
 ///
 /// >>> import impinge, numpy as np
 /// >>> pose = np.eye(4); pose[1, 3] = 1.75
@@ -174,9 +177,9 @@ fn contact<'py>(
 
 /// All contact points of each pair that is at most `prediction` apart.
 ///
-/// Arguments and errors as of `distance`; `max_points` limits the points of a manifold. Returns `Manifolds` with rows:
-/// the points of pair i are `starts[i]` to `starts[i + 1]` of `depth`, `normal`, `point1`, `point2`, `manifold` (its
-/// number within the pair), `part1`, `part2`.
+/// Arguments and errors as in `distance`; `max_points` limits the points of a manifold. Returns `Manifolds`, a table
+/// with one row for each point: pair i has the rows `starts[i]` to `starts[i + 1]` of `depth`, `normal`, `point1`,
+/// `point2`, `manifold` (its index within the pair), `part1` and `part2`.
 ///
 /// >>> import impinge, numpy as np
 /// >>> pose = np.eye(4); pose[1, 3] = 1.9
@@ -201,8 +204,8 @@ fn contact_manifolds<'py>(
 
 /// The nearest pair of a batch: `Nearest(pair, distance)`, or -1 and an infinite distance beyond `max_distance`.
 ///
-/// Arguments and errors as of `distance`. Faster than all distances, since the limit shrinks. Among equal distances the
-/// lowest index is returned.
+/// Arguments and errors as in `distance`. It is faster than computing all distances, because the distance found so far
+/// limits the others. Among equal distances the pair with the lowest index is returned.
 ///
 /// >>> import impinge, numpy as np
 /// >>> poses = np.tile(np.eye(4), (3, 1, 1)); poses[:, 0, 3] = [7, 3, 5]
@@ -224,12 +227,12 @@ fn nearest<'py>(
 
 /// The time at which two moving solids first come within `target_distance`.
 ///
-/// Arguments and errors as of `distance`; the velocities are (D,) or (n, D), in the world frame per unit of time.
+/// Arguments and errors as in `distance`; the velocities are (D,) or (n, D), in the world frame per unit of time.
 /// `angular_velocity1`, `angular_velocity2`: in 2D a number or (n,) in radians, counter-clockwise; in 3D (3,) or (n,
-/// 3), the axis in the world frame times radians. The solids rotate about the origins of their local frames; without
-/// both there is no rotation. Returns `Impact(time, normal, point1, point2, is_reached)`, points and normal at that
-/// time; without an impact by `max_time` the time is infinite. `is_reached` is false if the search ended early: the
-/// solids do not touch before `time`.
+/// 3), the axis in the world frame times radians; zero by default. The solids rotate about the origins of their local
+/// frames. Returns `Impact(time, normal, point1, point2, is_reached)`, points and normal at that time; without an
+/// impact by `max_time` the time is infinite. `is_reached` is false if the search ended early: the solids do not touch
+/// before `time`.
 ///
 /// >>> import impinge, numpy as np
 /// >>> pose = np.eye(4); pose[0, 3] = 6
@@ -266,8 +269,8 @@ fn impact<'py>(
 
 /// The pairs of elements that are at most `distance` apart, as an ascending array (m, 2) of uint32.
 ///
-/// With one side: its pairs [i, j] with i < j. With two: i of the first and j of the second, all against all. Arguments and
-/// errors as of `distance`; `ValueError` too if `distance` is negative or NaN.
+/// With one side, the pairs are [i, j] with i < j. With two sides, i is of the first and j of the second side.
+/// Arguments and errors as in `distance`; `ValueError` also if `distance` is negative or NaN.
 ///
 /// >>> import impinge, numpy as np
 /// >>> poses = np.tile(np.eye(4), (3, 1, 1)); poses[:, 0, 3] = [0, 3, 6.5]
@@ -294,10 +297,10 @@ fn pairs_within<'py>(
 
 /// The points of shapes nearest to points in the world frame.
 ///
-/// shape, poses: as of `distance`. points: (D,) or (n, D). Returns `Projection(point, is_inside, part)`, (n, D), (n,)
-/// and (n,). Errors as of `distance`; points may have any values. A point inside is its own projection if `solid`, else
-/// it is projected to the boundary. Values that are not finite give NaN and part 4294967295. Meshes and polylines are
-/// surfaces here: no point is inside.
+/// shape, poses: as in `distance`. points: (D,) or (n, D). Returns `Projection(point, is_inside, part)`, (n, D), (n,)
+/// and (n,). Errors as in `distance`, but points may have any values. A point inside is its own projection if `solid`,
+/// otherwise it is projected to the boundary. Points that are not finite have the projection NaN and the part
+/// 4294967295. Meshes and polylines are surfaces here: no point is inside.
 ///
 /// >>> import impinge
 /// >>> impinge.project_points(impinge.Ball(1), None, [4, 0, 0]).point.tolist()
@@ -318,10 +321,10 @@ fn project_points<'py>(
 
 /// The distances of points from shapes, negative inside.
 ///
-/// Arguments and errors as of `project_points`. Returns a float or an array (n,), lengths; infinite for values that are
+/// Arguments and errors as in `project_points`. Returns a float or an array (n,), lengths; infinite for points that are
 /// not finite. Closed meshes in 3D and closed polylines in 2D are solids here, and in `contains`. `ValueError` names a
-/// mesh, polyline or height field that is not closed: it has no inside. With `surface=True` it is a surface, from which
-/// no distance is negative.
+/// mesh, polyline or height field that is not closed, because it has no inside. With `surface=True` it is a surface,
+/// and all distances from it are positive or zero.
 ///
 /// >>> import impinge
 /// >>> impinge.signed_distance(impinge.Ball(2), None, [[5, 0, 0], [0, 1, 0]]).tolist()
@@ -342,7 +345,7 @@ fn signed_distance<'py>(
 
 /// Whether points are inside shapes, or on them.
 ///
-/// Arguments and errors as of `signed_distance`. Returns a bool or an array (n,) of bools. With `surface=True` a mesh,
+/// Arguments and errors as in `signed_distance`. Returns a bool or an array (n,) of bools. With `surface=True` a mesh,
 /// polyline or height field that is not closed contains the points on it.
 ///
 /// >>> import impinge
@@ -364,9 +367,10 @@ fn contains<'py>(
 
 /// The first hits of rays on shapes.
 ///
-/// shape, poses: as of `distance`. origins, directions: (D,) or (n, D); a direction need not be a unit vector, and times
-/// are in units of its length. Returns `RayHit(time, normal, part)`, (n,), (n, D) and (n,): the time is infinite without a
-/// hit by `max_time`. A ray that starts inside hits at time zero if `solid`, else where it leaves.
+/// shape, poses: as in `distance`. origins, directions: (D,) or (n, D); a direction need not be a unit vector, and
+/// times are in units of its length. Returns `RayHit(time, normal, part)`, (n,), (n, D) and (n,); the time is infinite
+/// without a hit by `max_time`. A ray that starts inside hits at time zero if `solid`, otherwise where it leaves the
+/// shape.
 ///
 /// >>> import impinge
 /// >>> hit = impinge.cast_rays(impinge.Ball(1), None, [-4, 0, 0], [2, 0, 0])

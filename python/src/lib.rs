@@ -1,13 +1,13 @@
 //! impinge for Python: the extension module `impinge._native`.
 //!
-//! Python passes shapes, arrays and limits. [`space`] dispatches on the scalar and the dimension, and everything behind
-//! it is generic. Arrays of the right type and layout are read without a copy. The interpreter is released while the
+//! Python passes shapes, arrays and limits. [`space`] dispatches on the scalar and the dimension; all code behind it is
+//! generic. Arrays of the right type and layout are read without a copy. The interpreter is released while the
 //! library computes ([`supervise`]), and columns become NumPy arrays without a copy ([`answer`]). A query about a
-//! single element is a batch of one whose slots need no list; for convex solids it takes less time than releasing the
-//! interpreter.
+//! single element is a batch of one element without lists. For convex solids it takes less time than releasing the
+//! interpreter, which is then not released.
 //!
-//! Arguments of other forms (lists, rotations of SciPy, arrays of other types) are converted in Python, in
-//! `impinge/_poses.py`; the path from a shape and a matrix to a result is short.
+//! Arguments of other types (lists, rotations of SciPy, arrays of another dtype) are converted in Python, in
+//! `impinge/_poses.py`. A query with a shape and an array of the right type does not run that code.
 #![forbid(unsafe_code)]
 
 mod answer;

@@ -6,7 +6,7 @@ use impinge::narrow_phase::GeometricQueryType;
 use impinge::world::{CollisionGroups, GroupError};
 use pyo3::prelude::*;
 
-/// Indices of groups; a missing list is that of a new object.
+/// Indices of groups; a missing list has the default of new objects.
 #[derive(FromPyObject)]
 pub(crate) struct GroupLists {
     membership: Option<Vec<usize>>,
@@ -39,9 +39,10 @@ impl GroupLists {
 /// The query type of the pairs of an object.
 #[derive(FromPyObject)]
 pub(crate) struct QueryOptions {
-    /// Contacts up to the sum of the predictions of both objects; used if there is no margin.
+    /// The prediction of contacts, which is added to that of the other object; used if there is no
+    /// margin.
     prediction: f64,
-    /// Proximity instead of contacts, with this margin.
+    /// The margin of proximity, which then replaces contacts.
     margin: Option<f64>,
 }
 
@@ -55,7 +56,7 @@ impl QueryOptions {
     }
 }
 
-/// The properties of a new object besides shape and pose.
+/// The properties of a new object other than shape and pose.
 #[derive(FromPyObject)]
 pub(crate) struct ObjectOptions {
     pub(crate) query: QueryOptions,
@@ -66,6 +67,6 @@ pub(crate) struct ObjectOptions {
 #[derive(FromPyObject)]
 pub(crate) struct FilterOptions {
     pub(crate) groups: GroupLists,
-    /// Handles.
+    /// The handles of excluded objects.
     pub(crate) exclude: Vec<u64>,
 }

@@ -1,4 +1,4 @@
-//! Queries about pairs: one shape or many with one or many.
+//! Queries about pairs of shapes; each side has one shape or many.
 
 use impinge::batch::{
     BatchError, ClosestColumns, ContactColumns, Control, ImpactColumns, ManifoldRows, PairBatch,
@@ -28,10 +28,10 @@ pub(crate) trait Question: Sync {
     type Columns<N: Numeric<D>, const D: usize>: IntoIterator<Item = Column<N, D>, IntoIter: ExactSizeIterator>
         + Send;
 
-    /// The class of the result; without, the only column is the result.
+    /// The class of the result; if `None`, the result is the only column.
     fn class(&self) -> Option<&'static Class>;
 
-    /// The limit of the result, and its name in Python.
+    /// The name of the limit in Python, and its value.
     fn limit(&self) -> (&'static str, f64);
 
     /// Runs the query for a batch of this extent.
@@ -315,8 +315,8 @@ impl<'a, 'py> PairCall<'a, 'py> {
         run_in(kind, AskImpacts { call: self, impacts, kind })
     }
 
-    /// Computes which elements are near each other; without `is_two_sided` among those of the first
-    /// side.
+    /// Computes the pairs of elements within `distance`: of both sides if `is_two_sided`, otherwise
+    /// of the first side alone.
     pub(crate) fn ask_within(
         self,
         is_two_sided: bool,
@@ -352,7 +352,7 @@ impl<'py, Q: Question> Task for Ask<'_, 'py, Q> {
     }
 }
 
-/// Impacts on straight paths.
+/// Impacts of shapes that move with constant velocities, without rotation.
 struct Impacts<'a, N: Numeric<D>, const D: usize> {
     velocities: [&'a [[N; D]]; 2],
     options: ImpactOptions<N>,
@@ -389,7 +389,7 @@ impl<N: Numeric<D>, const D: usize> Impacts<'_, N, D> {
     }
 }
 
-/// The motions of the shapes of pairs, and the limits.
+/// The velocities of both sides, and the limits.
 pub(crate) struct ImpactCall<'a, 'py> {
     pub(crate) velocities: [&'a Bound<'py, PyAny>; 2],
     pub(crate) angular_velocities: [Option<&'a Bound<'py, PyAny>>; 2],
@@ -397,7 +397,7 @@ pub(crate) struct ImpactCall<'a, 'py> {
     pub(crate) target_distance: f64,
 }
 
-/// Computes the impacts of each pair on straight paths.
+/// Computes the impact of each pair, without rotation.
 struct AskImpacts<'a, 'py> {
     call: PairCall<'a, 'py>,
     impacts: ImpactCall<'a, 'py>,
@@ -429,7 +429,7 @@ impl<'py> Task for AskImpacts<'_, 'py> {
     }
 }
 
-/// Computes which elements are near each other.
+/// Computes the pairs of elements within `distance`.
 struct AskWithin<'a, 'py> {
     call: PairCall<'a, 'py>,
     is_two_sided: bool,

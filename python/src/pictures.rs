@@ -16,7 +16,7 @@ use crate::space::{Kind, Numeric, Task, run_in};
 /// The view of a picture.
 #[derive(FromPyObject)]
 pub(crate) struct PictureView {
-    /// Width and height in pixels; the height of a picture in 2D follows from the content.
+    /// Width and height in pixels; in 2D the height follows from the content.
     size: [u32; 2],
     /// The direction of view in 3D, and the upward direction.
     look: [f64; 3],
@@ -29,7 +29,7 @@ pub(crate) trait Pictured<const D: usize>: Space<D> {
     /// The format of pictures, as a file extension.
     const FORMAT: &'static str;
 
-    /// Returns the bytes of a picture of a drawing.
+    /// Returns the bytes of a picture of everything that `draw` draws.
     fn bytes(view: &PictureView, draw: &mut dyn FnMut(&mut dyn DebugRender<Self, D>)) -> Vec<u8>;
 }
 
@@ -55,8 +55,8 @@ impl<N: Real> Pictured<3> for N {
     }
 }
 
-/// Returns a picture of the objects of a world, with contacts and proximities of the last update: format
-/// and bytes.
+/// Returns a picture of the objects of a world, with contacts and proximities of the last update: its
+/// format and its bytes.
 pub(crate) fn picture<N: Numeric<D>, const D: usize>(
     world: &CollisionWorld<N, D, ()>,
     view: &PictureView,

@@ -17,9 +17,9 @@ use crate::vectors::Vectors;
 /// A query about points.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum PointQuestion {
-    /// The nearest point; points inside are their own projection if `solid`.
+    /// The nearest point of the shape; if `solid`, a point inside is its own projection.
     Project { solid: bool },
-    /// The signed distance, negative inside. Open surfaces have no inside, and are an error unless
+    /// The signed distance, negative inside. Open surfaces have no inside: they are an error unless
     /// `surface`.
     SignedDistance { surface: bool },
     /// Whether the point is inside. Open surfaces are an error unless `surface`.
@@ -27,8 +27,7 @@ pub(crate) enum PointQuestion {
 }
 
 impl PointQuestion {
-    /// Whether the query is about the inside, for which closed surfaces are solids; the value is
-    /// `surface`.
+    /// Returns `surface` if the query is about the inside, for which closed surfaces are solids.
     const fn is_about_inside(self) -> Option<bool> {
         match self {
             Self::Project { .. } => None,
@@ -107,7 +106,7 @@ impl<'py> Task for AskPoints<'_, 'py> {
 }
 
 impl AskPoints<'_, '_> {
-    /// Returns the results where a shape is a surface: closed ones are solids.
+    /// Returns the results if a shape is a surface. Closed surfaces are solids here.
     fn of_solids<N: Numeric<D>, const D: usize>(
         &self,
         given: &GivenSide<'_, '_, N, D>,

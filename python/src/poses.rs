@@ -15,12 +15,12 @@ use crate::vectors::Numbers;
 pub(crate) struct Poses<'py, N: Numeric<D>, const D: usize> {
     /// The name of the argument in Python.
     name: &'static str,
-    /// A matrix (D+1, D+1) or an array (n, D+1, D+1); without, the identity.
+    /// A matrix (D+1, D+1) or an array (n, D+1, D+1); `None` is the identity.
     given: Option<Numbers<'py, N>>,
 }
 
 impl<'py, N: Numeric<D>, const D: usize> Poses<'py, N, D> {
-    /// Reads an argument; an argument other than an array of the right type and layout is converted by
+    /// Reads an argument. Anything but an array of the right type and layout is converted by
     /// `impinge._poses.matrices`.
     pub(crate) fn of(given: &Bound<'py, PyAny>, name: &'static str) -> PyResult<Self> {
         if given.is_none() {
@@ -40,7 +40,7 @@ impl<'py, N: Numeric<D>, const D: usize> Poses<'py, N, D> {
         Ok(Self { name, given: Some(Numbers::of(array.cast::<PyArrayDyn<N>>()?, 2)?) })
     }
 
-    /// Whether there is one pose, not an array of poses.
+    /// Whether the argument is a single pose, not an array of poses.
     pub(crate) fn is_lone(&self) -> bool {
         self.given.as_ref().is_none_or(Numbers::is_lone)
     }
@@ -81,7 +81,7 @@ impl<'a, N: Numeric<D>, const D: usize> Deref for Source<'a, N, D> {
     }
 }
 
-/// Whether it is the shape of a matrix or of an array of matrices.
+/// Whether `shape` is that of a matrix or of an array of matrices.
 fn is_usable<const D: usize>(shape: &[usize]) -> bool {
     matches!(shape, [rows, columns] | [_, rows, columns] if [*rows, *columns] == [D + 1, D + 1])
 }

@@ -12,12 +12,13 @@ use crate::answer::Column;
 use crate::shapes::Shape;
 use crate::space::{Numeric, Task, run_in};
 
-/// A scalar and a dimension with vertices of its own shapes.
+/// A scalar and a dimension, with the convex shapes that exist in this dimension only.
 pub(crate) trait Cornered<const D: usize>: Space<D> {
-    /// Returns the vertices of the convex shapes that exist in this dimension only.
+    /// Returns the vertices of a convex shape that exists in this dimension only; `None` for other
+    /// shapes.
     fn own_corners(shape: &ShapeHandle<Self, D>) -> Option<Vec<Point<Self, D>>>;
 
-    /// Whether the shape is a tetrahedron, not a hull.
+    /// Whether the shape is a tetrahedron, not a convex hull.
     fn is_tetrahedron(shape: &ShapeHandle<Self, D>) -> bool;
 }
 
@@ -47,7 +48,7 @@ impl<N: Real> Cornered<3> for N {
 /// Returns the vertices of a shape, (n, D).
 ///
 /// # Errors
-/// `AttributeError` if the shape has none.
+/// `AttributeError` if the shape has no vertices.
 pub(crate) fn vertices<'py>(py: Python<'py>, shape: &Shape) -> PyResult<Bound<'py, PyAny>> {
     run_in(shape.kind, Vertices { py, shape })
 }
@@ -55,7 +56,7 @@ pub(crate) fn vertices<'py>(py: Python<'py>, shape: &Shape) -> PyResult<Bound<'p
 /// Returns the faces of a shape as indices of vertices: (m, 3), for polylines (m, 2).
 ///
 /// # Errors
-/// `AttributeError` if the shape has none.
+/// `AttributeError` if the shape has no faces.
 pub(crate) fn faces<'py>(py: Python<'py>, shape: &Shape) -> PyResult<Bound<'py, PyAny>> {
     run_in(shape.kind, Faces { py, shape })
 }

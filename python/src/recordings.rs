@@ -1,9 +1,9 @@
-//! Recordings as pages, if the module contains the engine of the page (the feature `page`).
+//! Recordings as HTML pages, if the module contains the viewer (the feature `page`).
 
 use pyo3::prelude::*;
 
-/// Returns the recording as one HTML file that shows it; `None` if the module was built without the
-/// page.
+/// Returns one HTML file that shows the recording; `None` if the module was built without the
+/// viewer.
 ///
 /// # Errors
 /// `ValueError` if the bytes are not a recording.
@@ -18,7 +18,7 @@ pub(crate) fn recording_page(
     page.map(Some).map_err(|error| pyo3::exceptions::PyValueError::new_err(error.to_string()))
 }
 
-/// Returns `None`: the module was built without the page.
+/// Returns `None`, because the module was built without the viewer.
 #[cfg(not(feature = "page"))]
 #[pyfunction]
 pub(crate) const fn recording_page(_bytes: &[u8], _title: &str) -> Option<String> {

@@ -70,11 +70,11 @@ fn recorder<N: Numeric<D>, const D: usize>() -> Result<Recorder<N, D, ()>, Recor
     Recorder::new(N::ZERO, Registry::new())
 }
 
-/// Shares equal shapes: a recording has a shape once for each handle, a scene once for each value.
+/// Shares equal shapes: a recording stores a shape once for each handle, a scene once for each value.
 struct EqualShapes<N: Numeric<D>, const D: usize> {
-    /// By the bytes of a recording of the shape alone.
+    /// The key is the recording of the shape alone.
     by_bytes: BTreeMap<Vec<u8>, ShapeHandle<N, D>>,
-    /// The last shape and its shared one: objects that share a shape are usually consecutive.
+    /// The last shape and its shared handle: objects that share a shape are usually consecutive.
     last: Option<[ShapeHandle<N, D>; 2]>,
 }
 
@@ -93,7 +93,7 @@ impl<N: Numeric<D>, const D: usize> EqualShapes<N, D> {
         Ok(shared)
     }
 
-    /// Rebuilds the shape from shared shapes. A recorder rejects shapes that nest too deep.
+    /// Rebuilds the shape from shared shapes. A recorder rejects shapes that nest too deeply.
     fn with_shared_children(
         &mut self,
         shape: &ShapeHandle<N, D>,
@@ -127,7 +127,7 @@ fn scene_of_bytes<'py>(py: Python<'py>, bytes: &[u8]) -> PyResult<SceneParts<'py
     Ok((shapes, poses, kind.dim(), kind.dtype()))
 }
 
-/// Returns the only shape of the bytes of a scene.
+/// Returns the shape of a scene with a single object.
 #[pyfunction]
 fn shape_of_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Py<Shape>> {
     let (mut shapes, ..) = scene_of_bytes(py, bytes)?;

@@ -38,7 +38,7 @@ impl Shape {
     /// Returns the shape of the library.
     ///
     /// # Errors
-    /// `TypeError` if it is of another scalar or dimension.
+    /// `TypeError` if the shape has another scalar or dimension.
     pub(crate) fn handle<N: Numeric<D>, const D: usize>(
         &self,
         argument: &str,
@@ -80,7 +80,7 @@ type Arguments<'py> = (
 
 #[pymethods]
 impl Shape {
-    /// Use the functions of the package.
+    /// Internal: the functions of the package create shapes.
     #[new]
     #[pyo3(signature = (*arguments))]
     fn new(arguments: &Bound<'_, PyTuple>) -> PyResult<Self> {
@@ -114,7 +114,7 @@ impl Shape {
         self.kind.dim()
     }
 
-    /// The type of its numbers: "float32" or "float64".
+    /// The dtype of its numbers: "float32" or "float64".
     #[getter]
     fn dtype(&self) -> &'static str {
         self.kind.dtype()
@@ -127,14 +127,14 @@ impl Shape {
         read_back::vertices(py, self)
     }
 
-    /// The numbers of the vertices of each triangle of a mesh (m, 3), or of each segment of a polyline (m, 2);
+    /// The indices of the vertices of each triangle of a mesh (m, 3), or of each segment of a polyline (m, 2);
     /// `AttributeError` for other shapes.
     #[getter]
     fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         read_back::faces(py, self)
     }
 
-    /// Shapes are equal if they have the same kind, dim and dtype, and were made of the same numbers.
+    /// Shapes are equal if they have the same name, dim and dtype, and were created from the same numbers.
     fn __eq__(slf: &Bound<'_, Self>, other: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
         let py = slf.py();
         let Ok(other) = other.cast::<Self>() else { return Ok(py.NotImplemented()) };
@@ -160,7 +160,7 @@ impl Shape {
         pictures.getattr("html_of")?.call1((slf,))
     }
 
-    /// Pickled as the bytes of a scene of this shape alone.
+    /// A shape is pickled as the bytes of a scene of this shape alone.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
         let py = slf.py();
         let bytes = bytes_of(slf)?;
@@ -174,7 +174,7 @@ fn bytes_of<'py>(shape: &Bound<'py, Shape>) -> PyResult<Bound<'py, PyBytes>> {
     scene_bytes(shape.as_any(), &shape.py().None().into_bound(shape.py()))
 }
 
-/// Returns the name of the function that creates such shapes; for other shapes the name in the library.
+/// Returns the name of the function that creates such shapes; for other shapes, their name in the library.
 fn public_name<N: Numeric<D>, const D: usize>(shape: &ShapeHandle<N, D>) -> String {
     match shape.geometry().kind() {
         ShapeKind::Plane => "HalfSpace".to_owned(),
@@ -192,7 +192,7 @@ fn public_name<N: Numeric<D>, const D: usize>(shape: &ShapeHandle<N, D>) -> Stri
     }
 }
 
-/// Makes a shape of the library.
+/// Creates a shape of the library.
 struct Make<'d, 'a, 'py>(&'d Description<'a, 'py>);
 
 impl Task for Make<'_, '_, '_> {
@@ -217,7 +217,7 @@ fn refused(problem: &Problem) -> PyErr {
 }
 
 impl Description<'_, '_> {
-    /// Returns the constructor's arguments with their scalar and dimension.
+    /// Converts the arguments of the constructor to this scalar and dimension.
     fn data<N: Numeric<D>, const D: usize>(&self) -> PyResult<ShapeData<N, D>> {
         let data = match self.name {
             "Ball" => ShapeData::Ball(self.number(0)?),
@@ -240,7 +240,7 @@ impl Description<'_, '_> {
         Ok(data)
     }
 
-    /// Returns the arguments of hulls and composites.
+    /// Converts the arguments of convex hulls and composites.
     fn composite<N: Numeric<D>, const D: usize>(&self) -> PyResult<ShapeData<N, D>> {
         Ok(match self.name {
             "ConvexHull" => ShapeData::Hull { points: self.vertices()?, faces: Vec::new() },
@@ -258,7 +258,7 @@ impl Description<'_, '_> {
         self.numbers.get(index).map(|number| convert(*number)).ok_or_else(missing)
     }
 
-    /// Returns the first numbers as a vector.
+    /// Returns all numbers as a vector.
     fn vector<N: Numeric<D>, const D: usize>(&self) -> PyResult<Vector<N, D>> {
         if self.numbers.len() != D {
             let given = self.numbers.len();
@@ -282,7 +282,7 @@ impl Description<'_, '_> {
             .collect())
     }
 
-    /// Returns `COUNT` points, which must be all.
+    /// Returns all points, of which there must be `COUNT`.
     fn points<N: Numeric<D>, const D: usize, const COUNT: usize>(
         &self,
     ) -> PyResult<[Point<N, D>; COUNT]> {
@@ -308,7 +308,8 @@ impl Description<'_, '_> {
         })
     }
 
-    /// The first `D` numbers are the scale, the next the columns, the rest the heights.
+    /// Reads a height field: the first `D` numbers are the scale, the next one is the number of columns, and the others
+    /// are the heights.
     fn field<N: Numeric<D>, const D: usize>(&self) -> PyResult<Field<N, D>> {
         let [scale @ .., columns] = &self.numbers[..self.numbers.len().min(D + 1)] else {
             return Err(PyValueError::new_err("HeightField lacks numbers"));
@@ -349,7 +350,8 @@ impl Description<'_, '_> {
     }
 }
 
-/// One shape, a shape for each element, or an object with the fields `shapes` and `picks`, as an argument.
+/// An argument with shapes: a single shape, a shape for each element, or an object with the fields `shapes` and
+/// `picks`.
 pub(crate) enum ShapesArgument<'a, 'py, N: Numeric<D>, const D: usize> {
     One(&'a ShapeHandle<N, D>),
     Each(Vec<ShapeHandle<N, D>>),
@@ -376,7 +378,7 @@ fn given<'py>(argument: &Bound<'py, PyAny>, name: &str) -> PyResult<Given<'py>> 
     }
 }
 
-/// Returns the scalar and dimension of the shapes of an argument: those of the first.
+/// Returns the scalar and dimension of the first shape of an argument.
 pub(crate) fn kind_of(argument: &Bound<'_, PyAny>, name: &str) -> PyResult<Kind> {
     if let Ok(shape) = argument.cast::<Shape>() {
         return Ok(shape.get().kind);
@@ -404,7 +406,7 @@ impl<'a, 'py, N: Numeric<D>, const D: usize> ShapesArgument<'a, 'py, N, D> {
         })
     }
 
-    /// Returns the shape if there is a single one, not a sequence.
+    /// Returns the shape if the argument is a single shape, not a sequence.
     pub(crate) const fn lone(&self) -> Option<&'a ShapeHandle<N, D>> {
         match self {
             Self::One(shape) => Some(shape),
@@ -412,7 +414,7 @@ impl<'a, 'py, N: Numeric<D>, const D: usize> ShapesArgument<'a, 'py, N, D> {
         }
     }
 
-    /// Returns the given shapes.
+    /// Returns all shapes that elements may pick.
     pub(crate) fn distinct(&self) -> &[ShapeHandle<N, D>] {
         match self {
             Self::One(shape) => core::slice::from_ref(*shape),
@@ -420,7 +422,7 @@ impl<'a, 'py, N: Numeric<D>, const D: usize> ShapesArgument<'a, 'py, N, D> {
         }
     }
 
-    /// Returns the shape of an element; a single one is for all.
+    /// Returns the shape of an element; a single shape belongs to all elements.
     pub(crate) fn at(&self, element: usize) -> &ShapeHandle<N, D> {
         let index = |len| if len == 1 { 0 } else { element };
         match self {

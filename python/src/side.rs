@@ -21,7 +21,7 @@ pub(crate) struct SideArgument<'a, 'py> {
 }
 
 impl<'a, 'py> SideArgument<'a, 'py> {
-    /// Reads shapes and poses, which must be of this kind.
+    /// Reads shapes and poses, which must have this scalar and dimension.
     pub(crate) fn read<N: Numeric<D>, const D: usize>(
         &self,
         kind: Kind,
@@ -62,7 +62,7 @@ impl<N: Numeric<D>, const D: usize> GivenSide<'_, '_, N, D> {
     /// Whether a shape is a surface or a polyline.
     ///
     /// # Errors
-    /// `ValueError` for one that is not closed, with its row; not if `surface`.
+    /// `ValueError` names the row of a surface that is not closed, unless `surface`.
     pub(crate) fn has_surface(&self, surface: bool) -> PyResult<bool> {
         let [name, _] = self.names;
         let mut has_surface = false;
@@ -78,7 +78,8 @@ impl<N: Numeric<D>, const D: usize> GivenSide<'_, '_, N, D> {
         Ok(has_surface)
     }
 
-    /// Returns the shapes and poses of all elements; one if there is one for all.
+    /// Returns the shapes and poses of all elements; a single one if the side has one shape and one
+    /// pose.
     pub(crate) fn placed(&self) -> PyResult<Vec<(&ShapeHandle<N, D>, Pose<N, D>)>> {
         let poses = self.poses()?;
         let len = self.side(&*poses)?.len();
@@ -102,7 +103,7 @@ impl<N: Numeric<D>, const D: usize> GivenSide<'_, '_, N, D> {
         })
     }
 
-    /// Returns each element's shape and position, also if a single one is used for all.
+    /// Returns the shape and the position of each element; a single shape or pose is repeated.
     pub(crate) fn elements(&self) -> PyResult<Elements<'_, N, D>> {
         let poses = self.poses()?;
         let len = self.side(&*poses)?.len();
@@ -114,13 +115,14 @@ impl<N: Numeric<D>, const D: usize> GivenSide<'_, '_, N, D> {
     }
 }
 
-/// The elements of a side, which other threads may read.
+/// The elements of a side, which other threads can read.
 pub(crate) struct Elements<'a, N: Numeric<D>, const D: usize> {
     pub(crate) shapes: Vec<&'a ShapeHandle<N, D>>,
     pub(crate) positions: Vec<N::Isometry>,
 }
 
-/// Returns the common number of elements of arguments, where a single one is used for all.
+/// Returns the common number of elements of arguments; an argument with a single element fits any
+/// number.
 pub(crate) fn common(lengths: &[(&str, usize)]) -> PyResult<usize> {
     let len = lengths.iter().map(|(_, len)| *len).find(|len| *len != 1).unwrap_or(1);
     match lengths.iter().find(|(_, given)| *given != 1 && *given != len) {

@@ -32,7 +32,7 @@ pub(crate) trait Bounding<const D: usize>: Space<D> {
 pub(crate) enum Standing {
     /// The surface bounds a solid.
     Closed,
-    /// The surface bounds nothing; the text names its kind of shape.
+    /// The surface bounds nothing; the string is the name of its shape.
     Open(&'static str),
 }
 
@@ -45,7 +45,7 @@ impl<N: Real> Bounding<2> for N {
         shape.as_shape::<Polyline<N, 2>>()?.encloses(point)
     }
 
-    /// The triangles of meshes are filled in 2D.
+    /// Meshes have no kind in 2D, where their triangles are filled.
     fn standing(shape: &ShapeHandle<N, 2>) -> Option<Standing> {
         if let Some(line) = shape.as_shape::<Polyline<N, 2>>() {
             let is_closed = line.is_outline();
@@ -77,8 +77,8 @@ impl<N: Real> Bounding<3> for N {
     }
 }
 
-/// Returns the kind of the shape: for a compound open if a child is open, else closed if one is closed; `None` for
-/// solids.
+/// Returns the kind of the shape; `None` for solids. A compound is open if a child is open, otherwise closed if a
+/// child is closed.
 pub(crate) fn standing<N: Numeric<D>, const D: usize>(
     shape: &ShapeHandle<N, D>,
 ) -> Option<Standing> {
@@ -103,7 +103,7 @@ pub(crate) fn refuse_open(standing: Option<Standing>, name: &str) -> PyResult<()
     )))
 }
 
-/// Whether a point of the outer frame lies in the placed shape, or on its boundary.
+/// Whether a point of the outer frame lies in the placed shape or on its boundary.
 pub(crate) fn contains<N: Numeric<D>, const D: usize>(
     shape: &ShapeHandle<N, D>,
     pose: &Pose<N, D>,
@@ -117,8 +117,8 @@ pub(crate) fn contains<N: Numeric<D>, const D: usize>(
     N::encloses(shape, &local).unwrap_or_else(|| shape.contains_local_point(&local))
 }
 
-/// Returns the distance of a point of the outer frame from the placed shape, negative inside; for a compound the least
-/// of its children.
+/// Returns the distance of a point of the outer frame from the placed shape, negative inside. For a compound it is the
+/// smallest distance of its children.
 pub(crate) fn signed_distance<N: Numeric<D>, const D: usize>(
     shape: &ShapeHandle<N, D>,
     pose: &Pose<N, D>,

@@ -1,4 +1,4 @@
-//! Dispatches on the scalar and the dimension of a call: the only place of this choice.
+//! Dispatches on the scalar and the dimension of a call. No other module chooses between them.
 
 use impinge_record::{Header, Recordable};
 use numpy::Element;
@@ -14,14 +14,14 @@ use crate::turning::Turning;
 /// A scalar and a dimension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Kind {
-    /// Whether numbers have 64 bits, else 32.
+    /// Whether the scalar is `f64`; otherwise it is `f32`.
     pub(crate) is_double: bool,
-    /// Whether it is 3D, else 2D.
+    /// Whether the dimension is 3; otherwise it is 2.
     pub(crate) is_spatial: bool,
 }
 
 impl Kind {
-    /// Parses the number of dimensions and the name of NumPy's type.
+    /// Parses the number of dimensions and the name of a dtype of NumPy.
     pub(crate) fn parse(dim: u8, dtype: &str) -> PyResult<Self> {
         let is_spatial = match dim {
             2 => false,
@@ -39,7 +39,7 @@ impl Kind {
         Ok(Self { is_double, is_spatial })
     }
 
-    /// Returns the kind of the header of a recording.
+    /// Returns the scalar and dimension in the header of a recording.
     pub(crate) fn of_header(header: &Header) -> PyResult<Self> {
         let dtype = if header.scalar_bytes == 8 { "float64" } else { "float32" };
         Self::parse(header.dimension, dtype)
@@ -50,12 +50,12 @@ impl Kind {
         if self.is_spatial { 3 } else { 2 }
     }
 
-    /// The name of NumPy's type.
+    /// The name of the dtype of NumPy.
     pub(crate) const fn dtype(self) -> &'static str {
         if self.is_double { "float64" } else { "float32" }
     }
 
-    /// Returns an error for an argument of another kind.
+    /// Returns an error if an argument has another scalar or dimension.
     pub(crate) fn expect(self, argument: &str, given: Self) -> PyResult<()> {
         if self == given {
             return Ok(());
@@ -80,7 +80,8 @@ impl<N, const D: usize> Numeric<D> for N where
 {
 }
 
-/// A computation that is generic over the scalar and the dimension. It is a type, because a closure cannot be generic.
+/// A computation that is generic over the scalar and the dimension. It is a trait, because a closure cannot be
+/// generic.
 pub(crate) trait Task {
     /// Its result.
     type Answer;
@@ -89,7 +90,7 @@ pub(crate) trait Task {
     fn run<N: Numeric<D>, const D: usize>(self) -> PyResult<Self::Answer>;
 }
 
-/// Runs a task in a scalar and a dimension.
+/// Runs a task with the scalar and dimension of `kind`.
 pub(crate) fn run_in<T: Task>(kind: Kind, task: T) -> PyResult<T::Answer> {
     settle()?;
     match (kind.is_double, kind.is_spatial) {

@@ -1,4 +1,4 @@
-//! Long computations: the interpreter is released, gets progress, and may interrupt.
+//! Long computations: the interpreter is released, receives progress, and may interrupt the computation.
 //!
 //! Signals and progress bars belong to the calling thread. It sleeps while another thread computes, wakes every
 //! [`TICK`], and stops the computation by the callback of the batch.
@@ -17,10 +17,10 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use crate::answer::Extent;
 use crate::threads::Crew;
 
-/// The calling thread computes batches of at most this many elements: the library does not divide them either.
+/// Batches of at most this many elements run in the calling thread. The library does not divide them either.
 const SMALL: usize = 64;
 
-/// The interval of checks for signals and of updates of progress.
+/// The interval at which signals are checked and progress is updated.
 const TICK: Duration = Duration::from_millis(50);
 
 /// The options of a call.
@@ -51,7 +51,7 @@ impl FromPyObject<'_, '_> for Threads {
     }
 }
 
-/// Reads the argument of this name as a number that is at least one.
+/// Reads a positive integer, the argument `name`.
 pub(crate) fn count(given: Borrowed<'_, '_, PyAny>, name: &str) -> PyResult<usize> {
     match given.extract::<usize>() {
         Ok(number) if number > 0 => Ok(number),
@@ -66,10 +66,10 @@ pub(crate) fn count(given: Borrowed<'_, '_, PyAny>, name: &str) -> PyResult<usiz
     }
 }
 
-/// A callback that gets the number of finished elements, and may stop the work.
+/// A callback that receives the number of finished elements, and may stop the work.
 type Report<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
 
-/// Runs `work` for `len` elements, with the interpreter released unless it is quick.
+/// Runs `work` for `extent`, with the interpreter released unless the query is quick.
 ///
 /// # Errors
 /// Exceptions of the work and the progress bar, and `KeyboardInterrupt`; the work has then stopped.
@@ -106,7 +106,8 @@ pub(crate) fn each<T: Send>(
     })
 }
 
-/// Runs `work` without the interpreter: directly if it is short, else in another thread, with a report.
+/// Runs `work` with the interpreter released: directly if it is short, otherwise in another thread that reports
+/// progress.
 fn released<T: Send>(
     py: Python<'_>,
     len: usize,
@@ -120,7 +121,7 @@ fn released<T: Send>(
     py.detach(|| beside(call, &crew, &work))
 }
 
-/// Computes chunks of elements; after a stop the rest is skipped.
+/// Computes chunks of elements. After a stop the remaining chunks are empty.
 fn in_chunks<T: Send>(
     len: usize,
     report: Report<'_>,
@@ -143,7 +144,7 @@ fn in_chunks<T: Send>(
     chunks.into_iter().flatten().collect()
 }
 
-/// Works in another thread and supervises it in this one, which has released the interpreter.
+/// Runs `work` in another thread, which this thread supervises. The interpreter is released.
 fn beside<T: Send>(
     call: &Call,
     crew: &Crew,
@@ -184,7 +185,7 @@ impl Watch {
         }
     }
 
-    /// Waits for the worker; shows its progress, and stops it at the first exception.
+    /// Waits for the worker, shows its progress, and stops it at the first exception.
     fn wait(&self, call: &Call) -> PyResult<()> {
         let (mut shown, mut outcome) = (0, Ok(()));
         loop {

@@ -1,8 +1,8 @@
-//! Pools of threads, each used in the process that made it.
+//! Pools of threads. Each pool is used in the process that created it only.
 //!
 //! After `fork` the child has the memory of its parent's pools but none of their threads: work for such a pool never
 //! starts. Rayon's global pool belongs to the process that loaded this module ([`note_process`]). Any other process is
-//! a child of it, and makes pools of its own when they are first needed.
+//! a child of that process, and creates pools of its own when it first needs them.
 //!
 //! ```text
 //!                    | first process          | a child
@@ -12,9 +12,9 @@
 //!   other work       | rayon's global pool    | the calling thread alone ([`settle`])
 //! ```
 //!
-//! Pools belong to a process id, which each call that may divide work compares. Other work checks a flag that Python
-//! sets in a child ([`note_fork`]). Only threads that hold the interpreter lock the list of pools. Python forks while
-//! it holds the interpreter, so a child never finds the list locked.
+//! Pools belong to a process id. Each call that may divide work compares it with the current one. Other work checks a
+//! flag that Python sets in a child ([`note_fork`]). Only threads that hold the interpreter lock the list of pools.
+//! Python forks while it holds the interpreter, so a child never finds the list locked.
 
 use core::cell::Cell;
 use core::sync::atomic::{AtomicBool, Ordering};
@@ -36,13 +36,13 @@ static IS_CHILD: AtomicBool = AtomicBool::new(false);
 static POOLS: Mutex<Pools> = Mutex::new(Pools { process: 0, all: None, one: None });
 
 thread_local! {
-    /// The child process in which this thread is a pool of one thread; 0 if there is none.
+    /// The id of the child process in which this thread became a pool of one thread; 0 if it is no such pool.
     static SETTLED: Cell<u32> = const { Cell::new(0) };
 }
 
 /// Pools that are used often.
 struct Pools {
-    /// The process that owns them.
+    /// The id of the process that owns them.
     process: u32,
     /// A pool with a thread for each core.
     all: Option<Arc<ThreadPool>>,
@@ -57,7 +57,7 @@ pub(crate) enum Crew {
 }
 
 impl Crew {
-    /// Returns `threads` threads; one for each core if that is `None`.
+    /// Returns `threads` threads; one for each core if `threads` is `None`.
     ///
     /// # Errors
     /// `RuntimeError` if the system cannot start threads.
@@ -73,7 +73,7 @@ impl Crew {
         Ok(Self::Pool(pool.map_err(refused)?))
     }
 
-    /// Runs `work`, whose parts these threads share.
+    /// Runs `work`, which these threads may divide.
     pub(crate) fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         match self {
             Self::Global => work(),
@@ -101,8 +101,9 @@ fn note_fork() {
     IS_CHILD.store(true, Ordering::Relaxed);
 }
 
-/// Prevents work in the calling thread, outside of a [`Crew`], from being divided among threads that a child does not
-/// have: there the calling thread becomes a pool of itself alone, once. That costs a few kilobytes for each thread.
+/// Prepares the calling thread for work outside of a [`Crew`]. In a child such work would be divided among threads
+/// that do not exist, so the calling thread becomes a pool of one thread, once. This costs a few kilobytes for each
+/// thread.
 ///
 /// # Errors
 /// `RuntimeError` if the system cannot create a pool.
@@ -114,7 +115,7 @@ pub(crate) fn settle() -> PyResult<()> {
     if SETTLED.get() == process {
         return Ok(());
     }
-    // A thread that was such a pool in the parent stays one: the pool has no other thread.
+    // A thread that became such a pool in the parent is still one, because the pool has no other thread.
     if rayon::current_thread_index().is_none() {
         let own = ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
         own.map_err(|error| PyRuntimeError::new_err(format!("no pool: {error}")))?;
@@ -127,7 +128,7 @@ fn is_first(process: u32) -> bool {
     *FIRST.get_or_init(|| process) == process
 }
 
-/// Returns the pool of this process in a slot of the list, which is created if it is missing.
+/// Returns the pool in the slot that `place` selects, for the current process; it is created if it is missing.
 fn kept(
     process: u32,
     count: usize,
@@ -136,12 +137,12 @@ fn kept(
     let mut pools = match POOLS.try_lock() {
         Ok(pools) => pools,
         Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
-        // A fork that bypassed Python left it locked for ever.
+        // A fork that bypassed Python left the list locked for ever.
         Err(TryLockError::WouldBlock) => return make(count),
     };
     if pools.process != process {
         let stale = core::mem::replace(&mut *pools, Pools { process, all: None, one: None });
-        // Dropping a pool waits for its threads, which are the parent's.
+        // Dropping a pool waits for its threads, which exist in the parent only.
         core::mem::forget(stale);
     }
     let place = place(&mut pools);

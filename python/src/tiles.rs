@@ -1,4 +1,4 @@
-//! Tiles of large scenes: plain numbers in Python, a value of the library during a call.
+//! Tiles of large scenes: arrays in Python, which become tiles of the library during a call.
 
 use impinge::batch::{TileCut, Tiles, boxes as boxes_of, pairs_in_tile as pairs_of, tiles};
 use impinge::bounding_volume::Aabb;
@@ -30,8 +30,9 @@ type Object<'py> = Bound<'py, PyAny>;
 
 /// The bounding box of each object, enlarged by the rounding errors of pairs: the input of `tiles` and `Tiles.meeting`.
 ///
-/// shapes, poses: as of `distance`. Returns (n, 2, D), the lower and the upper corner in the world frame, of the dtype
-/// of the shapes; NaN for an object without extent (a composite without parts), infinite where it is unbounded.
+/// shapes, poses: as in `distance`. Returns (n, 2, D), the lower and the upper corner in the world frame, with the
+/// dtype of the shapes; NaN for an object without extent (a composite without parts), infinite where the object is
+/// unbounded.
 ///
 /// >>> import impinge
 /// >>> impinge.boxes(impinge.Ball(1), impinge.Poses([[0, 0, 0], [5, 0, 0]])).round(6).tolist()[1]
@@ -51,11 +52,11 @@ fn boxes<'py>(
 
 /// The pairs of a tile whose distance is at most the clearance of the tiles, as an ascending array (m, 2) of uint64.
 ///
-/// shapes, poses: as of `distance`, of the objects that `Tiles.meeting` assigns to the tile, in any order. ids: (n,)
-/// integers of 0 or more, one for each object, all different. tiles: a `Tiles`. tile: its number.
+/// shapes, poses: as in `distance`, for the objects that `Tiles.meeting` assigns to the tile, in any order. ids: (n,)
+/// integers of 0 or more, one for each object, all different. tiles: a `Tiles`. tile: its index.
 ///
 /// Each row has the lower id first. All tiles together have each pair once, and the same pairs as `pairs_within` for
-/// all objects, whatever the tiles. `ValueError` and `TypeError` name the argument, the row and the value.
+/// all objects, for any tiles. `ValueError` and `TypeError` name the argument, the row and the value.
 ///
 /// >>> import impinge
 /// >>> ball, poses = impinge.Ball(1), impinge.Poses([[0, 0, 0], [2.5, 0, 0], [6, 0, 0], [8.5, 0, 0]])
@@ -79,7 +80,7 @@ fn pairs_in_tile<'py>(
     run_in(kind, AskTile { side, ids, tiles, tile, call: Call::new(threads, progress), kind })
 }
 
-/// Returns the axes and positions of the cuts of `number` tiles; `boxes` is an array (n, 2, D) of the kind in C order.
+/// Returns the axes and positions of the cuts of `number` tiles; `boxes` is an array (n, 2, D) in C order.
 #[pyfunction]
 fn tile_cuts<'py>(
     boxes: &Object<'py>,
@@ -97,7 +98,7 @@ fn tile_bounds<'py>(py: Python<'py>, tiles: GivenTiles<'py>) -> PyResult<Object<
     run_in(tiles.kind()?, Bounds { py, tiles })
 }
 
-/// Returns the starts of the tiles of each box, and the tiles; `boxes` as of `tile_cuts`.
+/// Returns the starts of the tiles of each box, and the tiles; `boxes` is an array (n, 2, D) in C order.
 #[pyfunction]
 fn tiles_meeting<'py>(
     tiles: GivenTiles<'py>,
@@ -106,13 +107,13 @@ fn tiles_meeting<'py>(
     run_in(tiles.kind()?, Meeting { tiles, boxes })
 }
 
-/// Returns the tile of each point.
+/// Returns the tile that contains each point.
 #[pyfunction]
 fn tile_owners<'py>(tiles: GivenTiles<'py>, points: &Object<'py>) -> PyResult<Object<'py>> {
     run_in(tiles.kind()?, Owners { tiles, points })
 }
 
-/// The fields of a `Tiles` of Python.
+/// The fields of the Python class `Tiles`.
 #[derive(FromPyObject)]
 struct GivenTiles<'py> {
     axes: PyReadonlyArray1<'py, u32>,
@@ -140,7 +141,7 @@ impl GivenTiles<'_> {
     }
 }
 
-/// Converts boxes to the form of the library: a row of NaN is no box.
+/// Converts boxes to those of the library; a row of NaN becomes `None`.
 fn read_boxes<N: Numeric<D>, const D: usize>(
     given: &Bound<'_, PyAny>,
 ) -> PyResult<Vec<Option<Aabb<N, D>>>> {

@@ -15,7 +15,7 @@ use crate::space::{Kind, Numeric, Task};
 use crate::supervise::each;
 use crate::vectors::Vectors;
 
-/// A scalar and a dimension that support rotating bodies.
+/// A scalar and a dimension in which bodies may rotate.
 pub(crate) trait Turning<const D: usize>: Space<D> {
     /// The number of components of an angular velocity.
     const ANGULAR: usize;
@@ -53,7 +53,7 @@ impl<N: Real> Turning<3> for N {
     }
 }
 
-/// Angular velocities as an argument: (n, 1) in 2D, (n, 3) in 3D; a missing one is zero.
+/// Angular velocities as an argument: (n, 1) in 2D, (n, 3) in 3D; `None` is zero.
 struct Angular<'py, N: Numeric<D>, const D: usize> {
     rows: Option<PyReadonlyArrayDyn<'py, N>>,
     is_lone: bool,
@@ -78,7 +78,7 @@ impl<'py, N: Numeric<D>, const D: usize> Angular<'py, N, D> {
     }
 }
 
-/// One body of each pair.
+/// The first or the second body of each pair.
 struct Bodies<'a, N: Numeric<D>, const D: usize> {
     shapes: Vec<&'a ShapeHandle<N, D>>,
     positions: Vec<N::Isometry>,
@@ -87,7 +87,8 @@ struct Bodies<'a, N: Numeric<D>, const D: usize> {
 }
 
 impl<N: Numeric<D>, const D: usize> Bodies<'_, N, D> {
-    /// Returns the names and lengths of arguments that may have one element for all.
+    /// Returns the names and lengths of the arguments; an argument of length one is used for all
+    /// elements.
     fn lengths(&self, [poses, linear, angular]: [&'static str; 3]) -> [(&'static str, usize); 3] {
         let turns = self.angular.len() / <N as Turning<D>>::ANGULAR;
         [(poses, self.positions.len()), (linear, self.linear.len()), (angular, turns)]
@@ -157,7 +158,8 @@ impl<'py> Task for AskTurning<'_, 'py> {
     }
 }
 
-/// Returns time, normal, points and whether the time is that of an impact.
+/// Returns the columns of `Impact`: time, normal, both points, and whether the time is that of an
+/// impact.
 fn columns<N: Numeric<D>, const D: usize>(
     found: &[Option<Impact<N, D>>],
     extent: Extent,

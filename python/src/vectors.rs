@@ -7,14 +7,14 @@ use crate::space::Numeric;
 
 /// The numbers of an array in C order.
 pub(crate) enum Numbers<'py, N: Element> {
-    /// The numbers of a single vector or matrix. A copy is faster than a lock on the array.
+    /// The numbers of a single vector or matrix. Copying them is faster than locking the array.
     One(Vec<N>),
-    /// The numbers of many, read without a copy.
+    /// The numbers of many vectors or matrices, read without a copy.
     Many(PyReadonlyArrayDyn<'py, N>),
 }
 
 impl<'py, N: Element> Numbers<'py, N> {
-    /// Reads an array, which is one vector or matrix if it has `axes` axes.
+    /// Reads an array. It is a single vector or matrix if it has `axes` axes.
     pub(crate) fn of(array: &Bound<'py, PyArrayDyn<N>>, axes: usize) -> PyResult<Self> {
         Ok(if array.ndim() == axes {
             Self::One(array.to_vec()?)
@@ -23,7 +23,7 @@ impl<'py, N: Element> Numbers<'py, N> {
         })
     }
 
-    /// Whether there is one vector or matrix, not an array of them.
+    /// Whether the array is a single vector or matrix.
     pub(crate) const fn is_lone(&self) -> bool {
         matches!(self, Self::One(_))
     }
@@ -41,7 +41,7 @@ impl<'py, N: Element> Numbers<'py, N> {
 pub(crate) struct Vectors<'py, N: Numeric<D>, const D: usize>(Numbers<'py, N>);
 
 impl<'py, N: Numeric<D>, const D: usize> Vectors<'py, N, D> {
-    /// Reads an argument; an argument other than an array of the right type and layout is converted by
+    /// Reads an argument. Anything but an array of the right type and layout is converted by
     /// `impinge._poses.vectors`.
     pub(crate) fn of(given: &Bound<'py, PyAny>, name: &'static str) -> PyResult<Self> {
         if let Ok(array) = given.cast::<PyArrayDyn<N>>()
@@ -57,7 +57,7 @@ impl<'py, N: Numeric<D>, const D: usize> Vectors<'py, N, D> {
         Ok(Self(Numbers::of(array.cast::<PyArrayDyn<N>>()?, 1)?))
     }
 
-    /// Whether there is one vector, not an array of vectors.
+    /// Whether the argument is a single vector, not an array of vectors.
     pub(crate) const fn is_lone(&self) -> bool {
         self.0.is_lone()
     }

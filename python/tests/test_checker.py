@@ -1,4 +1,4 @@
-"""The configuration checker against single calls on its own poses."""
+"""The configuration checker against single queries at the poses that it computes."""
 
 import impinge
 import numpy as np
@@ -9,7 +9,7 @@ NONE = [impinge.NO_BODY, impinge.NO_BODY]
 
 
 def arm(dim, dtype):
-    """Three joints, bodies of three kinds, and three obstacles."""
+    """A checker with three joints, three kinds of bodies and three obstacles."""
     axis = [0, 0, 1] if dim == 3 else None
     ahead = np.eye(dim + 1)
     ahead[0, dim] = 1
@@ -71,7 +71,7 @@ def test_answers_are_those_of_single_calls(dim, dtype):
 
 
 def test_meshes_answer_as_single_calls_however_often_they_are_asked():
-    # The corners of a box as a surface that is open above, so that its hull is nearer than it.
+    # A box that is open above: its convex hull is nearer than the surface.
     corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
     faces = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4]]
     cup, ball = impinge.TriMesh(corners, faces), impinge.Ball(0.2)

@@ -1,4 +1,4 @@
-"""Errors name the argument, the row and the value; nothing is changed by them."""
+"""Errors name the argument, the row and the value, and change nothing."""
 
 import threading
 import time
@@ -60,7 +60,7 @@ def test_a_matrix_that_mirrors_is_named():
 
 
 def wrong_matrices(dim):
-    """Not finite, a wrong last row, too long, not perpendicular, mirrored."""
+    """Matrices that are not poses: not finite, wrong last row, scaled, sheared, mirrored."""
     matrices = np.tile(np.eye(dim + 1), (6, 1, 1))
     matrices[0, 1, dim] = np.nan
     matrices[1, 0, 0] = np.inf
@@ -126,7 +126,7 @@ def test_progress_counts_all_elements():
 
 
 def slow_batch(progress=None, count=4000):
-    """Some hundredths of a second for each pose: a hull in a surface."""
+    """A batch that takes some hundredths of a second for each pose: a convex hull in a surface."""
     grid = np.random.default_rng(1).uniform(0, 1, (60, 60))
     field = impinge.HeightField(grid, [10, 1, 10])
     poses = np.tile(np.eye(4), (count, 1, 1))

@@ -1,4 +1,4 @@
-"""Each example and each block of the texts runs; the examples check their results."""
+"""Runs all examples, which check their results, and the programs in the README and the guide."""
 
 import re
 import runpy
@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parent.parent
-# In the repository the guide is beside the package; where the wheel is tested it lies beside the tests.
+# In the repository the guide is beside the package. Tests of a wheel find it beside the tests.
 PAGES = ["python.md", "many-machines.md"]
 PLACES = [ROOT / "README.md", *(folder / page for page in PAGES for folder in (ROOT, ROOT.parent / "guide"))]
 TEXTS = [path for path in PLACES if path.exists()]
@@ -24,7 +24,7 @@ def test_examples(path, capsys):
 
 @pytest.mark.parametrize("path", TEXTS, ids=lambda path: path.stem)
 def test_texts(path):
-    """The blocks of a page are one program."""
+    """The blocks of a page form one program."""
     blocks = re.findall(r"^```python\n(.*?)^```", path.read_text(), re.MULTILINE | re.DOTALL)
     assert blocks
     exec(compile("\n".join(blocks), str(path), "exec"), {"__name__": "__main__"})

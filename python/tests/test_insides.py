@@ -1,4 +1,4 @@
-"""Closed meshes and lines are solids in questions about points; open ones are refused unless they are called surfaces."""
+"""Closed meshes and polylines are solids in queries about points; open ones are errors unless `surface=True`."""
 
 import impinge
 import numpy as np
@@ -16,7 +16,7 @@ DTYPES = ["float32", "float64"]
 
 
 def solid_and_surface(dim, dtype):
-    """A cuboid, and the same as a closed surface or line."""
+    """A cuboid, and its surface as a closed mesh or polyline."""
     cuboid = impinge.Cuboid([1] * dim, dtype=dtype)
     if dim == 3:
         return cuboid, impinge.TriMesh(CORNERS, FACES, dtype=dtype)
@@ -32,7 +32,7 @@ def open_shapes(dtype):
 
 
 def on_lattice(dim, dtype):
-    """Points inside, outside and on the boundary, without those that are equally near to several faces."""
+    """Lattice points inside, outside and on the boundary."""
     steps = np.linspace(-1.5, 1.5, 13)
     return np.stack(np.meshgrid(*[steps] * dim), axis=-1).reshape(-1, dim).astype(dtype)
 
@@ -47,7 +47,7 @@ def test_a_closed_surface_answers_as_the_solid(dim, dtype):
     distance = impinge.signed_distance(surface, None, points)
     np.testing.assert_allclose(distance, impinge.signed_distance(cuboid, None, points), atol=1e-6)
     assert distance.dtype == dtype and (distance.min(), impinge.signed_distance(surface, None, [0.0] * dim)) == (-1, -1)
-    # One point alone has a scalar.
+    # The result for a single point is a scalar.
     assert impinge.contains(surface, None, [0.0] * dim) is True and impinge.contains(surface, None, [9.0] * dim) is False
 
 
@@ -146,7 +146,7 @@ def test_worlds_refuse_open_surfaces_that_are_asked():
     assert world.containing([[0, 0, 0], [0.5, -9, 0.25]], surface=True).handle.tolist() == [closed[0], terrain[0]]
     for others in (impinge.Filter(exclude=terrain), impinge.Filter(blacklist=[3])):
         assert world.containing([0, 0, 0], filter=others).handle.tolist() == [closed[0]]
-    # Vertices may open and close a mesh.
+    # New vertices may open or close a mesh.
     bent = CORNERS.copy()
     world.remove(terrain)
     bent[7] *= 2

@@ -1,4 +1,4 @@
-"""The manager of many meshes: after any changes it answers as all pairs asked one by one do."""
+"""The manager of many meshes returns the results of single queries of all pairs, after any changes."""
 
 import copy
 import pickle
@@ -13,7 +13,7 @@ from impinge.trimesh import CollisionManager, scene_to_collision  # noqa: E402
 
 
 def bowl():
-    """Not convex, without a lid."""
+    """A mesh that is neither convex nor closed."""
     ball = trimesh.creation.icosphere(1, 0.5)
     return trimesh.Trimesh(ball.vertices, ball.faces[ball.triangles_center[:, 2] < 0.3])
 
@@ -29,7 +29,7 @@ def somewhere(rng, size):
 
 
 class Naive:
-    """Shapes and matrices by name, and every pair one by one."""
+    """Shapes and matrices by name; each query tests every pair."""
 
     def __init__(self):
         self.placed = {}
@@ -53,12 +53,12 @@ class Naive:
         }
 
     def distance(self, pairs):
-        """The least distance; zero if any pair touches."""
+        """The smallest distance; zero if any pair touches."""
         return min((impinge.distance(*one, *other) for one, other in pairs), default=np.inf)
 
 
 def change(rng, manager, naive, kinds, count, size):
-    """Adds, replaces, moves or removes."""
+    """Adds, replaces, moves or removes meshes."""
     for _ in range(count):
         name, action = f"m{rng.integers(40)}", rng.random()
         known = name in naive.placed
@@ -74,7 +74,7 @@ def change(rng, manager, naive, kinds, count, size):
             naive.placed[name] = (naive.placed[name][0], matrix)
 
 
-# Few and many changes between questions, dense and sparse: what is kept, and what is found anew.
+# Few and many changes between queries, in dense and sparse scenes: results from the cache, and results computed anew.
 @pytest.mark.parametrize(("count", "size"), [(1, 1.5), (3, 3.0), (30, 2.0), (90, 4.0), (400, 3.0)])
 def test_any_changes(count, size):
     rng, kinds = np.random.default_rng(count), meshes()
@@ -102,7 +102,7 @@ def test_any_changes(count, size):
 
 @pytest.mark.parametrize("spacing", [1.01, 0.95])
 def test_a_grid_that_moves(spacing):
-    """More objects than changes that are remembered, all or one moved; free, and all touching their neighbours."""
+    """More objects than the log of changes holds; all move, or one; all are apart, or all touch their neighbours."""
     side = 7
     grid = np.argwhere(np.ones((side,) * 3)) * spacing
     manager, beside = CollisionManager(), CollisionManager()
@@ -116,7 +116,7 @@ def test_a_grid_that_moves(spacing):
     for step in range(4):
         for number, place in enumerate(grid):
             if step % 2 == 0 or number == 100:
-                # All by the same: what touches stays.
+                # All objects move by the same vector, so the touching pairs stay.
                 matrix = trimesh.transformations.translation_matrix(place + [0.25 * (step // 2), 0, 0])
                 manager.set_transform(f"{number:03}", matrix)
         found, names = manager.in_collision_internal(return_names=True)
@@ -176,7 +176,7 @@ def test_a_mesh_that_changes_after_it_was_added():
     assert manager.min_distance_single(mesh, away) == pytest.approx(1.0)
     mesh.apply_scale(2)
     assert manager.min_distance_single(mesh, away) == pytest.approx(0.5)
-    # What is pickled or copied with the mesh does no harm.
+    # Cached data that is pickled or copied with the mesh has no effect.
     for other in (copy.deepcopy(mesh), pickle.loads(pickle.dumps(mesh))):
         assert manager.min_distance_single(other, away) == pytest.approx(0.5)
 
@@ -212,7 +212,7 @@ def test_scales_of_nodes_are_baked_in(mesh):
             at = trimesh.transformations.translation_matrix(place)
             assert manager.min_distance_single(probe, at) == pytest.approx(expected.min_distance_single(probe, at), abs=1e-6)
         if name == "mirrored" and shapes[name].name == "TriMesh":
-            # Turned over, the triangles face outwards as before.
+            # The triangles of the reflected mesh are reversed, so that they face outwards as before.
             whole = trimesh.Trimesh(shapes[name].vertices, shapes[name].faces)
             assert np.sign(whole.volume) == np.sign(mesh.volume)
 

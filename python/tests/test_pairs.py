@@ -1,4 +1,4 @@
-"""Questions about pairs against numbers known by arithmetic, and against single questions to the bit."""
+"""Queries of pairs against values known by arithmetic; batches equal single queries to the bit."""
 
 import pickle
 
@@ -54,7 +54,7 @@ def columns(answer):
 
 
 def assert_row_is(batch, row, alone):
-    """To the bit, signs of zeros too."""
+    """Checks equality to the bit, including the signs of zeros."""
     for many, one in zip(columns(batch), columns(alone), strict=True):
         assert many[row].tobytes() == np.asarray(one, many.dtype).tobytes(), (many[row], one)
 
@@ -77,7 +77,7 @@ def assert_row_is(batch, row, alone):
 def test_a_batch_has_the_bits_of_single_questions(ask, dim, dtype):
     kinds = [make(dtype) for make in (SHAPES_2D if dim == 2 else SHAPES_3D)]
     poses1, poses2 = random_poses(9, dim, dtype, 1), random_poses(9, dim, dtype, 2)
-    # A quarter turn whose zeros have signs.
+    # A rotation by a quarter turn, with negative zeros.
     poses1[0] *= 0
     poses1[0, [0, 1], [1, 0]] = -1, 1
     poses1[0, range(2, dim + 1), range(2, dim + 1)] = 1

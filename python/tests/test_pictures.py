@@ -1,4 +1,4 @@
-"""Pictures and recordings: what notebooks show, and what files hold."""
+"""Pictures for notebooks, and recordings as files."""
 
 import base64
 import re
@@ -13,7 +13,7 @@ HAS_PAGE = _native.recording_page(impinge.Scene(impinge.Ball(1), None).to_bytes(
 
 
 def pixels(png):
-    """The samples of a PNG of 8 bits that is not interlaced, without undoing the filters: enough to compare."""
+    """The samples of a PNG with 8 bits and no interlacing. The filters are not undone: the bytes are compared only."""
     assert png[:8] == b"\x89PNG\r\n\x1a\n"
     width, height = (int.from_bytes(png[at : at + 4], "big") for at in (16, 20))
     place, data = 8, b""

@@ -1,4 +1,4 @@
-"""Processes made by fork, forkserver and spawn answer as their parent, whatever it asked before."""
+"""Processes started by fork, forkserver and spawn return the results of their parent, whatever it computed before."""
 
 import multiprocessing
 import threading
@@ -7,7 +7,7 @@ import impinge
 import numpy as np
 import pytest
 
-# Longer than any answer takes on a busy machine: a child that hangs hangs for ever.
+# Seconds, longer than any query on a busy machine: a child that waits for missing threads never ends.
 PATIENCE = 120
 
 METHODS = [
@@ -17,7 +17,7 @@ METHODS = [
 
 
 def grid(count):
-    """A mesh of more triangles than one thread sorts alone."""
+    """A mesh with so many triangles that several threads sort them."""
     rows, columns = np.divmod(np.arange(count * count), count)
     first = np.arange(count * count).reshape(count, count)[:-1, :-1].ravel()
     cells = np.stack([first, first + 1, first + count], axis=1), np.stack([first + 1, first + count + 1, first + count], axis=1)
@@ -25,7 +25,7 @@ def grid(count):
 
 
 def many():
-    """What is shared out among threads: batches, worlds, searches of worlds that are not updated, meshes, checkers, tiles."""
+    """Work that is divided among threads: batches, worlds, queries before an update, meshes, checkers, tiles."""
     ball, poses = impinge.Ball(0.25), np.tile(np.eye(4), (5000, 1, 1))
     poses[:, :3, 3] = np.random.default_rng(3).uniform(-20, 20, (5000, 3))
     world = impinge.World()
@@ -62,7 +62,7 @@ def answer(ask, queue):
 
 
 def with_a_child(ask, queue):
-    """A child of a child."""
+    """Asks in a child of this child."""
     ask()
     answer_of_child = in_child(multiprocessing.get_context("fork"), ask)
     queue.put(answer_of_child)
@@ -85,7 +85,7 @@ def in_child(context, ask, target=answer):
 def test_a_child_answers_as_its_parent(method, ask):
     expected = [float(number) for number in ask()]
     assert in_child(multiprocessing.get_context(method), ask) == expected
-    # The parent goes on.
+    # The parent still returns the same results.
     assert [float(number) for number in ask()] == expected
 
 

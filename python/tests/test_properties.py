@@ -1,4 +1,4 @@
-"""What holds of any arrays: batches have the bits of single questions, sides can be exchanged, and nothing crashes."""
+"""Properties for random arrays: batches equal single queries to the bit, sides can be exchanged, nothing crashes."""
 
 import pickle
 
@@ -42,7 +42,7 @@ def convex(draw, dim, dtype):
 
 @st.composite
 def composite(draw, dim, dtype):
-    """A shape of parts."""
+    """A random composite shape."""
     size = draw(LENGTHS)
     points = np.array([[-1, 0, 0], [1, 0, 0], [0, 1, 0], [0, 2, 1]])[:, :dim] * size
     heights = np.array([0, 1, 0.5]) if dim == 2 else np.array([[0, 1, 0], [0.5, 0, 1]])
@@ -131,7 +131,7 @@ BALL, BOX = impinge.Ball(1), impinge.Cuboid([1, 2, 3])
 
 
 def refuse_or_answer(call):
-    """Nothing but ValueError and TypeError, with a text."""
+    """Allows no exceptions but ValueError and TypeError with a message."""
     try:
         return call()
     except (ValueError, TypeError) as error:
@@ -229,7 +229,8 @@ def test_any_layout_of_memory_is_read(dtype):
 @RELAXED
 @given(st.data())
 def test_worlds_are_a_naive_model(data):
-    """Bulk changes in any order; who touches whom is what every pair says alone, and events are the differences."""
+    """After bulk changes in any order, the touching pairs are those of single queries, and events are the
+    differences."""
     dim, dtype = data.draw(st.sampled_from([2, 3])), data.draw(DTYPES)
     world, model, before = impinge.World(dim=dim, dtype=dtype), {}, set()
     ball = impinge.Ball(0.75, dim=dim, dtype=dtype)

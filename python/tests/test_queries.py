@@ -1,4 +1,4 @@
-"""Every query of worlds: numbers known by arithmetic, filters, and the same answers in batches and alone."""
+"""Every query of worlds: values known by arithmetic, filters, and equal results of batches and single queries."""
 
 import _thread
 import threading
@@ -85,7 +85,7 @@ def test_filters_leave_out():
 
 
 def test_batches_have_the_answers_of_single_questions():
-    """On any number of threads, to the bit, with a bar that hears of every element."""
+    """Equal to the bit for any number of threads; the progress bar counts every element."""
     rng = np.random.default_rng(1)
     world = impinge.World()
     places = impinge.Poses(rng.uniform(-9, 9, (200, 3)), rng.normal(size=(200, 4)), order="xyzw").matrices
@@ -172,7 +172,7 @@ def test_meshes_bend(dtype):
 
 
 def test_turning_bodies_meet():
-    """A bar turns by a quarter for each unit of time; what it meets is a sixth of a turn ahead, by the radius nearer."""
+    """The bar rotates by 90 degrees per unit of time. It touches the pin, radius 0.5 at distance 1, after 60 degrees."""
     bar, pin = impinge.Cuboid([2, 0]), impinge.Ball(0.5, dim=2)
     found = impinge.impact(
         bar, None, [0, 0], pin, impinge.Poses([[0, 1], [0, 9]]), [0, 0], 1.0, angular_velocity1=[np.pi / 2, np.pi / 2]
@@ -206,7 +206,7 @@ def test_height_fields_have_holes_and_diagonals():
     parts = impinge.HeightField(heights, [4, 1, 4], holes=one)
     beside = impinge.cast_rays(parts, None, [[-1.9, 5, -0.1], [-0.1, 5, -1.9]], down).time
     assert sorted(beside.tolist()) == [5, np.inf], "one triangle of two"
-    # A ridge or a valley over the cell, by the diagonal.
+    # The diagonal of a cell decides whether it is a ridge or a valley.
     saddle = [[0, 1], [1, 0]]
     middle = [
         impinge.cast_rays(impinge.HeightField(saddle, [2, 1, 2], backward=turned), None, [0, 5, 0], down).time

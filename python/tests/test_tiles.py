@@ -1,4 +1,4 @@
-"""Tiles, and the recipes for many processes on a local cluster of two."""
+"""Tiles, and the recipes for Dask on a local cluster of two processes."""
 
 import os
 import pickle
@@ -11,7 +11,7 @@ KINDS = [(dim, dtype) for dim in (2, 3) for dtype in ("float32", "float64")]
 
 
 def heap(count, dim=3, dtype="float64", seed=3):
-    """Balls, boxes and capsules, three clusters of very different density, a huge box and a half-space among them."""
+    """Balls, boxes and capsules in clusters of very different density, with a huge box and a half-space."""
     rng = np.random.default_rng(seed)
     up = np.eye(dim)[1]
     shapes = [
@@ -31,7 +31,7 @@ def heap(count, dim=3, dtype="float64", seed=3):
 
 
 def in_one(shapes, picks, poses, ids, clearance):
-    """The pairs of ids that one call finds."""
+    """The pairs of ids that a single call finds."""
     pairs = np.sort(ids[impinge.pairs_within(impinge.Picked(shapes, picks), poses, distance=clearance)], axis=1)
     return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
 
@@ -101,7 +101,7 @@ def client():
 
 @pytest.fixture(scope="module")
 def source(tmp_path_factory):
-    """Two files with several row groups each."""
+    """Two files, each with several row groups."""
     import pyarrow.parquet as pq
     from impinge.dask import objects_table
 
@@ -172,7 +172,7 @@ def test_a_killed_worker_changes_nothing(client, source, tmp_path, monkeypatch):
     for name in ("_share_out", "_join_tile", "_merge"):
         task, mark = getattr(impinge.dask, name), tmp_path / f"{name}.mark"
         client.wait_for_workers(2)
-        # One of the two, which stops in the middle of its task, after it wrote and before it says so.
+        # One of the two workers dies in the middle of a task: after it wrote its files, before it reports success.
         victim = sorted(client.run(os.getpid).values())[0]
 
         def dying(*given, task=task, mark=mark, victim=victim):

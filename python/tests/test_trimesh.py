@@ -1,4 +1,4 @@
-"""The manager of trimesh: answers known by arithmetic, and those of trimesh's own manager where FCL is installed."""
+"""The manager for trimesh: values known by arithmetic, and results of the manager of trimesh where FCL is installed."""
 
 import numpy as np
 import pytest
@@ -94,10 +94,10 @@ def test_random_meshes_as_trimesh_has_them():
     for place in rng.uniform(-5, 5, (20, 3)):
         expected, mine = (one.min_distance_single(probe, at(*place)) for one in (theirs, ours))
         if expected > 0:
-            # FCL's distances of triangles are right to some 1e-7.
+            # FCL's distances of triangles have errors of some 1e-7.
             assert mine == pytest.approx(expected, abs=1e-6)
         else:
-            # FCL has the depth of one of the meshes that overlap, impinge that of the deepest.
+            # FCL returns the depth of any overlapping mesh, impinge the depth of the deepest.
             assert mine <= expected + 1e-6
 
 

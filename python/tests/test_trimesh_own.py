@@ -1,9 +1,9 @@
-"""trimesh's own tests of its manager, fetched in trimesh's source archive, with impinge's manager in its place.
+"""The tests of trimesh for its manager, from the source archive of trimesh, run with the manager of impinge.
 
-The archive has the tests, but neither their helper module nor the models: a unit cube stands for the first model, and what
-needs another one is skipped. Three assertions are about the triangles that FCL happens to report of two cubes at one
-place, and depend on their order in the file (trimesh's own manager fails them with another unit cube); they are
-replaced.
+The archive has the tests, but neither their helper module nor the models. A unit cube replaces the first model; tests that
+need another model are skipped. Three assertions are about the triangles that FCL happens to report for two cubes at the
+same place. They depend on the order of the triangles in the file (trimesh's own manager fails them with another unit
+cube), and are replaced.
 """
 
 import logging
@@ -28,7 +28,7 @@ OF_FCL = [
 
 
 def fetched(folder):
-    """The text of the tests of the installed version."""
+    """The source of the tests of the installed version."""
     wanted = ["--no-deps", "--no-binary", "trimesh", f"trimesh=={trimesh.__version__}"]
     command = [sys.executable, "-m", "pip", "download", "--quiet", "--dest", str(folder), *wanted]
     try:
@@ -60,7 +60,7 @@ def test_the_own_tests_of_trimesh(tmp_path, monkeypatch):
     helper.log, helper.get_mesh = logging.getLogger("trimesh"), model
     helper.random = np.random.default_rng(0).random
     monkeypatch.setitem(sys.modules, "generic", helper)
-    # The tests do nothing where FCL is missing, which impinge does not need.
+    # The tests do nothing if `fcl` is missing, which impinge does not need.
     monkeypatch.setitem(sys.modules, "fcl", types.ModuleType("fcl"))
     monkeypatch.setattr(trimesh.collision, "CollisionManager", CollisionManager)
     monkeypatch.setattr(trimesh.collision, "scene_to_collision", scene_to_collision)

@@ -1,4 +1,4 @@
-"""No public answer is typed `Any`, which turns type checks off; `typed_answers.py` has the types of calls."""
+"""No public result has the type `Any`, which disables type checks; `typed_answers.py` has the types of calls."""
 
 import ast
 import re
@@ -8,22 +8,22 @@ import impinge
 import pytest
 
 PACKAGE = Path(impinge.__file__).parent
-# Modules whose names without an underscore are public, as long as they have no `__all__`.
+# Modules whose public names are those without an underscore, because they have no `__all__`.
 OPEN = ["dask", "urdf"]
-# How NumPy writes a scalar type of unknown precision.
+# The scalar types of NumPy with unknown precision.
 PRECISION = re.compile(r"\b(floating|integer)\[Any\]")
-# Public names whose type may contain `Any`, each with the reason.
+# Public names whose type may contain `Any`, with the reason.
 ALLOWED: dict[str, str] = {}
 
 
 def trees():
-    """The modules by name, as type checkers read them: a stub goes before its source."""
+    """The modules by name, as type checkers read them: a stub replaces its source."""
     files = [*sorted(PACKAGE.glob("*.py")), *sorted(PACKAGE.glob("*.pyi"))]
     return {path.stem: ast.parse(path.read_text()) for path in files}
 
 
 def names(tree):
-    """What a module defines."""
+    """The names that a module defines, with their nodes."""
     for node in tree.body:
         for inner in [*node.body, *node.orelse] if isinstance(node, ast.If) else [node]:
             if isinstance(inner, ast.FunctionDef | ast.ClassDef):
@@ -40,12 +40,12 @@ def exported(tree):
 
 
 def is_any(text, tainted):
-    """A type that is `Any`, or made of it."""
+    """Whether a type is `Any`, or contains it."""
     return any(re.search(rf"\b{name}\b", PRECISION.sub("", text)) for name in ["Any", *tainted])
 
 
 def aliases(modules):
-    """The names of types that are made of `Any`."""
+    """The names of type aliases that contain `Any`."""
     tainted = set()
     while True:
         found = {
@@ -62,7 +62,7 @@ def aliases(modules):
 
 
 def answers(name, node, classes):
-    """The functions, fields and attributes below a public name, with their types."""
+    """The functions, fields and attributes of a public name, with their types."""
     if isinstance(node, ast.FunctionDef):
         yield name, "" if node.returns is None else ast.unparse(node.returns)
         for inner in ast.walk(node):
@@ -80,7 +80,7 @@ def answers(name, node, classes):
 
 
 def definition(modules, module, name):
-    """The definition of a name that a module has or imports."""
+    """The definition of a name that a module defines or imports."""
     own = dict(names(modules[module]))
     if name in own:
         return own[name]
@@ -130,7 +130,7 @@ def test_what_is_no_any(text):
 
 
 def test_the_stub_has_the_fields_of_the_classes():
-    """`_results.py` and its stub say the same."""
+    """`_results.py` and its stub define the same fields."""
     stub = dict(names(trees()["_results"]))
     classes = [kind for kind in vars(impinge).values() if getattr(kind, "__module__", "") == "impinge._results"]
     assert len(classes) == 9

@@ -1,4 +1,4 @@
-"""Robots: frames as yourdfpy has them, collisions known by arithmetic."""
+"""Robots: frames equal those of yourdfpy, collisions are known by arithmetic."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ trimesh = pytest.importorskip("trimesh")
 import impinge  # noqa: E402
 from impinge.urdf import Robot  # noqa: E402
 
-# An arm of three links of length one in the plane z = 0, a gripper that slides, and a finger that follows it.
+# An arm of three links of length one in the plane z = 0, a sliding gripper, and a finger whose joint mimics its joint.
 ARM = """<robot name="arm">
   <link name="base"><collision><geometry><sphere radius="0.1"/></geometry></collision></link>
   <link name="upper"><collision><origin xyz="0.5 0 0"/><geometry><box size="1 0.1 0.1"/></geometry></collision></link>
@@ -57,7 +57,7 @@ def test_self_collisions(path, meshes):
     straight, folded = [0, 0, 0], [0, np.pi, 0]
     assert robot.self_collides([straight, folded]).tolist() == [False, True]
     found = robot.self_distance([straight])
-    # The cylinder begins one length from the middle of the ball.
+    # The cylinder begins at distance 1 from the centre of the ball.
     np.testing.assert_allclose(found.distance, 0.9, atol=1e-9)
     assert (found.body1[0], found.body2[0]) == (0, 2)
     robot.allow("base", "lower")
@@ -72,7 +72,7 @@ def test_obstacles(path):
     straight, up = [0, 0, 0], [np.pi / 2, 0, 0]
     assert robot.collides([straight, up], shapes, poses).tolist() == [False, True]
     found = robot.distance([straight, up], shapes, poses)
-    # The ball of the base is higher than the box of the link above it.
+    # The ball of the base, radius 0.1, extends farther towards the obstacle than the box of the upper link.
     np.testing.assert_allclose(found.distance, [1.25 - 0.2 - 0.1, 0.0], atol=1e-9)
     assert (found.body1[0], found.body2[0]) == (0, 0)
 

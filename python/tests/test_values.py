@@ -1,4 +1,4 @@
-"""Shapes, worlds and checkers as values: equality, pickles, what is read back, and the forms of arguments."""
+"""Shapes, worlds and checkers as values: equality, pickles, reading back, and all types of arguments."""
 
 import pickle
 
@@ -85,7 +85,7 @@ def test_the_version():
 
 
 def unaligned(array):
-    """The same numbers one byte off."""
+    """A copy of the array whose address is off by one byte."""
     room = np.empty(array.nbytes + 1, dtype=np.uint8)
     moved = room[1:].view(array.dtype).reshape(array.shape)
     moved[...] = array
@@ -125,7 +125,7 @@ def test_a_pickled_world(dim, dtype):
     places = impinge.Poses(rng.uniform(-4, 4, (30, dim)))
     handles = world.add(ball, places, membership=[2], blacklist=[5])
     sensor = world.add(impinge.Cuboid([1] * dim, dtype=dtype), None, margin=0.5)
-    # Places that were left and taken again: handles have an age.
+    # Indices that are freed and reused: their handles differ.
     world.remove(handles[[3, 20, 7]])
     again = world.add(ball, None, membership=[5], prediction=0.25)
     world.remove(world.add([ball] * 3, None)[1:])
@@ -142,7 +142,7 @@ def test_a_pickled_world(dim, dtype):
         mine, theirs = (np.sort(getattr(one, found)(), order=["first", "second"]) for one in (world, copied))
         assert mine.tobytes() == theirs.tobytes()
     assert len(world.contacts()) > 3 and len(world.proximities()) > 0
-    # Both go on alike: the next object has the same handle, and stale handles stay stale.
+    # Both continue in the same way: the next object has the same handle, and stale handles stay stale.
     assert world.add(ball, None).tolist() == copied.add(ball, None).tolist()
     assert world.add([ball] * 4, None).tolist() == copied.add([ball] * 4, None).tolist()
     with pytest.raises(ValueError, match="no such object"):

@@ -1,4 +1,4 @@
-"""Worlds: many objects at once, events, queries, stale handles."""
+"""Worlds: bulk changes, events, queries and stale handles."""
 
 import impinge
 import numpy as np
@@ -111,7 +111,7 @@ def test_queries():
 
 
 def test_contacts_are_those_of_batches():
-    """A world of a hundred boxes has the depths that pairs have."""
+    """The contacts of a world of a hundred boxes have the depths of a batch of pairs."""
     rng = np.random.default_rng(3)
     poses = impinge.Poses(rng.uniform(-3, 3, (100, 3)), rng.normal(size=(100, 4)), order="xyzw").matrices
     box = impinge.Cuboid([0.5, 0.4, 0.3])

@@ -1,6 +1,6 @@
-"""A program for type checkers: the type of every answer, and the program checks that the answers are of that type.
+"""A program for type checkers: the type of every result. Running it checks that the results have these types.
 
-A call has one element, many, or an argument that may be either: an array of NumPy or `Poses`.
+A call has one element, many elements, or an argument that may have either: an array of NumPy or `Poses`.
 """
 
 from typing import Any, Literal, TypeVar
@@ -28,14 +28,14 @@ POSE: list[list[float]] = [[1, 0, 0, 3], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1
 
 
 def one(answer: T) -> T:
-    """The answer, of which all but the vectors are scalars."""
+    """Returns the result, in which vectors are arrays and all else is scalars."""
     for value in answer if isinstance(answer, tuple) else (answer,):
         assert isinstance(value, (bool, int, float)) or (isinstance(value, np.ndarray) and value.shape == (3,)), value
     return answer
 
 
 def many(answer: T) -> T:
-    """The answer, of which all is arrays with a row for each element."""
+    """Returns the result, in which everything is an array with a row for each element."""
     for value in answer if isinstance(answer, tuple) else (answer,):
         assert isinstance(value, np.ndarray) and value.shape in ((2,), (2, 3)), value
     return answer
@@ -66,7 +66,7 @@ def pairs(each: list[Shape], picked: Picked) -> None:
 def pairs_of_either(poses: Many, each: list[Shape]) -> None:
     assert_type(many(impinge.distance(BALL, None, BALL, poses)), float | Floats)
     assert_type(many(impinge.distance(each, None, BALL, poses)), Floats)
-    # A list of one shape stands for all, as the shape does, and says that there are many.
+    # A list of one shape is used for all elements, as the shape is, but the result is an array.
     assert_type(many(impinge.distance([BALL], None, BALL, poses)), Floats)
     assert_type(many(impinge.proximity(BALL, None, BALL, poses)), int | NDArray[np.uint8])
     assert_type(many(impinge.closest_points(BALL, None, BALL, poses)).distance, float | Floats)

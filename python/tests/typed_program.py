@@ -1,4 +1,4 @@
-"""A program with types, for type checkers: what users write is not `Any` where it need not be, and nothing is missing."""
+"""A typed program for type checkers: results are not `Any` where that can be avoided, and no type is missing."""
 
 from typing import Any
 
@@ -28,7 +28,7 @@ def record(world: World) -> Recording:
 
 
 def managed(manager: CollisionManager) -> set[tuple[str, str]]:
-    """What is asked for decides what comes."""
+    """The flags determine the type of the result."""
     touches: bool = manager.in_collision_internal()
     distance: float = manager.min_distance_internal()
     found, names, data = manager.in_collision_other(CollisionManager(), return_names=True, return_data=True)

@@ -1,4 +1,4 @@
-//! Box2D, driven without dynamics.
+//! Box2D, used without dynamics.
 
 use std::marker::PhantomData;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -9,7 +9,7 @@ use impinge_scenes::{Placement, Scene, SceneShape};
 use crate::contacts::{ContactName, Contacts};
 use crate::{Digest, Recycling, sorted};
 
-/// Box2D stores its worlds in a table of the process.
+/// The lock of Box2D's table of worlds, which the whole process shares.
 static TABLE: Mutex<()> = Mutex::new(());
 
 fn table() -> MutexGuard<'static, ()> {
@@ -18,8 +18,8 @@ fn table() -> MutexGuard<'static, ()> {
 
 /// A world of Box2D.
 ///
-/// The bodies are dynamic and never sleep, since two bodies that are not dynamic never touch; the
-/// ground is a static chain. A step first sets the transforms of moved objects. Then it makes a
+/// The bodies are dynamic and never sleep, since two bodies that are not dynamic never touch.
+/// Terrain is a static chain. A step first sets the transforms of moved objects. Then it makes a
 /// step of time 0, which finds pairs and updates contacts, but solves and integrates nothing. The
 /// events update the list of touching contacts.
 ///
@@ -30,7 +30,7 @@ pub struct Box2d {
     bodies: Vec<ffi::b2BodyId>,
     moved: Vec<(ffi::b2BodyId, ffi::b2Vec2, ffi::b2Rot)>,
     contacts: Contacts<ffi::b2ContactId>,
-    /// Not `Send`: a world stays on its thread.
+    /// Makes the type not `Send`: a world stays on its thread.
     thread: PhantomData<*const ()>,
 }
 
@@ -45,8 +45,8 @@ impl ContactName for ffi::b2ContactId {
 }
 
 impl Box2d {
-    /// Creates a world with the objects of a scene at step 0; `None` if this adapter does not map a
-    /// shape of the scene.
+    /// Creates a world with the objects of a scene at step 0; `None` if the scene has a shape that
+    /// this adapter does not support.
     #[must_use]
     pub fn new(scene: &Scene<2>, recycling: Recycling) -> Option<Self> {
         if !scene.objects.iter().all(|object| has(&object.shape)) {
@@ -63,7 +63,7 @@ impl Box2d {
         };
         drop(lock);
         if recycling == Recycling::Off {
-            // SAFETY: the world was just made.
+            // SAFETY: the world was just created.
             unsafe { ffi::b2World_SetContactRecycleDistance(world, 0.0) };
         }
         let (bodies, moved, contacts) = (Vec::new(), Vec::new(), Contacts::new());
@@ -75,7 +75,7 @@ impl Box2d {
     fn add(&mut self, scene: &Scene<2>, index: usize) {
         let shape = &scene.objects[index].shape;
         let (position, rotation) = pose(&scene.placement(index, 0));
-        // SAFETY: the world lives; definitions are plain data; the engine copies what they point to.
+        // SAFETY: the world exists; definitions are plain data, which the engine copies.
         let body = unsafe {
             let mut def = ffi::b2DefaultBodyDef();
             if !is_ground(shape) {
@@ -97,10 +97,10 @@ impl Box2d {
         }));
     }
 
-    /// Sets the new poses and updates.
+    /// Sets the new poses, updates the contacts, and processes the events.
     pub fn step(&mut self) {
-        // SAFETY: the world and its bodies live; the events are read before the world changes again,
-        // and a count of 0 goes with any pointer.
+        // SAFETY: the world and its bodies exist. The events are read before the world changes
+        // again. With a count of 0 the pointer to the events is not read.
         unsafe {
             for (body, position, rotation) in &self.moved {
                 ffi::b2Body_SetTransform(*body, *position, *rotation);
@@ -131,11 +131,11 @@ impl Box2d {
         digest
     }
 
-    /// Returns the pairs with a point within a distance, smaller index first, sorted.
+    /// Returns the pairs with a contact point within `distance`, sorted, the smaller index first.
     #[must_use]
     pub fn touching(&self, distance: f32) -> Vec<(usize, usize)> {
         let pairs = self.contacts.iter().filter_map(|contact| {
-            // SAFETY: the contact has begun and not ended, so its shapes live.
+            // SAFETY: the contact has begun and not ended, so its shapes exist.
             let (data, [a, b]) = unsafe {
                 let data = ffi::b2Contact_GetData(contact);
                 let index = |shape| ffi::b2Shape_GetUserData(shape).addr();
@@ -151,13 +151,13 @@ impl Box2d {
 impl Drop for Box2d {
     fn drop(&mut self) {
         let _lock = table();
-        // SAFETY: the world lives, and the table is locked.
+        // SAFETY: the world exists, and the table is locked.
         unsafe { ffi::b2DestroyWorld(self.world) };
     }
 }
 
-/// Whether this adapter maps the shape. Box2D's hulls have at most 8 corners, and it has no
-/// half-spaces; segments are not mapped.
+/// Returns `true` if this adapter supports the shape. Box2D's hulls have at most 8 corners, and it
+/// has no half-spaces. Segments are not supported here.
 fn has(shape: &SceneShape<2>) -> bool {
     match shape {
         SceneShape::Convex { points } => points.len() <= 8,
@@ -181,8 +181,8 @@ fn pose(placement: &Placement<2>) -> (ffi::b2Vec2, ffi::b2Rot) {
 }
 
 fn add_shape(body: ffi::b2BodyId, index: usize, shape: &SceneShape<2>) {
-    // SAFETY: the body lives; definitions and geometry are plain data that the engine copies. The user
-    // data is a number, never followed.
+    // SAFETY: the body exists; definitions and geometry are plain data that the engine copies. The
+    // user data is an integer, never dereferenced.
     unsafe {
         let mut def = ffi::b2DefaultShapeDef();
         def.userData = std::ptr::without_provenance_mut(index);
@@ -215,10 +215,10 @@ fn add_shape(body: ffi::b2BodyId, index: usize, shape: &SceneShape<2>) {
 }
 
 /// # Safety
-/// The body lives, and the definition is one of a shape.
+/// The body exists, and `def` points to the definition of a shape.
 unsafe fn add_polygon(body: ffi::b2BodyId, def: *const ffi::b2ShapeDef, points: &[[f64; 2]]) {
     let points: Vec<_> = points.iter().map(vector).collect();
-    // SAFETY: the count is that of the points, 8 at most; the engine copies them.
+    // SAFETY: the count is that of the points, at most 8; the engine copies them.
     unsafe {
         let hull = ffi::b2ComputeHull(points.as_ptr(), points.len() as i32);
         assert!(hull.count > 2, "the points span the plane");
@@ -227,7 +227,7 @@ unsafe fn add_polygon(body: ffi::b2BodyId, def: *const ffi::b2ShapeDef, points: 
     }
 }
 
-/// Returns the vertices of a height field.
+/// Returns the vertices of a 2D height field, from left to right.
 fn line(heights: &[f64], extents: &[f64; 2]) -> Vec<[f64; 2]> {
     let last = (heights.len() - 1) as f64;
     let vertex =
@@ -235,11 +235,12 @@ fn line(heights: &[f64], extents: &[f64; 2]) -> Vec<[f64; 2]> {
     heights.iter().enumerate().map(vertex).collect()
 }
 
-/// Chains have contacts on the right side of their direction only, here from above, and none on their
-/// first and last segments: no object is near those.
+/// Adds a chain. A chain collides only on the right side of its direction, which is above here,
+/// since the vertices are reversed. Its first and last segments do not collide; no object is near
+/// those.
 fn add_chain(body: ffi::b2BodyId, index: usize, vertices: &[[f64; 2]]) {
     let points: Vec<_> = vertices.iter().rev().map(vector).collect();
-    // SAFETY: the body lives; the count is that of the points, which the engine copies.
+    // SAFETY: the body exists; the count is that of the points, which the engine copies.
     unsafe {
         let mut def = ffi::b2DefaultChainDef();
         def.userData = std::ptr::without_provenance_mut(index);

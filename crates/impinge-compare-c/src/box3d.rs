@@ -1,4 +1,4 @@
-//! Box3D, driven without dynamics, like `box2d` with other shapes.
+//! Box3D, used without dynamics. The adapter corresponds to that of `box2d`, with 3D shapes.
 
 use std::marker::PhantomData;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -9,25 +9,25 @@ use impinge_scenes::{Placement, Scene, SceneShape};
 use crate::contacts::{ContactName, Contacts};
 use crate::{Digest, Recycling, sorted};
 
-/// Box3D stores its worlds in a table of the process.
+/// The lock of Box3D's table of worlds, which the whole process shares.
 static TABLE: Mutex<()> = Mutex::new(());
 
 fn table() -> MutexGuard<'static, ()> {
     TABLE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The amount by which Box3D increases the depth of points on a ground.
+/// The amount by which Box3D increases the depth of points on meshes and height fields.
 const REST_OFFSET: f32 = 0.005;
 
 /// A world of Box3D.
 ///
-/// The bodies are dynamic and never sleep, since two bodies that are not dynamic never touch; the
-/// ground is static. A step first sets the transforms of moved objects. Then it makes a step of
+/// The bodies are dynamic and never sleep, since two bodies that are not dynamic never touch.
+/// Terrain is static. A step first sets the transforms of moved objects. Then it makes a step of
 /// time 0, which finds pairs and updates contacts, but solves and integrates nothing. The events
 /// update the list of touching contacts.
 ///
 /// The prediction is 0.02, and boxes are enlarged by up to 0.07: both are constants of Box3D.
-/// Depths on a ground are larger by 0.005, another constant. The heights of its height fields have
+/// Depths on terrain are larger by 0.005, another constant. The heights of its height fields have
 /// 16 bits.
 #[derive(Debug)]
 pub struct Box3d {
@@ -39,7 +39,7 @@ pub struct Box3d {
     contacts: Contacts<ffi::b3ContactId>,
     meshes: Vec<*mut ffi::b3MeshData>,
     fields: Vec<*mut ffi::b3HeightFieldData>,
-    /// Not `Send`: a world stays on its thread.
+    /// Makes the type not `Send`: a world stays on its thread.
     thread: PhantomData<*const ()>,
 }
 
@@ -54,8 +54,8 @@ impl ContactName for ffi::b3ContactId {
 }
 
 impl Box3d {
-    /// Creates a world with the objects of a scene at step 0; `None` if this adapter does not map a
-    /// shape of the scene.
+    /// Creates a world with the objects of a scene at step 0; `None` if the scene has a shape that
+    /// this adapter does not support.
     #[must_use]
     pub fn new(scene: &Scene<3>, recycling: Recycling) -> Option<Self> {
         if !scene.objects.iter().all(|object| has(&object.shape)) {
@@ -72,7 +72,7 @@ impl Box3d {
         };
         drop(lock);
         if recycling == Recycling::Off {
-            // SAFETY: the world was just made.
+            // SAFETY: the world was just created.
             unsafe { ffi::b3World_SetContactRecycleDistance(world, 0.0) };
         }
         let (bodies, offsets, moved) = (Vec::new(), Vec::new(), Vec::new());
@@ -87,14 +87,16 @@ impl Box3d {
         let shape = &scene.objects[index].shape;
         let (mut position, mut rotation) = pose(&scene.placement(index, 0));
         if let SceneShape::HeightField { extents, .. } = shape {
-            // A quarter turn about y, which aligns the diagonals of its cells with those of the scene.
+            // Rotates the field by a quarter turn about y: so the diagonals of Box3D's cells become
+            // those of the scene.
             let half = 0.5_f64.sqrt();
             rotation = ffi::b3Quat { v: vector(&[0.0, half, 0.0]), s: half as f32 };
-            // Its first height is at its origin; the height field of the scene is centred.
+            // The origin of Box3D's field is its first height; the height field of the scene is
+            // centred.
             position.x -= 0.5 * extents[0] as f32;
             position.z += 0.5 * extents[2] as f32;
         }
-        // SAFETY: the world lives; definitions are plain data; the engine copies what they point to.
+        // SAFETY: the world exists; definitions are plain data, which the engine copies.
         let body = unsafe {
             let mut def = ffi::b3DefaultBodyDef();
             if !is_ground(shape) {
@@ -117,10 +119,10 @@ impl Box3d {
         }));
     }
 
-    /// Sets the new poses and updates.
+    /// Sets the new poses, updates the contacts, and processes the events.
     pub fn step(&mut self) {
-        // SAFETY: the world and its bodies live; the events are read before the world changes again,
-        // and a count of 0 goes with any pointer.
+        // SAFETY: the world and its bodies exist. The events are read before the world changes
+        // again. With a count of 0 the pointer to the events is not read.
         unsafe {
             for (body, position, rotation) in &self.moved {
                 ffi::b3Body_SetTransform(*body, *position, *rotation);
@@ -151,12 +153,13 @@ impl Box3d {
         digest
     }
 
-    /// Returns the pairs with a point within a distance, smaller index first, sorted.
+    /// Returns the pairs with a contact point within `distance`, sorted, the smaller index first.
+    /// The offset that Box3D adds to depths on terrain is removed.
     #[must_use]
     pub fn touching(&self, distance: f32) -> Vec<(usize, usize)> {
         let pairs = self.contacts.iter().filter_map(|contact| {
             let (data, manifolds) = manifolds(self, contact);
-            // SAFETY: the shapes of a contact live.
+            // SAFETY: the shapes of a contact exist.
             let index = |shape| unsafe { ffi::b3Shape_GetUserData(shape) }.addr();
             let pair = (index(data.shapeIdA), index(data.shapeIdB));
             let offset = self.offsets[pair.0] + self.offsets[pair.1];
@@ -170,8 +173,8 @@ impl Box3d {
     }
 
     fn add_shape(&mut self, body: ffi::b3BodyId, index: usize, shape: &SceneShape<3>) {
-        // SAFETY: the body lives; definitions and convex geometry are plain data that the engine
-        // copies. The user data is a number, never followed.
+        // SAFETY: the body exists; definitions and convex geometry are plain data that the engine
+        // copies. The user data is an integer, never dereferenced.
         unsafe {
             let mut def = ffi::b3DefaultShapeDef();
             def.userData = std::ptr::without_provenance_mut(index);
@@ -186,8 +189,8 @@ impl Box3d {
                 SceneShape::Cuboid { half_extents } => {
                     let [x, y, z] = half_extents.map(|x| x as f32);
                     let hull = ffi::b3MakeBoxHull(x, y, z);
-                    // The data of the hull follow its base in memory: the pointer must cover all of
-                    // them.
+                    // The arrays of the hull follow its base in memory, so the pointer must have
+                    // the provenance of the whole hull.
                     ffi::b3CreateHullShape(body, def, (&raw const hull).cast());
                 }
                 SceneShape::Capsule { half_height, radius } => {
@@ -220,9 +223,11 @@ impl Box3d {
     }
 }
 
-/// Returns a contact of a world and its manifolds, which live until the world changes.
+/// Returns the data of a contact, and its manifolds. The borrow of the world ensures that they are
+/// not used after it changes.
 fn manifolds(_: &Box3d, contact: ffi::b3ContactId) -> (ffi::b3ContactData, &[ffi::b3Manifold]) {
-    // SAFETY: the contact has begun and not ended; without manifolds their pointer may be null.
+    // SAFETY: the contact has begun and not ended. Without manifolds the pointer may be null, and
+    // is not read.
     unsafe {
         let data = ffi::b3Contact_GetData(contact);
         let count = data.manifoldCount as usize;
@@ -235,7 +240,8 @@ fn manifolds(_: &Box3d, contact: ffi::b3ContactId) -> (ffi::b3ContactData, &[ffi
 impl Drop for Box3d {
     fn drop(&mut self) {
         let _lock = table();
-        // SAFETY: the world lives, and the table is locked; what its shapes point to goes after it.
+        // SAFETY: the world exists, and the table is locked. The data that its shapes point to is
+        // freed after it.
         unsafe {
             ffi::b3DestroyWorld(self.world);
             self.meshes.iter().for_each(|mesh| ffi::b3DestroyMesh(*mesh));
@@ -244,8 +250,8 @@ impl Drop for Box3d {
     }
 }
 
-/// Whether this adapter maps the shape. Cylinders and cones are not mapped: those of Box3D are
-/// hulls with a number of sides.
+/// Returns `true` if this adapter supports the shape. Cylinders and cones are not supported: those
+/// of Box3D are hulls with a number of sides.
 const fn has(shape: &SceneShape<3>) -> bool {
     use SceneShape::{Ball, Capsule, Convex, Cuboid};
     matches!(shape, Ball { .. } | Cuboid { .. } | Capsule { .. } | Convex { .. })
@@ -267,7 +273,7 @@ fn pose(placement: &Placement<3>) -> (ffi::b3Vec3, ffi::b3Quat) {
 }
 
 /// # Safety
-/// The triangles name vertices that there are.
+/// All indices of the triangles are less than the number of vertices.
 unsafe fn mesh(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> *mut ffi::b3MeshData {
     let mut vertices: Vec<_> = vertices.iter().map(vector).collect();
     let mut indices: Vec<_> = triangles.iter().flatten().map(|n| *n as i32).collect();
@@ -283,17 +289,17 @@ unsafe fn mesh(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> *mut ffi::b3Mes
         useMedianSplit: false,
         identifyEdges: true,
     };
-    // SAFETY: the counts are those of the lists; the engine copies them.
+    // SAFETY: the counts are those of the lists, which the engine copies.
     let mesh = unsafe { ffi::b3CreateMesh(&raw const def, std::ptr::null_mut(), 0) };
     assert!(!mesh.is_null(), "the mesh is sound");
     mesh
 }
 
-/// Returns the field rotated back by a quarter turn about y: its x axis is −z of the scene, its z axis
-/// is x.
+/// Returns the height field rotated by a quarter turn about y: its x axis is −z of the scene, its z
+/// axis is x of the scene.
 ///
 /// # Safety
-/// There are as many heights as the counts say.
+/// `heights` has as many elements as the product of the counts.
 unsafe fn field(
     [rows, columns]: [usize; 2],
     heights: &[f64],
@@ -316,7 +322,7 @@ unsafe fn field(
         globalMaximumHeight: high,
         clockwiseWinding: false,
     };
-    // SAFETY: the counts are those of the lists; the engine copies them.
+    // SAFETY: the counts are those of the lists, which the engine copies.
     let field = unsafe { ffi::b3CreateHeightField(&raw const def) };
     assert!(!field.is_null(), "the field is sound");
     field

@@ -1,19 +1,20 @@
-//! The touching contacts of a world of Box2D or Box3D, tracked by its events.
+//! The list of touching contacts of a world of Box2D or Box3D, updated by the events of the engine.
 
-/// The id of a contact.
+/// The id of a contact in an engine.
 pub(crate) trait ContactName: Copy {
-    /// The index, which is reused for another contact after this one has ended.
+    /// The index, which is reused for another contact after this contact has ended.
     fn index(self) -> usize;
 
-    /// The generation, which distinguishes successive contacts of one index.
+    /// The generation, which distinguishes successive contacts with the same index.
     fn generation(self) -> u32;
 }
 
-/// The contacts between their begin event and their end event: neither engine returns a list of all.
+/// The contacts that have begun and not ended. It is kept here because neither engine has a list of
+/// all contacts.
 #[derive(Debug)]
 pub(crate) struct Contacts<Name> {
     names: Vec<Name>,
-    /// For each index of a contact, its position in the list of ids, or [`NOWHERE`].
+    /// The position in `names` for each index of a contact; [`NOWHERE`] without one.
     places: Vec<usize>,
 }
 
@@ -28,7 +29,8 @@ impl<Name: ContactName> Contacts<Name> {
         self.names.iter().copied()
     }
 
-    /// The end events of a step come before its begin events: an index can be in both.
+    /// Removes a contact that has ended. The end events of a step must be processed before its
+    /// begin events, since both may contain the same index.
     pub(crate) fn end(&mut self, name: Name) {
         let place = self.places.get(name.index()).copied().unwrap_or(NOWHERE);
         let is_it = |kept: &Name| kept.generation() == name.generation();

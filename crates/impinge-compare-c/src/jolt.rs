@@ -1,4 +1,4 @@
-//! Jolt, driven without solving.
+//! Jolt, used without its solver.
 
 use std::ffi::c_void;
 use std::marker::PhantomData;
@@ -10,20 +10,20 @@ use oxijolt_sys::*;
 
 use crate::{Digest, sorted};
 
-/// The duration of a step, which must not be 0. No body has a velocity.
+/// The duration of a step in seconds. Jolt does not accept 0; no body has a velocity.
 const STEP: f32 = 1.0 / 60.0;
-/// The number of layers: one for all bodies, in both phases.
+/// The number of layers, of objects and of the broad phase: one that contains all bodies.
 const LAYERS: u32 = 1;
 
 /// A world of Jolt.
 ///
-/// Its bodies are kinematic, which may collide with each other if enabled, without velocity and never
-/// asleep; the ground is static. A step sets the poses of moved objects and makes a step with the job
-/// system that runs on the calling thread. Pairs without a dynamic body are passed to the contact
-/// listener but not to the solver. The remaining dynamics are a pass over the bodies, which moves none,
-/// and one that updates their boxes.
+/// Its bodies are kinematic, have no velocity and never sleep; they may collide with each other if
+/// that is enabled. Terrain is static. A step sets the poses of moved objects and makes a step of
+/// the engine with the job system that runs on the calling thread. Pairs without a dynamic body are
+/// passed to the contact listener but not to the solver. The dynamics that remain are a pass over
+/// the bodies, which moves none of them, and one that updates their boxes.
 ///
-/// Contacts can be read in the listener only, so it stores each point, its depth, and the pair.
+/// Contacts can only be read in the listener. So it stores each point, its depth, and the pair.
 #[derive(Debug)]
 pub struct Jolt {
     system: *mut JPH_PhysicsSystem,
@@ -33,14 +33,14 @@ pub struct Jolt {
     memory: *mut JPH_TempAllocator,
     bodies: Vec<JPH_BodyID>,
     moved: Vec<(JPH_BodyID, JPH_Vec3, JPH_Quat)>,
-    /// The buffer of the listener. The listener has the pointer too, so that no reference to the
-    /// buffer exists while it runs.
+    /// The buffer of the listener. The listener writes through the same pointer, so there is no
+    /// reference to the buffer while the engine runs.
     heard: *mut Heard,
-    /// Not `Send`: a world stays on its thread.
+    /// Makes the type not `Send`: a world stays on its thread.
     thread: PhantomData<*const ()>,
 }
 
-/// The contacts of a step, as the listener stored them.
+/// The contacts of a step, stored by the listener.
 #[derive(Debug, Default)]
 struct Heard {
     /// For each manifold, the pair of indices and the end of its points in `points`.
@@ -59,7 +59,7 @@ fn engine() {
         OnContactRemoved: None,
     };
     ENGINE.get_or_init(|| {
-        // SAFETY: called once, before anything else; the procedures live as long as the process.
+        // SAFETY: this is the first call, made once. The procedures have a static lifetime.
         unsafe {
             assert!(JPH_Init(), "Jolt could not be started");
             JPH_ContactListener_SetProcs(&raw const PROCS);
@@ -67,10 +67,11 @@ fn engine() {
     });
 }
 
-/// The contact listener.
+/// The callback of the contact listener: stores the points of a manifold.
 ///
 /// # Safety
-/// Called by the engine while `Jolt::step` runs, with what `Jolt::new` gave it.
+/// The engine calls it only while `Jolt::step` runs, and `heard` is the pointer that `Jolt::new`
+/// passed to it.
 unsafe extern "C" fn hear(
     heard: *mut c_void,
     body1: *const JPH_Body,
@@ -78,8 +79,8 @@ unsafe extern "C" fn hear(
     manifold: *const JPH_ContactManifold,
     _settings: *mut JPH_ContactSettings,
 ) {
-    // SAFETY: the pointer is that of the world's list, to which nobody else has a reference now; the
-    // engine's arguments live until this returns.
+    // SAFETY: the pointer is that of the buffer of the world, to which no other reference exists
+    // now. The arguments of the engine are valid until this function returns.
     unsafe {
         let heard = &mut *heard.cast::<Heard>();
         let mut normal = JPH_Vec3 { x: 0.0, y: 0.0, z: 0.0 };
@@ -97,12 +98,12 @@ unsafe extern "C" fn hear(
 }
 
 impl Jolt {
-    /// The default rounding radius of Jolt.
+    /// The default convex radius of Jolt.
     pub const CONVEX_RADIUS: f32 = 0.05;
 
     /// Creates a world with the objects of a scene at step 0. Contacts are computed up to the
-    /// distance `prediction`. Returns `None` if this adapter does not map a shape of the scene: it
-    /// maps balls, boxes, capsules, convex hulls, meshes and height fields.
+    /// distance `prediction`. Returns `None` if the scene has a shape that this adapter does not
+    /// support: it supports balls, boxes, capsules, convex hulls, meshes and height fields.
     ///
     /// Edges of boxes and hulls are rounded by `convex_radius`, by default [`Self::CONVEX_RADIUS`].
     /// Within this radius Jolt needs only the closest points of the inner shapes. With 0 boxes and
@@ -114,7 +115,8 @@ impl Jolt {
         }
         engine();
         let heard = Box::into_raw(Box::<Heard>::default());
-        // SAFETY: the engine runs; the world owns what it makes here until it is dropped.
+        // SAFETY: the engine is initialized; the world owns the objects created here until it is
+        // dropped.
         let mut made = unsafe {
             let system = system(scene.objects.len(), prediction);
             let listener = JPH_ContactListener_Create(heard.cast());
@@ -132,7 +134,7 @@ impl Jolt {
             }
         };
         (0..scene.objects.len()).for_each(|n| made.add(scene, n, convex_radius));
-        // SAFETY: the world lives. Asked for once after many bodies have been added.
+        // SAFETY: the world exists. Jolt recommends this call once after many bodies were added.
         unsafe { JPH_PhysicsSystem_OptimizeBroadPhase(made.system) };
         Some(made)
     }
@@ -145,7 +147,8 @@ impl Jolt {
         } else {
             (JPH_MotionType_Kinematic, JPH_Activation_Activate)
         };
-        // SAFETY: the world lives; the body holds its shape, which can be released here.
+        // SAFETY: the world exists. The body shares ownership of its shape, so this reference to it
+        // can be released.
         let body = unsafe {
             let shape = shape_of(shape, convex_radius);
             assert!(!shape.is_null(), "object {index} has no shape");
@@ -176,10 +179,10 @@ impl Jolt {
         }));
     }
 
-    /// Sets the new poses and updates; the listener reads.
+    /// Sets the new poses and updates; the listener stores the contacts.
     pub fn step(&mut self) {
-        // SAFETY: the world and its bodies live, the reference ends before the engine runs, and only
-        // then the listener writes.
+        // SAFETY: the world and its bodies exist. The reference to the buffer ends before the
+        // engine runs and the listener writes to it.
         let error = unsafe {
             let heard = &mut *self.heard;
             heard.pairs.clear();
@@ -211,7 +214,7 @@ impl Jolt {
         Digest { points: points.len(), depth }
     }
 
-    /// Returns the pairs with a point within a distance, smaller index first, sorted.
+    /// Returns the pairs with a contact point within `distance`, sorted, the smaller index first.
     #[must_use]
     pub fn touching(&self, distance: f32) -> Vec<(usize, usize)> {
         let Heard { pairs, points } = self.heard();
@@ -228,7 +231,7 @@ impl Jolt {
 
 impl Drop for Jolt {
     fn drop(&mut self) {
-        // SAFETY: all of it is the world's, and nothing of it is used after.
+        // SAFETY: the world owns all of these objects, and does not use them afterwards.
         unsafe {
             JPH_PhysicsSystem_Destroy(self.system);
             JPH_ContactListener_Destroy(self.listener);
@@ -239,11 +242,14 @@ impl Drop for Jolt {
     }
 }
 
+/// Creates a physics system with one layer and no gravity.
+///
 /// # Safety
-/// The engine runs.
+/// The engine is initialized.
 unsafe fn system(objects: usize, prediction: f32) -> *mut JPH_PhysicsSystem {
     let objects = u32::try_from(objects).expect("fewer than 32 bits number");
-    // SAFETY: the system takes the tables, which hold one layer that collides with itself.
+    // SAFETY: the system takes ownership of the tables, which have one layer that collides with
+    // itself.
     unsafe {
         let layers = JPH_BroadPhaseLayerInterfaceTable_Create(LAYERS, LAYERS);
         JPH_BroadPhaseLayerInterfaceTable_MapObjectToBroadPhaseLayer(layers, 0, 0);
@@ -273,8 +279,8 @@ unsafe fn system(objects: usize, prediction: f32) -> *mut JPH_PhysicsSystem {
 
 static NO_GRAVITY: JPH_Vec3 = JPH_Vec3 { x: 0.0, y: 0.0, z: 0.0 };
 
-/// Whether this adapter maps the shape. Half-spaces of Jolt are bounded and its segments have a
-/// radius, so that both are not mapped. Cylinders and cones are not mapped either.
+/// Returns `true` if this adapter supports the shape. Half-spaces of Jolt are bounded and its
+/// segments have a radius, so neither is supported. Cylinders and cones are not supported either.
 const fn has(shape: &SceneShape<3>) -> bool {
     use SceneShape::{Ball, Capsule, Convex, Cuboid};
     matches!(shape, Ball { .. } | Cuboid { .. } | Capsule { .. } | Convex { .. })
@@ -295,10 +301,12 @@ fn pose(placement: &Placement<3>) -> (JPH_Vec3, JPH_Quat) {
     (vector(&placement.translation), JPH_Quat { x, y, z, w })
 }
 
+/// Creates a shape of the engine.
+///
 /// # Safety
-/// The engine runs.
+/// The engine is initialized.
 unsafe fn shape_of(shape: &SceneShape<3>, convex_radius: f32) -> *mut JPH_Shape {
-    // SAFETY: the engine copies what it is given.
+    // SAFETY: the engine copies the data that the arguments point to.
     unsafe {
         match shape {
             SceneShape::Ball { radius } => JPH_SphereShape_Create(*radius as f32).cast(),
@@ -328,7 +336,8 @@ unsafe fn shape_of(shape: &SceneShape<3>, convex_radius: f32) -> *mut JPH_Shape 
 }
 
 /// # Safety
-/// The engine runs, and the triangles name vertices that there are.
+/// The engine is initialized, and all indices of the triangles are less than the number of
+/// vertices.
 unsafe fn mesh(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> *mut JPH_Shape {
     let vertices: Vec<_> = vertices.iter().map(vector).collect();
     let triangle = |&[i1, i2, i3]: &[u32; 3]| JPH_IndexedTriangle {
@@ -355,7 +364,7 @@ unsafe fn mesh(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> *mut JPH_Shape 
 }
 
 /// # Safety
-/// The engine runs, and there are as many heights as the counts say.
+/// The engine is initialized, and `heights` has as many elements as the product of the counts.
 unsafe fn field(
     [rows, columns]: [usize; 2],
     heights: &[f64],
@@ -366,7 +375,8 @@ unsafe fn field(
     let width = |extent: f64| extent / (columns - 1) as f64;
     let offset = vector(&[-0.5 * extents[0], 0.0, -0.5 * extents[2]]);
     let scale = vector(&[width(extents[0]), extents[1], width(extents[2])]);
-    // SAFETY: the count is that of the heights in a row, which the engine copies.
+    // SAFETY: the count is that of the heights in a row; the field is square. The engine copies the
+    // heights.
     unsafe {
         let settings = JPH_HeightFieldShapeSettings_Create(
             heights.as_ptr(),

@@ -1,7 +1,8 @@
 //! Rivals in C and C++ behind safe types, for `impinge-compare`.
 //!
-//! Coal runs queries about two shapes. The others are engines with dynamics, used so that as little of these runs as
-//! possible; the documentation of each describes its work between two readings. All run on the calling thread only.
+//! Coal runs queries for pairs of shapes. The others are engines with dynamics, used so that as
+//! little as possible of the dynamics runs; the documentation of each type describes the work that
+//! remains in a step. All of them run only on the calling thread.
 
 #[cfg(feature = "box2d")]
 mod box2d;
@@ -37,13 +38,13 @@ pub struct Digest {
 pub enum Recycling {
     /// A contact is recomputed whenever the pair has moved.
     Off,
-    /// The default: until the objects of a pair have moved by 0.05 relative to each other, the points stay fixed on
-    /// each object, and only their depths change.
+    /// The default of the engine: until the objects of a pair have moved by 0.05 relative to each
+    /// other, the points stay fixed on each object, and only their depths change.
     On,
 }
 
 #[cfg(any(feature = "box2d", feature = "box3d", feature = "jolt"))]
-/// Returns the pairs in order, each once.
+/// Returns the pairs sorted and without duplicates, the smaller index of each first.
 fn sorted(mut pairs: Vec<(usize, usize)>) -> Vec<(usize, usize)> {
     for pair in &mut pairs {
         *pair = (pair.0.min(pair.1), pair.0.max(pair.1));

@@ -1,11 +1,11 @@
-//! Every engine finds the pairs of a pile, all neighbours on a grid, at every step.
+//! Tests that every engine finds the pairs of a pile, all neighbours on a grid, at every step.
 
 #![cfg(any(feature = "box2d", feature = "box3d", feature = "jolt"))]
 
 use impinge_compare_c::Digest;
 use impinge_scenes::{Placement, Scene, pile};
 
-/// The common interface of the engines.
+/// An engine, and its methods: the engines have the same methods, but no common trait.
 struct Engine<'a, E, const D: usize> {
     engine: E,
     prepare: fn(&mut E, &[(usize, Placement<D>)]),

@@ -1,14 +1,14 @@
-//! The command line.
+//! Parses the command line.
 
-/// The scenes to run and their sizes.
+/// The selected scenes, their sizes, and the number of steps and runs.
 #[derive(Clone, Debug)]
 pub struct Arguments {
-    /// A text that the case must contain, such as `pile`, or `3D`.
+    /// A text that the name of a case must contain, such as `pile` or `3D`.
     pub case: String,
-    /// Whether the name of a case must equal the text.
+    /// Whether the name of a case must be equal to `case`.
     pub is_exact: bool,
-    /// The number of objects in a scene; scenes of large objects have a twentieth or a hundredth, scenes
-    /// in which most objects rest ten times as many.
+    /// The requested number of objects. Scenes of large objects have a twentieth or a hundredth of
+    /// it, some scenes ten times as many.
     pub objects: usize,
     /// The number of steps of a run.
     pub steps: u32,
@@ -19,7 +19,7 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// Parses the command line; ends the program on an error.
+    /// Parses the command line; prints the usage and exits on an error.
     pub fn of_command_line() -> Self {
         let mut arguments = Self {
             case: String::new(),
@@ -45,7 +45,7 @@ impl Arguments {
         arguments
     }
 
-    /// Whether a case is to run.
+    /// Returns `true` if a case is to run.
     pub fn wants(&self, name: &str) -> bool {
         if self.is_exact { name == self.case } else { name.contains(&self.case) }
     }
@@ -55,7 +55,7 @@ fn number<T: std::str::FromStr>(word: &str) -> T {
     word.parse().unwrap_or_else(|_| usage(word))
 }
 
-/// Prints the usage, and ends the program.
+/// Prints the usage and exits with code 2.
 fn usage(word: &str) -> ! {
     eprintln!("{word} is not understood");
     eprintln!(

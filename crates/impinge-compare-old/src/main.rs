@@ -1,14 +1,16 @@
-//! Compares the working tree with an old commit of itself: the scenes of the suite `world` of
-//! `impinge-compare`, the two stepped alternately in one process on one thread, in `f32`.
+//! Compares the working tree with an old commit of itself, in the scenes of the suite `world` of
+//! `impinge-compare`. Both versions are stepped alternately in one process on one thread, in `f32`.
 //!
-//! `impinge-compare-old [--case TEXT] [--exact NAME] [--objects N] [--steps N] [--runs N] [--reusing]`
-//! prints a line for each scene: the median and the worst step of both in microseconds of processor time,
-//! and ratios old / new, above 1 where the working tree is faster. A step sets all new positions, updates,
-//! and reads every contact point; the first, in which everything is new, is omitted.
+//! `impinge-compare-old [--case TEXT] [--exact NAME] [--objects N] [--steps N] [--runs N]
+//! [--reusing]` prints a line for each scene: the median and the worst step of both versions in
+//! microseconds of processor time, and ratios old / new, above 1 where the working tree is faster.
+//! A step sets all new positions, updates, and reads every contact point. The first step, in which
+//! everything is new, is not timed.
 //!
-//! `--case` selects the scenes whose name contains a text, `--exact` the one of a name. `--runs` repeats
-//! each scene and keeps the minimum of each step, which removes most of the noise of a busy machine. With
-//! `--reusing` pairs of both versions keep their contacts while they hardly move.
+//! `--case` selects the scenes whose name contains a text, `--exact` the scene with that name.
+//! `--runs` repeats each scene and keeps the minimum of each step, which removes most of the noise
+//! of a busy machine. With `--reusing` the pairs of both versions keep their contacts while they
+//! hardly move.
 //!
 //! `CONTRIBUTING.md` describes where the old commit must be.
 
@@ -33,16 +35,17 @@ use measure::Times;
 use stages::{Stage, plane_stages, space_stages, stages};
 use table::Row;
 
-/// Makes a world with the objects of a scene at step 0.
+/// A function that creates a world with the objects of a scene at step 0.
 type Maker<const D: usize> = fn(&Scene<D>) -> Box<dyn Contender<D>>;
 
-/// The new version and the old one.
+/// The constructors of the new version and of the old version.
 const PLANE: [Maker<2>; 2] =
     [|scene| Box::new(new::plane(scene)), |scene| Box::new(old::plane(scene))];
 const SPACE: [Maker<3>; 2] =
     [|scene| Box::new(new::space(scene)), |scene| Box::new(old::space(scene))];
 
-/// Both, with pairs that keep their contacts until they have moved by half of the prediction.
+/// The same constructors, with pairs that keep their contacts until they have moved by half of the
+/// prediction.
 const PLANE_REUSING: [Maker<2>; 2] =
     [|scene| Box::new(new::plane(scene).reusing()), |scene| Box::new(old::plane(scene).reusing())];
 const SPACE_REUSING: [Maker<3>; 2] =
@@ -87,7 +90,8 @@ fn run_stages<const D: usize>(makers: [Maker<D>; 2], stages: &[Stage<D>], argume
     }
 }
 
-/// Returns the row of the new version and that of the old one, for each kind of time.
+/// Runs a scene. Returns, for each kind of time, the row of the new version and that of the old
+/// one.
 fn rows<const D: usize>(
     makers: [Maker<D>; 2],
     scene: &Scene<D>,
@@ -109,12 +113,13 @@ fn rows<const D: usize>(
     rows
 }
 
-/// Keeps the smaller time of each step.
+/// Replaces each time by the smaller one of both runs.
 fn keep_minima(times: &mut Times, again: &Times) {
     times.0.iter_mut().zip(&again.0).for_each(|(time, again)| *time = time.min(*again));
 }
 
-/// Prints the rows of the whole step, of the update and of reading, each of the new version first.
+/// Prints a line from the rows of the whole step, of the update and of reading. Each pair of rows
+/// begins with the new version.
 fn print(name: &str, count: usize, rows: &[Row]) {
     let [median, worst] = [50, 100].map(|percent| {
         [1, 0].map(|n: usize| format!("{:.1}", rows[n].times.quantile(percent) * 1e3))
@@ -134,10 +139,12 @@ fn print(name: &str, count: usize, rows: &[Row]) {
     );
 }
 
-/// Returns the median over pairs of steps of the ratio of the two times; NaN for a single step. Both were
-/// measured within milliseconds of each other, so that changing load of the machine affects both.
+/// Returns the median over pairs of consecutive steps of the ratio `old / new`; NaN for a single
+/// step. The two versions ran within milliseconds of each other, so that a changing load of the
+/// machine affects both.
 ///
-/// Consecutive steps are summed in pairs, because the order, with colder caches for the first, alternates.
+/// Two consecutive steps are added, because the version that runs first in a step has colder
+/// caches, and the order alternates.
 fn ratio(old: &Times, new: &Times) -> f64 {
     let pairs = old.0.chunks_exact(2).zip(new.0.chunks_exact(2));
     let sum = |times: &[f64]| times.iter().sum::<f64>();

@@ -1,30 +1,30 @@
-//! The command line.
+//! Parses the command line.
 
-/// The suites to run and their sizes.
+/// The suites to run, their sizes, and the selection of cases and contenders.
 #[derive(Clone, Debug)]
 pub struct Arguments {
-    /// The number of objects in scenes whose size is not part of the case, and its upper bound in
-    /// other scenes.
+    /// The number of objects in scenes whose cases have no size of their own; the largest size of a
+    /// case in the others.
     pub objects: usize,
-    /// The lower bound of the number of objects, where the size is part of the case.
+    /// The smallest size of a case, where the size is part of the case.
     pub least: usize,
     /// The number of steps or rounds of a run.
     pub steps: u32,
-    /// In the suite `world`, the sum over a pair of the angular predictions in radians; only impinge
-    /// supports them.
+    /// The sum over a pair of the angular predictions, in radians, in the suite `world`. Only
+    /// impinge supports angular predictions.
     pub angular: f64,
-    /// The folder below `bench/`.
+    /// The name of the machine: the folder below `bench/` to which tables are written.
     pub machine: String,
-    /// A text that the case must contain.
+    /// A text that the name of a case must contain.
     pub case: String,
     /// A text that the name of a contender must contain.
     pub only: String,
-    /// The requested suites.
+    /// The names of the requested suites.
     pub suites: Vec<String>,
 }
 
 impl Arguments {
-    /// Parses the command line; ends the program on an error.
+    /// Parses the command line. Prints the usage and exits on an error; `known` lists the suites.
     pub fn of_command_line(known: &[&str]) -> Self {
         let mut arguments = Self::default();
         let mut words = std::env::args().skip(1);
@@ -48,32 +48,33 @@ impl Arguments {
         arguments
     }
 
-    /// Whether a suite is to run.
+    /// Returns `true` if a suite is to run.
     pub fn wants_suite(&self, name: &str) -> bool {
         self.suites.iter().any(|wanted| wanted == "all" || wanted == name)
     }
 
-    /// Whether a contender of this name is to run.
+    /// Returns `true` if a contender of this name is to run.
     pub fn wants_contender(&self, name: &str) -> bool {
         name.contains(&self.only)
     }
 
-    /// Whether a case is to run.
+    /// Returns `true` if a case is to run.
     pub fn wants_case(&self, case: &str) -> bool {
         case.contains(&self.case)
     }
 
-    /// Whether a case of this number of objects is to run.
+    /// Returns `true` if a case with this number of objects is to run.
     pub fn includes(&self, objects: usize) -> bool {
         (self.least..=self.objects).contains(&objects)
     }
 
-    /// Whether impinge runs without rivals.
+    /// Returns `true` if impinge runs without rivals.
     pub fn is_alone(&self) -> bool {
         self.only == "impinge"
     }
 
-    /// Whether all contenders run in all cases, with the default prediction.
+    /// Returns `true` if all contenders run in all cases with default settings, so that the table
+    /// is complete.
     pub fn is_whole(&self) -> bool {
         self.only.is_empty() && self.case.is_empty() && self.least == 0 && self.angular == 0.0
     }
@@ -94,12 +95,12 @@ impl Default for Arguments {
     }
 }
 
-/// Parses a word; ends the program on an error.
+/// Parses a word; prints the usage and exits on an error.
 fn parsed<T: std::str::FromStr>(word: &str, known: &[&str]) -> T {
     word.parse().unwrap_or_else(|_| usage(word, known))
 }
 
-/// Prints the usage, and ends the program.
+/// Prints the usage and exits with code 2.
 pub fn usage(word: &str, suites: &[&str]) -> ! {
     eprintln!("{word} is not understood");
     eprintln!("usage: impinge-compare SUITE... [--objects N] [--from N] [--steps N]");

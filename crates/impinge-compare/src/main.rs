@@ -1,15 +1,17 @@
-//! Benchmarks against other libraries: the same scenes, the same queries, alternately in one process on one
-//! thread.
+//! Benchmarks against other libraries: the same scenes and the same queries, alternately in one
+//! process on one thread.
 //!
-//! `impinge-compare SUITE... [--objects N] [--steps N] [--machine NAME]` prints the tables of the named
-//! suites, or of all of them for `all`, and writes each to `bench/<machine>/<suite>.csv`. Before it prints
-//! a time it compares the results: each row has the number that differ from ours. Times are processor times
-//! of the thread: median, minimum and the ninetieth percentile.
+//! `impinge-compare SUITE... [--objects N] [--steps N] [--machine NAME]` prints the tables of the
+//! named suites, or of all of them for `all`, and writes each to `bench/<machine>/<suite>.csv`.
+//! Before it prints a time it compares the results: each row has the number of results that differ
+//! from those of impinge. Times are processor times of the thread: median, minimum and the
+//! ninetieth percentile.
 //!
-//! `--only` selects the contenders whose name contains a text, so that one can be profiled alone, `--case`
-//! the cases that contain a text, `--from` those of at least as many objects. `--angular` gives the scenes
-//! of the suite `world` an angular prediction, in radians. Such tables are incomplete or have other
-//! settings, and are not written.
+//! `--only` selects the contenders whose name contains a text, so that one of them can be profiled
+//! alone. `--case` selects the cases whose name contains a text, `--from` the cases with at least
+//! so many objects. `--angular` gives the scenes of the suite `world` an angular prediction, in
+//! radians. With any of these options the tables are incomplete or have other settings, and are not
+//! written.
 //!
 //! Run it twice, for the default processor of Rust and for the actual one:
 //!
@@ -18,10 +20,10 @@
 //! RUSTFLAGS='-C target-cpu=native' cargo run --release --features c -- all --machine NAME-native
 //! ```
 //!
-//! The feature `c` adds the rivals in C and C++, see [`world`]; `bytes` counts memory, see [`build`];
-//! `parallel` adds the runs on two threads, see [`scale`]. `impinge-compare accuracy [samples]` measures
-//! errors instead of times, see [`accuracy`]; `impinge-compare kernels` is for instruction counters, see
-//! [`pairs`].
+//! The feature `c` adds the rivals in C and C++, see [`world`]; `bytes` counts memory, see
+//! [`build`]; `parallel` adds the runs on two threads, see [`scale`]. `impinge-compare accuracy
+//! [samples]` measures errors instead of times, see [`accuracy`]; `impinge-compare kernels` is for
+//! instruction counters, see [`pairs`].
 
 mod accuracy;
 mod arguments;
@@ -39,12 +41,12 @@ mod world;
 use arguments::{Arguments, usage};
 use table::Table;
 
-/// Counts the bytes of the suite `build`.
+/// The allocator that counts the bytes of the suite `build`.
 #[cfg(feature = "bytes")]
 #[global_allocator]
 static ALLOCATOR: &stats_alloc::StatsAlloc<std::alloc::System> = &stats_alloc::INSTRUMENTED_SYSTEM;
 
-/// A suite, by name.
+/// The name of a suite, and the function that runs it.
 type Suite = (&'static str, fn(&Arguments) -> Vec<Table>);
 
 /// The suites, in the order in which `all` runs them.

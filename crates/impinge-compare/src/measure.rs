@@ -1,4 +1,4 @@
-//! Clocks and quantiles: the processor time of the calling thread, and contenders in turn.
+//! Measures the processor time of the calling thread, and runs contenders in turn.
 
 use cpu_time::ThreadTime;
 
@@ -12,7 +12,7 @@ impl Times {
         self.0.push(time);
     }
 
-    /// Returns the quantile at a percentage; NaN without times.
+    /// Returns the quantile at `percent`; NaN without times.
     pub fn quantile(&self, percent: usize) -> f64 {
         let mut times = self.0.clone();
         times.sort_unstable_by(f64::total_cmp);
@@ -26,17 +26,19 @@ impl Times {
     }
 }
 
-/// Returns the processor time of some work on this thread, in nanoseconds, and its result.
+/// Runs `work`. Returns the processor time that it took on this thread, in nanoseconds, and its
+/// result.
 pub fn timed<R>(work: impl FnOnce() -> R) -> (f64, R) {
     let start = ThreadTime::now();
     let result = work();
     (start.elapsed().as_secs_f64() * 1e9, result)
 }
 
-/// Runs the contenders in turn for `rounds` rounds. Each round begins with the next contender, so
-/// that the same contender does not always precede another and fill the caches. The first round is
-/// not timed. The times are nanoseconds divided by `operations`, the number of operations of one
-/// call.
+/// Runs the contenders in turn for `rounds` timed rounds, after one that is not timed.
+///
+/// Each round begins with the next contender, so that no contender always runs after the same one,
+/// with the caches that this one left. The times are nanoseconds divided by `operations`, the
+/// number of operations of one call.
 pub fn in_turn(
     rounds: usize,
     operations: usize,

@@ -1,4 +1,4 @@
-//! Tables: on the screen for readers, below `bench/` for programs.
+//! Tables of results: printed for readers, and written as CSV files below `bench/`.
 
 use std::fs;
 use std::io;
@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 
 use crate::measure::Times;
 
-/// One contender in one case of a suite.
+/// The results of one contender in one case of a suite.
 #[derive(Clone, Debug)]
 pub struct Row {
     /// The case, such as `boxes, 10000, 1 % moving`; equal for all contenders.
     pub case: String,
     /// The name of the contender.
     pub contender: String,
-    /// The number of results: pairs, hits, points.
+    /// The number of results, such as pairs, hits or contact points.
     pub answers: usize,
     /// The number of results that differ from those of the first contender of the case.
     pub differ: usize,
@@ -30,7 +30,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Creates an empty table and prints its head; all of its times have the same unit.
+    /// Creates an empty table and prints its head. `unit` is that of all times.
     pub fn new(suite: &'static str, unit: &'static str) -> Self {
         println!("\n{suite}, {unit}; the ratio is to impinge");
         println!(
@@ -40,7 +40,7 @@ impl Table {
         Self { suite, unit, rows: Vec::new() }
     }
 
-    /// Adds and prints rows; ratios are relative to the first row of each case.
+    /// Adds and prints rows; the ratio of a row is relative to the first row of its case.
     pub fn add(&mut self, rows: Vec<Row>) {
         for row in &rows {
             let first = rows.iter().find(|first| first.case == row.case);

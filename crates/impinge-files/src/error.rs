@@ -1,4 +1,4 @@
-//! Errors of files: the problem and its position in the file.
+//! Errors of reading files and scenes: the problem and its position in the file.
 
 use core::fmt;
 use std::io;
@@ -9,7 +9,8 @@ use impinge_record::{LibraryError, RecordError};
 use crate::text::{self, Printable, Quoted};
 use crate::{Dimension, Limit};
 
-/// An error of a file: the file, the position as far as it is known, and the problem.
+/// An error of reading a file or building its scene: the file, the position if known, and the
+/// problem.
 ///
 /// ```
 /// use impinge_files::{Problem, Scene};
@@ -34,19 +35,20 @@ use crate::{Dimension, Limit};
 pub struct FileError {
     /// The path of the file, as the caller named it.
     pub file: PathBuf,
-    /// The line, counted from 1; `None` for binary formats, and where it is not known.
+    /// The line, counted from 1. `None` for binary formats and scenes without a text, and if the
+    /// parser reports no line.
     pub line: Option<usize>,
-    /// The column in characters, counted from 1.
+    /// The column in characters, counted from 1; `None` if only the line or neither is known.
     pub column: Option<usize>,
     /// The path in the document, such as `objects[3].shape.ball.radius`; empty for the whole file.
     pub path: String,
-    /// The text at that position, in one line and shortened.
+    /// The value at that position, on one line and shortened; `None` if no value is quoted.
     pub value: Option<String>,
     /// The problem; boxed, so that `Result`s stay small.
     pub problem: Box<Problem>,
 }
 
-/// A problem of a file.
+/// The kind of a [`FileError`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Problem {
@@ -59,8 +61,8 @@ pub enum Problem {
     },
     /// The path is a device, a pipe or a folder: only regular files are read.
     NotAFile,
-    /// A file names another file outside of the root folder. [`ReadOptions::with_root`](crate::ReadOptions::with_root)
-    /// selects another root.
+    /// A file names another file outside the root folder.
+    /// [`ReadOptions::with_root`](crate::ReadOptions::with_root) selects another root.
     Outside {
         /// The path of the named file.
         path: PathBuf,
@@ -74,12 +76,12 @@ pub enum Problem {
         /// The value of the limit.
         allowed: usize,
     },
-    /// The extension of the file is that of no supported format.
+    /// No supported format has the extension of the file.
     UnknownFormat {
-        /// The extension without its dot; empty if there is none.
+        /// The extension in lower case, without its dot; empty if the file has none.
         extension: String,
     },
-    /// The file does not follow its format; the message of the parser.
+    /// The file does not follow its format. Contains the message of the parser.
     Syntax(String),
     /// The library rejects the values of a shape, mesh or group, or the world rejects an object.
     Library(LibraryError),
@@ -89,17 +91,18 @@ pub enum Problem {
     WrongLength {
         /// The required number of coordinates.
         needed: usize,
-        /// The given number of coordinates.
+        /// The number of coordinates in the file.
         given: usize,
     },
-    /// An element of one dimension occurs in a scene of the other.
+    /// The scene contains an element that exists in the other dimension only, such as a 2D rotation
+    /// in a 3D scene.
     WrongDimension {
         /// The kind of element.
         what: &'static str,
         /// The dimension of the scene.
         dimension: Dimension,
     },
-    /// The requested world has another dimension than the scene.
+    /// The requested world has a different dimension than the scene.
     OtherWorld {
         /// The dimension of the scene.
         scene: Dimension,
@@ -118,7 +121,8 @@ pub enum Problem {
     Members(&'static str),
     /// No shape has this name.
     UnknownShape(String),
-    /// A shape contains itself, through these names.
+    /// A shape contains itself through the shapes with these names, the first of which is repeated
+    /// at the end.
     ShapeCycle(Vec<String>),
     /// Two objects have this name.
     DuplicateName(String),
@@ -130,30 +134,31 @@ pub enum Problem {
     NotSolid {
         /// The number of edges that belong to one triangle only.
         boundary_edges: usize,
-        /// The number of edges at which the fronts of the two triangles disagree.
+        /// The number of edges whose two triangles have their fronts on different sides.
         inconsistent_edges: usize,
         /// The number of edges that belong to more than two triangles.
         non_manifold_edges: usize,
     },
-    /// A count exceeds the capacity of a representation.
+    /// A count exceeds the allowed maximum, such as the number of nested elements or of parts of a
+    /// compound.
     TooMany {
         /// The kind of item that is counted.
         what: &'static str,
-        /// The requested count.
+        /// The count in the file. If the exact count is unknown, the first value above the limit.
         given: usize,
-        /// The largest allowed count.
+        /// The maximum count that is accepted.
         limit: usize,
     },
-    /// The robot has no joint of this name, or none that moves.
+    /// The robot has no movable joint with this name, or the joint mimics another joint.
     UnknownJoint(String),
-    /// The robot has no link of this name.
+    /// The robot has no link with this name.
     UnknownLink(String),
     /// The joints of a robot do not form a tree.
     NotATree {
         /// A link that has two parents, or that is not connected to the root.
         link: String,
     },
-    /// A joint mimics itself, through other joints.
+    /// A joint mimics itself, directly or through other joints.
     MimicCycle(String),
     /// No folder contains this package.
     UnknownPackage(String),
@@ -179,7 +184,7 @@ impl fmt::Display for FileError {
         }
         let problem = self.problem.to_string();
         write!(f, "{problem}")?;
-        // The message of a problem often contains the value already.
+        // The value is omitted if the message of the problem already contains it.
         match &self.value {
             Some(value) if !problem.contains(value.trim_matches('"')) => {
                 write!(f, " (here: {})", Printable(value))
@@ -304,14 +309,14 @@ impl<E: Into<LibraryError>> From<E> for Problem {
 #[derive(Clone, Debug)]
 pub(crate) struct Fault {
     pub(crate) path: String,
-    /// Whether the path already begins at the document, as for a named shape: callers then prepend
-    /// nothing.
+    /// `true` if the path already begins at the root of the document, as for a named shape. Callers
+    /// then prepend nothing.
     pub(crate) is_absolute: bool,
     pub(crate) problem: Problem,
 }
 
 impl Fault {
-    /// Marks the path as beginning at the document, so that callers prepend nothing.
+    /// Marks the path as starting at the root of the document, so that callers prepend nothing.
     pub(crate) const fn absolute(mut self) -> Self {
         self.is_absolute = true;
         self
@@ -334,9 +339,9 @@ impl<P: Into<Problem>> From<P> for Fault {
     }
 }
 
-/// Adds a step of the path to the error of a result.
+/// Prepends a member name or an index to the path of an error in a result.
 pub(crate) trait Within<T> {
-    /// Prepends a member to the path of the error.
+    /// Prepends the member name or index `step` to the path of the error.
     fn within(self, step: &str) -> Result<T, Fault>;
 }
 

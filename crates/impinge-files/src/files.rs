@@ -1,4 +1,4 @@
-//! Reads files as bytes: regular files from the folders of a scene, within its limits.
+//! Reads regular files from the permitted folders of a scene, within its limits.
 
 use std::fs::{self, File};
 use std::io::Read as _;
@@ -6,36 +6,36 @@ use std::path::{Component, Path, PathBuf};
 
 use crate::{FileError, Limit, Limits, Problem, ReadOptions};
 
-/// The file that marks the folder of a ROS package.
+/// The file that marks a folder as a ROS package.
 const MANIFEST: &str = "package.xml";
 
-/// Reads the files of one scene, and counts the bytes and elements that they add up to.
+/// Reads the files of one scene, and counts their bytes and elements against the limits.
 #[derive(Clone, Debug)]
 pub(crate) struct Files {
     roots: Vec<Root>,
-    /// The absolute path of the file that the user names; it may lie anywhere.
+    /// The absolute path of the file that the caller names; it may lie outside all roots.
     first: Option<PathBuf>,
     pub(crate) packages: Vec<PathBuf>,
     pub(crate) limits: Limits,
-    /// Bytes read so far.
+    /// The number of bytes read so far.
     bytes: usize,
-    /// Elements counted so far; see [`Limits::elements`].
+    /// The number of elements counted so far; see [`Limits::elements`].
     elements: usize,
 }
 
 /// A folder from which files are read.
 #[derive(Clone, Debug)]
 struct Root {
-    /// The absolute path, as it was named.
+    /// The absolute path, without `.` and `..`, before symbolic links are resolved.
     named: PathBuf,
-    /// The path without symbolic links; the named path if there is no such folder.
+    /// The path without symbolic links; equal to `named` if it cannot be resolved.
     real: PathBuf,
 }
 
 impl Files {
-    /// Creates a reader for the file that the user names, and for others from its folder or from the root of the
-    /// options. For a robot in a ROS package the root is the folder of the package: the URDF files of packages name
-    /// meshes in folders beside theirs.
+    /// Creates a reader for the file at `path`. Other files are read from the root of `options` or,
+    /// without one, from the folder of `path`. For a robot in a ROS package the default root is the
+    /// folder of the package, since its URDF file names meshes in folders beside its own.
     pub(crate) fn beside(path: &Path, options: &ReadOptions) -> Self {
         let own = path.parent().unwrap_or_else(|| Path::new(""));
         let package = || if extension(path) == "urdf" { package_of(own) } else { None };
@@ -44,7 +44,7 @@ impl Files {
         Self { first, ..Self::within(given.as_deref().unwrap_or(own), options) }
     }
 
-    /// Creates a reader for a folder, unless the options name another root.
+    /// Creates a reader of files in `folder`, or in the root of `options` if it has one.
     pub(crate) fn within(folder: &Path, options: &ReadOptions) -> Self {
         let folder = options.root.as_deref().unwrap_or(folder);
         let packages = options.packages.clone();
@@ -58,15 +58,15 @@ impl Files {
         self.take(&self.locate(path)?)
     }
 
-    /// Returns the bytes of a file; the error names the path.
+    /// Returns the bytes of a file; the error contains the path.
     pub(crate) fn read_named(&mut self, path: &Path) -> Result<Vec<u8>, FileError> {
         self.read(path).map_err(|problem| FileError::whole(path, problem))
     }
 
-    /// Returns the path without symbolic links; an error if it lies in none of the folders.
+    /// Returns the path without symbolic links; an error if it lies in none of the root folders.
     ///
-    /// A path that leads outside is rejected before the disk is accessed, so that errors do not reveal which files
-    /// exist.
+    /// A path that is written as outside is rejected before the disk is accessed, so that errors do
+    /// not reveal which files exist.
     pub(crate) fn locate(&self, path: &Path) -> Result<PathBuf, Problem> {
         if !self.holds(path) {
             return Err(self.outside(path));
@@ -80,7 +80,8 @@ impl Files {
         }
     }
 
-    /// Whether the path, as it is written, lies in one of the folders.
+    /// Returns `true` if the path as written, before symbolic links are resolved, lies in a root
+    /// folder or is the first file.
     pub(crate) fn holds(&self, path: &Path) -> bool {
         let plain = absolute(path);
         let has = |root: &Root| plain.starts_with(&root.named) || plain.starts_with(&root.real);
@@ -96,7 +97,7 @@ impl Files {
         Problem::Outside { path: path.to_owned(), root }
     }
 
-    /// Reads a regular file. Devices and pipes are rejected, since they may have no end.
+    /// Reads a regular file. Devices and pipes are rejected, since reading them may never end.
     fn take(&mut self, path: &Path) -> Result<Vec<u8>, Problem> {
         let wrong = |error| Problem::io(&error);
         if !fs::metadata(path).map_err(wrong)?.is_file() {
@@ -106,12 +107,12 @@ impl Files {
         let length = file.metadata().map_err(wrong)?.len();
         self.count_bytes(usize::try_from(length).unwrap_or(usize::MAX))?;
         let mut bytes = Vec::new();
-        // The file may grow while it is read.
+        // The file may grow while it is read: only the counted bytes are read.
         file.take(length).read_to_end(&mut bytes).map_err(wrong)?;
         Ok(bytes)
     }
 
-    /// Adds to the number of bytes; an error if the limit is exceeded.
+    /// Adds to the number of bytes; an error if the sum exceeds the limit.
     pub(crate) fn count_bytes(&mut self, count: usize) -> Result<(), Problem> {
         let total = self.bytes.saturating_add(count);
         check(Limit::Bytes, total, self.limits.bytes)?;
@@ -119,7 +120,8 @@ impl Files {
         Ok(())
     }
 
-    /// Adds to the number of elements before they are created; an error if the limit is exceeded.
+    /// Adds to the number of elements before they are created; an error if the sum exceeds the
+    /// limit.
     pub(crate) fn count_elements(&mut self, count: usize) -> Result<(), Problem> {
         let total = self.elements.saturating_add(count);
         check(Limit::Elements, total, self.allowed(self.limits.elements))?;
@@ -127,7 +129,7 @@ impl Files {
         Ok(())
     }
 
-    /// Returns the larger of a limit and the number of bytes read.
+    /// Returns the larger of `limit` and the number of bytes read.
     pub(crate) fn allowed(&self, limit: usize) -> usize {
         limit.max(self.bytes)
     }
@@ -146,7 +148,7 @@ impl Root {
     }
 }
 
-/// Returns an absolute path without `.` and `..`.
+/// Returns the absolute path, with `.` and `..` resolved in the text of the path.
 fn absolute(path: &Path) -> PathBuf {
     // An empty path stands for the current folder, but has no absolute form.
     let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
@@ -164,14 +166,14 @@ fn absolute(path: &Path) -> PathBuf {
     plain
 }
 
-/// Returns the nearest ROS package among this folder and its ancestors.
+/// Returns the nearest folder with a package manifest among this folder and its ancestors.
 fn package_of(folder: &Path) -> Option<PathBuf> {
     let folder = absolute(folder);
     let found = folder.ancestors().find(|folder| folder.join(MANIFEST).is_file());
     found.map(Path::to_owned)
 }
 
-/// Returns the extension of a name in lower case, without its dot; empty if there is none.
+/// Returns the extension of a path in lower case, without its dot; empty if there is none.
 pub(crate) fn extension(path: &Path) -> String {
     let extension = path.extension().and_then(|extension| extension.to_str());
     extension.unwrap_or_default().to_ascii_lowercase()

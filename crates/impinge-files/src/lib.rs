@@ -1,9 +1,11 @@
-//! Files of collision worlds: scenes in JSON, meshes in OBJ, STL, PLY and glTF, robots in URDF.
+//! Reads collision worlds from files: scenes in JSON, meshes in OBJ, STL, PLY and glTF, robots in
+//! URDF.
 //!
-//! [`load`] reads any of them as a [`Scene`]: objects with names, shapes and motions. [`Scene::world`] makes a
-//! recorded world of it in a chosen scalar and dimension, [`Scene::collision_world`] a plain one. `SCENE.md`
-//! describes scene files, `scene.schema.json` is their schema. [`MeshFile`] reads a mesh alone, with a
-//! [`MeshReport`] of its defects.
+//! [`load`] reads a file of any of these formats as a [`Scene`]: objects with names, shapes and
+//! motions. [`Scene::world`] creates a recorded world of the scene in a chosen scalar and
+//! dimension, and [`Scene::collision_world`] a world without a recording. `SCENE.md` describes
+//! scene files, and `scene.schema.json` is their JSON schema. [`MeshFile`] reads a mesh file
+//! without a scene, with a [`MeshReport`] of its defects.
 //!
 //! ```
 //! use impinge_files::Scene;
@@ -22,10 +24,11 @@
 //! # Ok::<(), impinge_files::FileError>(())
 //! ```
 //!
-//! Files are treated as untrusted input. Errors are typed and name the file, the line, the path in the document and
-//! the value. [`Printable`] escapes control characters of texts from files. Files that a file names are read only
-//! from its folder, or from that of the [`ReadOptions`]. Time and memory are bounded by the size of the files, up to
-//! logarithms. Content that a few bytes can request without bound, such as grids of objects, has [`Limits`].
+//! Files are treated as untrusted input. Errors are typed and name the file, the line, the path in
+//! the document and the value. [`Printable`] escapes control characters of texts from files. Files
+//! that a file names are read only from its folder, or from that of the [`ReadOptions`]. Time and
+//! memory are bounded by the size of the files, up to logarithms. Content that a few bytes can
+//! request without bound, such as grids of objects, has [`Limits`].
 #![forbid(unsafe_code)]
 
 mod error;

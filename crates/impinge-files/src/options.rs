@@ -21,14 +21,15 @@ pub struct ReadOptions {
 }
 
 impl ReadOptions {
-    /// Returns the default options: the root is the folder of the first file, no other packages, the default limits.
+    /// Creates the default options: the root is the folder of the first file, with no package
+    /// folders and the default limits.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Allows named files anywhere in this folder, instead of in the folder of the file that is read first. Paths
-    /// are compared after symbolic links are resolved.
+    /// Sets the root: named files may lie anywhere in this folder, instead of in the folder of the
+    /// file that is read first. Paths are compared after symbolic links are resolved.
     #[must_use]
     pub fn with_root(self, folder: impl Into<PathBuf>) -> Self {
         Self { root: Some(folder.into()), ..self }
@@ -52,49 +53,50 @@ impl ReadOptions {
 /// error [`Problem::Limit`](crate::Problem::Limit); a value equal to it is accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// The largest number of bytes of all files together.
+    /// The maximum total size of all files, in bytes.
     pub bytes: usize,
-    /// Elements that reading may create: vertices and triangle corners of glTF meshes and of mesh
-    /// shapes. glTF files also count the bytes of part names, and each index of a strip or fan as
-    /// three corners. A mesh counts once for each glTF node that uses it, and once for each shape
-    /// with another part, scale or kind. Files with more bytes than this may have as many elements
-    /// as bytes.
+    /// The maximum number of elements that reading may create: vertices and triangle corners of
+    /// glTF meshes and of mesh shapes. glTF files also count the bytes of part names, and three
+    /// corners for each index of a strip or fan. A mesh counts once for each glTF node that uses
+    /// it, and once for each shape with a different part, scale or kind. If the files have more
+    /// bytes than this limit, the limit is their number of bytes.
     pub elements: usize,
-    /// The largest number of corners of a polygon of a mesh file. Triangulation takes time
+    /// The maximum number of corners of a polygon of a mesh file. Triangulation may take time
     /// proportional to the square of the number of corners.
     pub corners: usize,
-    /// The largest number of objects of a scene.
+    /// The maximum number of objects of a scene.
     pub objects: usize,
-    /// The largest number of bytes of the names of all objects. Files with more bytes than this may
-    /// have as many bytes of names.
+    /// The maximum total size of the names of all objects, in bytes. If the files have more bytes
+    /// than this limit, the limit is their number of bytes.
     pub names: usize,
 }
 
 impl Default for Limits {
-    /// 256 MiB of files, 4 194 304 elements, 4096 corners, 131 072 objects, 16 MiB of names.
+    /// Returns 256 MiB of files, 4 194 304 elements, 4096 corners, 131 072 objects, and 16 MiB of
+    /// names.
     fn default() -> Self {
         let (bytes, elements, corners) = (1 << 28, 1 << 22, 1 << 12);
         Self { bytes, elements, corners, objects: 1 << 17, names: 1 << 24 }
     }
 }
 
-/// One of the [`Limits`].
+/// The name of a limit: a field of [`Limits`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Limit {
-    /// [`Limits::bytes`].
+    /// The limit [`Limits::bytes`].
     Bytes,
-    /// [`Limits::elements`].
+    /// The limit [`Limits::elements`].
     Elements,
-    /// [`Limits::corners`].
+    /// The limit [`Limits::corners`].
     Corners,
-    /// [`Limits::objects`].
+    /// The limit [`Limits::objects`].
     Objects,
-    /// [`Limits::names`].
+    /// The limit [`Limits::names`].
     Names,
 }
 
 impl Limit {
-    /// The name of this member of [`Limits`].
+    /// Returns the name of the field of [`Limits`].
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -107,7 +109,7 @@ impl Limit {
     }
 }
 
-/// Writes the kind of item that the limit counts.
+/// Writes the kind of item that the limit counts, in the plural.
 impl fmt::Display for Limit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

@@ -1,5 +1,4 @@
-//! Finds the position of values in a JSON text by scanning its characters, without a tree of the
-//! document.
+//! Finds the position of values in a JSON text by scanning its characters, without building a tree.
 
 /// A position in a text that is valid JSON.
 #[derive(Clone, Copy, Debug)]
@@ -8,7 +7,7 @@ pub(crate) struct Scanner<'a> {
     at: usize,
 }
 
-/// A step of a path in a document.
+/// A step of a path in a document: a member name, or an index in a list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Step<'a> {
     Name(&'a str),
@@ -16,7 +15,7 @@ pub(crate) enum Step<'a> {
 }
 
 impl<'a> Scanner<'a> {
-    /// Returns the position of the value of the whole document.
+    /// Creates a scanner at the value of the whole document.
     pub(crate) fn new(text: &'a str) -> Self {
         let mut scanner = Self { text, at: 0 };
         scanner.blank();
@@ -32,7 +31,7 @@ impl<'a> Scanner<'a> {
         if self.peek() != Some(open) {
             return None;
         }
-        // Terminates: each iteration consumes a member, and the last member has no comma behind it.
+        // Terminates: each iteration consumes a member, and no comma follows the last member.
         loop {
             self.next();
             if matches!(self.peek(), Some(b']' | b'}') | None) {
@@ -54,7 +53,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// Returns the offset of the current value in bytes, and its text.
+    /// Returns the byte offset of the current value, and its text.
     pub(crate) fn value(mut self) -> (usize, &'a str) {
         let start = self.at;
         self.skip();
@@ -65,7 +64,7 @@ impl<'a> Scanner<'a> {
         self.text.as_bytes().get(self.at).copied()
     }
 
-    /// Skips a character and the white space behind it.
+    /// Skips a character and the white space after it.
     fn next(&mut self) {
         self.at += 1;
         self.blank();
@@ -86,7 +85,7 @@ impl<'a> Scanner<'a> {
         serde_json::from_str(key).unwrap_or_default()
     }
 
-    /// Skips a value.
+    /// Skips a value of any kind.
     fn skip(&mut self) {
         let mut depth = 0_usize;
         while let Some(byte) = self.peek() {
@@ -105,7 +104,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// Skips to the quotation mark that ends a string.
+    /// Moves to the quotation mark that ends the current string.
     fn string(&mut self) {
         self.at += 1;
         while let Some(byte) = self.peek().filter(|byte| *byte != b'"') {
@@ -113,7 +112,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// Skips a number or word.
+    /// Skips a number or a word, such as `true`.
     fn scalar(&mut self) {
         let ends = |byte: u8| byte.is_ascii_whitespace() || b",]}".contains(&byte);
         while self.peek().is_some_and(|byte| !ends(byte)) {

@@ -1,4 +1,4 @@
-//! The text of a scene file, and the lines of its values.
+//! The text of a scene file, from which the lines of its values are found.
 
 use std::path::{Path, PathBuf};
 
@@ -6,14 +6,14 @@ use crate::error::Fault;
 use crate::scan::{Scanner, Step};
 use crate::{FileError, Problem, SceneFile};
 
-/// The largest number of characters of a value in an error.
+/// The maximum number of characters of a value in an error.
 const MAX_VALUE: usize = 60;
 
 /// A document and the file that contains it.
 #[derive(Clone, Debug)]
 pub(crate) struct Source {
     pub(crate) file: PathBuf,
-    /// `None` for scenes that are built in memory: their errors have paths only.
+    /// The JSON text; `None` for scenes that are built in memory, whose errors contain paths only.
     text: Option<String>,
 }
 
@@ -28,7 +28,7 @@ impl Source {
         Self { file, text: None }
     }
 
-    /// The folder to which paths in the document are relative.
+    /// Returns the folder to which paths in the document are relative.
     pub(crate) fn folder(&self) -> &Path {
         self.file.parent().unwrap_or_else(|| Path::new(""))
     }
@@ -39,8 +39,8 @@ impl Source {
         let mut reader = serde_json::Deserializer::from_str(text);
         let scene = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
             let path = error.path().to_string();
-            // If a value is not valid JSON, its own step in the path is "?". It is removed, so that
-            // the path is that of the enclosing value. A "." alone is the whole document.
+            // If a value is not valid JSON, its own step in the path is "?". This step is removed,
+            // so that the path ends at the enclosing value. The path "." is the whole document.
             let path = path.trim_end_matches('?').trim_end_matches('.').to_owned();
             self.syntax_error(path, error.inner())
         })?;
@@ -51,27 +51,29 @@ impl Source {
     fn syntax_error(&self, path: String, error: &serde_json::Error) -> FileError {
         let (line, column) = (error.line(), error.column());
         let message = error.to_string();
-        // The error has fields for line and column, so that they are removed from the message.
+        // The error has fields for line and column, so that the message need not contain them.
         let place = format!(" at line {line} column {column}");
         let message = message.strip_suffix(&place).unwrap_or(&message).to_owned();
         let (line, column) = (line > 0).then_some((line, column.max(1))).unzip();
         FileError { line, column, path, ..FileError::whole(&self.file, Problem::syntax(message)) }
     }
 
-    /// Adds the line, column and value to an error. If the document does not contain the end of the path, because
-    /// a member has its default, the longest existing part of the path is used.
+    /// Converts a fault to an error with the line, column and value. If the document does not
+    /// contain the end of the path, because a member has its default, the longest existing part of
+    /// the path is used.
     pub(crate) fn error(&self, fault: Fault) -> FileError {
         let Fault { path, problem, .. } = fault;
         let error = FileError::whole(&self.file, problem);
         let Some(text) = &self.text else { return FileError { path, ..error } };
         let Found { path, place: (line, column), value } = find(text, &path);
-        // The whole document is not quoted.
+        // An error of the whole document quotes no value.
         let value = Some(value).filter(|_| !path.is_empty());
         FileError { line: Some(line), column: Some(column), path, value, ..error }
     }
 }
 
-/// Finds the value at a path, or the nearest enclosing value in the document. `parse` has accepted the document.
+/// Finds the value at a path, or the nearest enclosing value in the document. The text must be
+/// valid JSON, which `parse` has checked.
 fn find(text: &str, path: &str) -> Found {
     let mut scanner = Scanner::new(text);
     let mut taken = String::new();
@@ -88,7 +90,7 @@ fn find(text: &str, path: &str) -> Found {
     Found { path: taken, place: place(text, start), value: shortened(value) }
 }
 
-/// Returns the line and the column of a byte, counted from 1.
+/// Returns the line and the column of a byte offset, both counted from 1.
 fn place(text: &str, byte: usize) -> (usize, usize) {
     let before = &text[..byte];
     let line = before.matches('\n').count() + 1;
@@ -96,7 +98,8 @@ fn place(text: &str, byte: usize) -> (usize, usize) {
     (line, before[start..].chars().count() + 1)
 }
 
-/// Returns the beginning of the text of a value, in one line.
+/// Returns the first [`MAX_VALUE`] characters of a value, with white space replaced by single
+/// spaces.
 fn shortened(text: &str) -> String {
     let mut line = String::new();
     let mut count = 0;
@@ -114,7 +117,7 @@ fn shortened(text: &str) -> String {
     line
 }
 
-/// A value of a document.
+/// A value that was found in a document.
 struct Found {
     /// The part of the path that exists in the document.
     path: String,

@@ -1,16 +1,16 @@
-//! Texts of files in messages: escaped for terminals, and shortened to a line or two.
+//! Formats texts from files for messages: escapes control characters, and shortens long texts.
 
 use core::fmt::{self, Write as _};
 use std::borrow::Cow;
 
-/// The largest number of characters of a text in a message.
+/// The maximum number of characters of a text in a message, before control characters are escaped.
 const MAX_TEXT: usize = 160;
 
-/// A text of a file, formatted for a terminal.
+/// Formats a text from a file for a terminal.
 ///
-/// Control characters, line breaks, and the invisible characters that reorder text are written as escape sequences,
-/// so that a file cannot move the cursor of a terminal, colour it, or forge a line. The middle of a text of more
-/// than 160 characters is omitted.
+/// Control characters, line breaks, and the invisible characters that reorder text are written as
+/// escape sequences, so that a file cannot move the cursor of a terminal, colour it, or forge a
+/// line. The middle of a text of more than 160 characters is omitted.
 ///
 /// ```
 /// use impinge_files::Printable;
@@ -39,7 +39,7 @@ impl fmt::Display for Printable<'_> {
     }
 }
 
-/// A name of a file in quotation marks, formatted for a terminal.
+/// Formats a name from a file for a terminal, in quotation marks.
 pub(crate) struct Quoted<'a>(pub(crate) &'a str);
 
 impl fmt::Display for Quoted<'_> {
@@ -48,10 +48,11 @@ impl fmt::Display for Quoted<'_> {
     }
 }
 
-/// Returns a message of a parser, which may quote a file, in one line and shortened.
+/// Returns a message of a parser on one line, escaped and shortened. Such messages may quote the
+/// file.
 pub(crate) fn message(text: &str) -> String {
     let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
-    // Words in the middle of a long text are not processed.
+    // A long text is cut first, so that words in its middle are not processed.
     let text = match text.char_indices().nth(8 * MAX_TEXT) {
         Some((end, _)) => format!("{} {}", words(&text[..end]), words(tail(text, MAX_TEXT))),
         None => words(text),
@@ -59,7 +60,7 @@ pub(crate) fn message(text: &str) -> String {
     Printable(&text).to_string()
 }
 
-/// Returns the text, without its middle if it is long.
+/// Returns the text, without its middle if it has more than [`MAX_TEXT`] characters.
 fn cut(text: &str) -> Cow<'_, str> {
     if text.len() <= MAX_TEXT || text.chars().nth(MAX_TEXT).is_none() {
         return Cow::Borrowed(text);
@@ -73,7 +74,8 @@ fn tail(text: &str, count: usize) -> &str {
     text.char_indices().rev().take(count).last().map_or("", |(start, _)| &text[start..])
 }
 
-/// Whether a terminal interprets the character, or it is invisible and reorders others.
+/// Returns `true` for control characters, and for invisible characters, some of which reorder the
+/// text.
 fn is_obeyed(character: char) -> bool {
     character.is_control()
         || matches!(

@@ -1,13 +1,14 @@
-//! Values from the bytes of the fuzzer.
+//! Reads values from the input bytes of the fuzzer.
 
 use impinge::math::{Point, Real, Vector};
 
-/// The rest of the input; zeros when it is used up, so that every input is valid.
+/// The unread rest of the input. Once it is used up all further bytes are zero, so that every input
+/// is valid.
 #[derive(Debug)]
 pub(crate) struct Bytes<'a> {
     rest: &'a [u8],
-    /// Whether numbers may be tiny, huge, infinite or NaN; otherwise they are moderate, and so must
-    /// results be.
+    /// Whether numbers may be tiny, huge, infinite or NaN. Otherwise they are moderate, and results
+    /// must be finite.
     is_wild: bool,
 }
 
@@ -22,7 +23,7 @@ impl<'a> Bytes<'a> {
         self.is_wild = true;
     }
 
-    /// Whether all numbers are moderate: at most 32, and a multiple of 1/1024.
+    /// Whether all numbers are moderate: multiples of 1/1024 with a magnitude of at most 32.
     pub(crate) const fn is_moderate(&self) -> bool {
         !self.is_wild
     }
@@ -53,8 +54,8 @@ impl<'a> Bytes<'a> {
         self.byte() % 2 == 1
     }
 
-    /// Returns a number: small and round ones, for which solids touch exactly, more often than
-    /// others.
+    /// Returns a number. Small and round numbers, for which solids touch exactly, are more frequent
+    /// than others.
     pub(crate) fn number<N: Real>(&mut self) -> N {
         let kinds = if self.is_wild { 16 } else { 11 };
         N::lit(match self.choice(kinds) {
@@ -100,7 +101,8 @@ impl<'a> Bytes<'a> {
         (0..count).map(|_| self.point()).collect()
     }
 
-    /// Returns up to 12 tuples of indices, below `count` or (seldom) equal to it.
+    /// Returns up to 12 tuples of indices below `count`, and rarely one more whose indices equal
+    /// `count`.
     pub(crate) fn indices<const ENDS: usize>(&mut self, count: usize) -> Vec<[u32; ENDS]> {
         let parts = self.choice(13);
         let mut index = || self.choice(count.max(1)) as u32;

@@ -34,7 +34,8 @@ impl Task for Construct {
     }
 }
 
-/// Makes a shape, scales it, deforms it, computes its boxes and parts; hulls, surfaces, and trees.
+/// Constructs a shape, scales and deforms it, and computes its boxes and parts. Also computes hulls
+/// and surfaces, and tests trees of boxes.
 pub fn construct(data: &[u8]) {
     dispatch(Construct, data);
 }
@@ -83,13 +84,13 @@ pub(crate) fn moved<N: Real, const D: usize>(
     vertices.iter().map(other).collect()
 }
 
-/// Returns a box of any numbers; `None` if they are invalid.
+/// Returns a box at random corners; `None` if the constructor rejects them.
 pub(crate) fn any_box<N: Real, const D: usize>(bytes: &mut Bytes<'_>) -> Option<Aabb<N, D>> {
     let low = bytes.point::<N, D>();
     Aabb::try_new(low, low + bytes.sizes::<N, D>()).ok()
 }
 
-/// Tests boxes and balls of any numbers, and compares a tree of boxes with a loop over all of them.
+/// Compares a tree of random boxes with a loop over all boxes, and constructs a bounding sphere.
 fn boxes<N: Space<D>, const D: usize>(bytes: &mut Bytes<'_>) {
     let count = bytes.choice(20);
     let boxes: Vec<Aabb<N, D>> = (0..count).filter_map(|_| any_box(bytes)).collect();

@@ -1,4 +1,4 @@
-//! Two moving shapes.
+//! Impacts of two moving shapes.
 
 use impinge::math::{Isometry, Pose, Real, Space, Vector, max};
 use impinge::query::{self, Impact, ImpactOptions, ImpactStatus, Moving};
@@ -11,12 +11,12 @@ use crate::{Bytes, Task, dispatch};
 struct Straight;
 struct Turning;
 
-/// [`query::impact`] and [`query::time_of_impact`].
+/// Fuzzes [`query::impact`] and [`query::time_of_impact`].
 pub fn time_of_impact(data: &[u8]) {
     dispatch(Straight, data);
 }
 
-/// [`query::nonlinear_time_of_impact`].
+/// Fuzzes [`query::nonlinear_time_of_impact`].
 pub fn nonlinear_time_of_impact(data: &[u8]) {
     dispatch(Turning, data);
 }
@@ -66,7 +66,8 @@ impl Task for Turning {
     }
 }
 
-/// Checks an impact, and that of the swapped arguments; `_told_apart` is not used.
+/// Checks that an impact is within the limits of its options and parts, and that swapped arguments
+/// give the flipped impact. `_told_apart` is unused.
 fn check<N: Space<D>, R, const D: usize>(
     pair: &Pair<N, R, D>,
     options: &ImpactOptions<N>,

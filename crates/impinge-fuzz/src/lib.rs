@@ -1,5 +1,5 @@
-//! Shapes, poses and queries made from the bytes of the fuzzer: for any bytes no call may panic or
-//! hang, and results must be consistent.
+//! Shapes, poses and queries made from the bytes of the fuzzer. No call may panic or hang for any
+//! bytes, and results must be consistent.
 #![forbid(unsafe_code)]
 #![allow(
     clippy::missing_assert_message,
@@ -34,7 +34,7 @@ pub use world::world;
 use impinge::math::Space;
 use place::{Dimension, Plane, Room};
 
-/// A function of an input; it panics on a finding.
+/// A fuzz target: runs on the bytes of an input, and panics if it finds a fault.
 pub type Target = fn(&[u8]);
 
 /// The targets with their names.
@@ -55,7 +55,7 @@ pub const TARGETS: [(&str, Target); 14] = [
     ("recording", recording),
 ];
 
-/// A task with bytes, in any dimension and scalar.
+/// A fuzz target that is generic over the dimension and the scalar.
 trait Task {
     /// Runs the task.
     fn run<N: Space<D>, M: Dimension<N, D>, const D: usize>(self, bytes: &mut Bytes<'_>);

@@ -1,9 +1,10 @@
 //! Runs the targets with random bytes, without `cargo fuzz`.
 //!
-//! `impinge-fuzz 10` runs each target for ten seconds and `impinge-fuzz 10 world ray` these two, after the
-//! inputs of `regressions.txt`. The seed is new on each run and printed; `SEED=7` sets it. An input that
-//! panics is reduced and printed. `impinge-fuzz replay world 00ff` runs one input, given as hexadecimal
-//! digits or the name of a file, and `impinge-fuzz reduce world 00ff` reduces it first.
+//! `impinge-fuzz 10` runs each target for ten seconds, after its inputs in `regressions.txt`.
+//! `impinge-fuzz 10 world ray` runs only the targets `world` and `ray`. The seed differs from run
+//! to run and is printed; `SEED=7` sets it. An input that panics is reduced and printed.
+//! `impinge-fuzz replay world 00ff` runs one input, which is a string of hexadecimal digits or the
+//! name of a file. `impinge-fuzz reduce world 00ff` reduces it first.
 #![forbid(unsafe_code)]
 #![allow(clippy::print_stdout, reason = "findings are printed")]
 
@@ -19,7 +20,7 @@ const REGRESSIONS: &str = include_str!("../regressions.txt");
 /// The longest random input.
 const MAX_BYTES: u64 = 512;
 
-/// Inputs that take longer are printed.
+/// Inputs that take longer than this are printed.
 const SLOW: Duration = Duration::from_secs(2);
 
 fn main() -> ExitCode {
@@ -59,7 +60,8 @@ fn replay(name: &str, input: &str, is_reduced: bool) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Replays the regressions of a target, then runs it on random inputs for a time; `false` if it panicked.
+/// Replays the regressions of a target, then runs it on random inputs for `time`. Returns `false`
+/// if it panicked.
 fn run(name: &str, target: Target, time: Duration, seed: u64) -> bool {
     let known = regressions(name);
     let (start, mut random) = (Instant::now(), Random(seed));
@@ -100,7 +102,7 @@ fn regressions(name: &str) -> Vec<Vec<u8>> {
     lines.filter_map(input).collect()
 }
 
-/// Returns `SEED`, or a new one.
+/// Returns the seed in the variable `SEED`; without it, a seed from the current time.
 fn seed() -> u64 {
     let given = std::env::var("SEED").ok().and_then(|text| text.parse().ok());
     let now = || SystemTime::now().duration_since(UNIX_EPOCH).map_or(1, |time| time.as_micros());
@@ -129,7 +131,8 @@ impl Random {
         if first < 64 { second & 31 } else { second }
     }
 
-    /// Returns random bytes; in one of eight cases those of a regression with some bytes changed.
+    /// Returns random bytes; in one of eight cases the bytes of a regression with up to five bytes
+    /// changed.
     fn input(&mut self, known: &[Vec<u8>]) -> Vec<u8> {
         if known.is_empty() || self.below(8) > 0 {
             return self.bytes();

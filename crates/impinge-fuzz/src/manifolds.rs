@@ -37,7 +37,7 @@ impl Task for Manifolds {
     }
 }
 
-/// [`PairManifoldGenerator`].
+/// Fuzzes [`PairManifoldGenerator`].
 pub fn manifolds(data: &[u8]) {
     dispatch(Manifolds, data);
 }
@@ -73,7 +73,8 @@ impl<N: Space<D>, const D: usize> Kept<N, D> {
         }
     }
 
-    /// Checks the contacts after an update: ids are unique, and old ones do not return.
+    /// Updates the generator, and checks that contact ids are unique and that old ids do not
+    /// return.
     fn update<M: Dimension<N, D>>(
         &mut self,
         pair: &Pair<N, M::Turn, D>,
@@ -102,8 +103,7 @@ impl<N: Space<D>, const D: usize> Kept<N, D> {
     }
 }
 
-/// Checks that the contacts of the swapped pair are those of the pair, flipped, in any order. If both were
-/// the same shape at one pose, contacts have the same age but other ids.
+/// Checks that the contacts of the swapped pair are the flipped contacts of the pair, in any order.
 fn check_order<N: Space<D>, R, const D: usize>(
     pair: &Pair<N, R, D>,
     contacts: &[TrackedContact<N, D>],
@@ -123,8 +123,8 @@ fn check_order<N: Space<D>, R, const D: usize>(
     }
 }
 
-/// Checks that there is a manifold if there is a contact, and that the depth of a convex pair is equal up
-/// to rounding.
+/// Checks that there is a manifold if and only if there is a contact. The largest depth of a convex
+/// pair must equal the depth of the contact up to rounding.
 fn check_deepest<N: Space<D>, R, const D: usize>(
     pair: &Pair<N, R, D>,
     contacts: &[TrackedContact<N, D>],

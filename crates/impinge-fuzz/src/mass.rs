@@ -10,7 +10,7 @@ use crate::{Bytes, Task, dispatch};
 
 struct Masses;
 
-/// [`mass_properties`].
+/// Fuzzes [`mass_properties`].
 pub fn mass(data: &[u8]) {
     dispatch(Masses, data);
 }

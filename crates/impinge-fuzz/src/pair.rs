@@ -39,8 +39,8 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D
         }
     }
 
-    /// Whether the two are the same shape at the same pose: their order is then arbitrary. A ball has no
-    /// rotation.
+    /// Whether both shapes and both poses are equal, so that their order is arbitrary. The rotation
+    /// of a ball is ignored.
     pub(crate) fn are_same(&self) -> bool {
         let is_ball = self.g1.geometry().kind() == ShapeKind::Ball;
         let place = |m| if is_ball { Pose::unturned(m) } else { Pose::from_isometry(m) };
@@ -53,7 +53,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D
         [&self.m1, &self.m2].iter().all(|m| Pose::from_isometry(*m).is_finite())
     }
 
-    /// Checks that swapped arguments give the flipped result, to the bit.
+    /// Checks that swapped arguments give the flipped result, bit for bit.
     pub(crate) fn check_flip<A: PartialEq + Debug>(
         &self,
         own: &A,
@@ -66,7 +66,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D
         panic!("\n{own:?}\nis not\n{other:?}\nswapped, of\n{self:?}");
     }
 
-    /// The tolerance for the rounding of a length.
+    /// Returns the tolerance for the rounding errors of a length.
     pub(crate) fn tolerance(&self) -> N {
         let places = [&self.m1, &self.m2]
             .iter()
@@ -111,27 +111,27 @@ impl Task for Question {
     }
 }
 
-/// [`query::distance`].
+/// Fuzzes [`query::distance`].
 pub fn distance(data: &[u8]) {
     dispatch(Question::Distance, data);
 }
 
-/// [`query::closest_points`].
+/// Fuzzes [`query::closest_points`].
 pub fn closest_points(data: &[u8]) {
     dispatch(Question::ClosestPoints, data);
 }
 
-/// [`query::proximity`].
+/// Fuzzes [`query::proximity`].
 pub fn proximity(data: &[u8]) {
     dispatch(Question::Proximity, data);
 }
 
-/// [`query::contact`].
+/// Fuzzes [`query::contact`].
 pub fn contact(data: &[u8]) {
     dispatch(Question::Contact, data);
 }
 
-/// [`query::witness`].
+/// Fuzzes [`query::witness`].
 pub fn witness(data: &[u8]) {
     dispatch(Question::Witness, data);
 }
@@ -141,8 +141,8 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D
         [&*self.g1, &*self.g2]
     }
 
-    /// Whether both are unbounded: if half-spaces have an unbounded overlap there is no contact, or only
-    /// one of other parts.
+    /// Whether both shapes are unbounded. If two half-spaces overlap without bound, the pair has no
+    /// contact, or only a contact of other parts.
     fn may_be_endless(&self) -> bool {
         self.shapes().into_iter().all(is_unbounded)
     }
@@ -198,7 +198,8 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D
         }
         let limit = max(limit, N::ZERO);
         let is_near = distance <= limit && self.is_placed();
-        // Without parts there is no point at any distance.
+        // A composite without parts has an infinite distance and no closest points, whatever the
+        // limit.
         let is_nothing = distance == N::INFINITY && limit == N::INFINITY;
         let found = points != ClosestPoints::Disjoint;
         assert!(found == is_near || is_nothing, "{points:?} at {distance}, {limit}:\n{self:?}");

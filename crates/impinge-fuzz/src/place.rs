@@ -1,4 +1,4 @@
-//! Parts that differ by dimension: rotations, and the shapes of one dimension only.
+//! Code that differs by dimension: rotations, and the shapes that exist in one dimension only.
 
 use std::fmt::Debug;
 
@@ -20,15 +20,16 @@ pub(crate) trait Dimension<N: Space<D>, const D: usize> {
     /// Rotations.
     type Turn: AbstractRotation<N, D> + Copy + Debug;
 
-    /// Returns a position of any numbers.
+    /// Returns a position; if numbers may be wild, its coordinates may be infinite or NaN.
     fn position(bytes: &mut Bytes<'_>) -> Isometry<N, Self::Turn, D>;
-    /// Converts a position to that of worlds.
+    /// Converts a position to the type that worlds use.
     fn stored(position: Isometry<N, Self::Turn, D>) -> N::Isometry;
-    /// Converts back.
+    /// Converts a position from the type that worlds use.
     fn loose(position: N::Isometry) -> Isometry<N, Self::Turn, D>;
-    /// Returns a shape of this dimension only; `None` if a constructor rejects the numbers.
+    /// Returns a shape that exists in this dimension only; `None` if a constructor rejects the
+    /// numbers.
     fn own_shape(kind: usize, bytes: &mut Bytes<'_>) -> Option<ShapeHandle<N, D>>;
-    /// Whether it is a tetrahedron, whose kind changes if scaling makes it flat.
+    /// Whether the shape is a tetrahedron, whose kind changes if scaling makes it flat.
     fn is_tetrahedron(shape: &ShapeHandle<N, D>) -> bool;
     /// Returns a body that moves and rotates at constant rates.
     fn motion(

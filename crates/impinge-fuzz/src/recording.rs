@@ -10,8 +10,8 @@ use crate::Bytes;
 use crate::place::{Dimension, Plane, Room};
 use crate::shapes::shape;
 
-/// Records a few objects, changes bytes of the recording, then reads and plays the result: as a whole, in pieces,
-/// salvaged, and packed.
+/// Records a few objects and changes bytes of the recording. Then reads and plays the result as a
+/// whole, in pieces, salvaged, and packed.
 pub fn recording(data: &[u8]) {
     let bytes = &mut Bytes::new(data);
     let choice = bytes.choice(8);
@@ -66,7 +66,8 @@ fn play<N: Recordable<D>, const D: usize>(
     back.err()
 }
 
-/// Checks that a recording in pieces equals the whole, and that salvaging keeps the records before the first error.
+/// Checks that a recording in pieces equals the whole, and that salvaging keeps the records before
+/// the first error.
 fn grow<N: Recordable<D>, const D: usize>(
     changed: &[u8],
     registry: &Registry<N, D, u32>,
@@ -87,7 +88,8 @@ fn grow<N: Recordable<D>, const D: usize>(
     assert_eq!(salvaged.loss().is_none(), growing.is_complete() && error.is_none());
 }
 
-/// Checks that a packed recording unpacks to itself without hashes, and that changed packed bytes do not panic.
+/// Checks that a packed recording unpacks to itself without hashes, and that changed packed bytes
+/// do not panic.
 fn repack(changed: &[u8], bytes: &mut Bytes<'_>) {
     let Ok(mut packed) = pack(changed) else { return };
     let unpacked = unpack(&packed).expect("it was just packed");

@@ -16,7 +16,8 @@ const COMMON_KINDS: usize = 13;
 /// The largest depth of nested compounds.
 const MAX_NESTED: usize = 3;
 
-/// Returns a shape of the kind that the next byte selects; a ball if a constructor rejects the numbers.
+/// Returns a shape of the kind that the next byte selects; a ball if a constructor rejects the
+/// numbers.
 pub(crate) fn shape<N: Space<D>, M: Dimension<N, D>, const D: usize>(
     bytes: &mut Bytes<'_>,
 ) -> ShapeHandle<N, D> {
@@ -166,13 +167,14 @@ pub(crate) fn is_unbounded<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> 
     !(0..D).all(|axis| aabb.mins()[axis].is_finite_number() && aabb.maxs()[axis].is_finite_number())
 }
 
-/// The number of parts of the shape; `None` if it is convex.
+/// Returns the number of parts of the shape; `None` if it is convex.
 pub(crate) fn parts_of<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> Option<u32> {
     shape.geometry().as_composite().map(CompositeShape::num_parts)
 }
 
-/// Returns the approximate distance of the shape's farthest point from its origin, with the positions
-/// of its parts: rounding errors are proportional to it. Unbounded parts are ignored.
+/// Returns the approximate distance of the farthest point of the shape from its origin, to which
+/// rounding errors are proportional. The positions of parts are included; unbounded parts are
+/// ignored.
 pub(crate) fn reach<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> N {
     if let Some(parts) = shape.geometry().as_composite() {
         let one = |part| {

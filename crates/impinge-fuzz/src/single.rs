@@ -10,12 +10,12 @@ use crate::{Bytes, Task, dispatch};
 struct Rays;
 struct Points;
 
-/// [`RayCast`].
+/// Fuzzes [`RayCast`].
 pub fn ray(data: &[u8]) {
     dispatch(Rays, data);
 }
 
-/// [`PointQuery`].
+/// Fuzzes [`PointQuery`].
 pub fn point(data: &[u8]) {
     dispatch(Points, data);
 }

@@ -42,7 +42,7 @@ impl Task for Operations {
     }
 }
 
-/// [`CollisionWorld`].
+/// Fuzzes [`CollisionWorld`].
 pub fn world(data: &[u8]) {
     dispatch(Operations, data);
 }
@@ -61,7 +61,8 @@ struct Stage<N: Space<D>, const D: usize> {
     is_filtered: bool,
     /// Whether the next update keeps the events of the last one.
     keeps_events: bool,
-    /// Whether all numbers are moderate: then the world must agree with the model, else only with itself.
+    /// Whether all numbers are moderate. If so, the world must agree with the model; otherwise only
+    /// its own results must agree with each other.
     is_moderate: bool,
 }
 
@@ -170,7 +171,7 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         }
     }
 
-    /// Replaces phases or filters.
+    /// Replaces the broad phase, the narrow phase or filters.
     fn exchange<M: Dimension<N, D>>(&mut self, bytes: &mut Bytes<'_>) {
         match bytes.choice(4) {
             0 => {
@@ -191,7 +192,7 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         }
     }
 
-    /// Makes the calls of a solver.
+    /// Makes the calls that a physics engine makes.
     fn operate_as_engine<M: Dimension<N, D>>(
         &mut self,
         handle: CollisionObjectHandle,
@@ -226,7 +227,7 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         assert_eq!(done == Err(WorldError::StaleHandle(handle)), !is_known, "{done:?} {handle:?}");
     }
 
-    /// Updates; then compares events, pairs and the model.
+    /// Updates the world, then checks its events, its pairs and, for moderate numbers, the model.
     fn update<M: Dimension<N, D>>(&mut self) {
         let counts = (self.world.contact_events().len(), self.world.proximity_events().len());
         let kept = if std::mem::take(&mut self.keeps_events) { counts } else { (0, 0) };
@@ -239,8 +240,8 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         }
     }
 
-    /// Applies the events after the kept ones: each start has one stop, each change begins with the status of
-    /// the last one.
+    /// Applies the events after the kept ones. For each pair, starts and stops alternate, and each
+    /// proximity event begins with the status of the last event.
     fn hear(&mut self, kept: (usize, usize)) {
         for event in &self.world.contact_events()[kept.0..] {
             let (handles, changed) = match *event {
@@ -260,7 +261,7 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         }
     }
 
-    /// Checks that the pairs are those of the events.
+    /// Checks that the pairs of the world are those that follow from its events.
     fn check_pairs(&self) {
         let mut ids = BTreeSet::new();
         let mut touching = BTreeSet::new();

@@ -18,7 +18,7 @@ use crate::shapes::shape;
 type World<N, const D: usize> = CollisionWorld<N, D, u8>;
 type Object<N, const D: usize> = CollisionObject<N, D, u8>;
 
-/// Runs one kind of query.
+/// Runs the kind of query that the next byte selects.
 pub(crate) fn ask<N: Space<D>, M: Dimension<N, D>, const D: usize>(
     world: &World<N, D>,
     bytes: &mut Bytes<'_>,
@@ -46,7 +46,7 @@ fn ranked<N: Space<D>, A, const D: usize>(
     all
 }
 
-/// Checks that the results are the expected ones.
+/// Checks that the results are equal to the expected results, if all numbers are moderate.
 fn check<A: Debug + PartialEq, N: Space<D>, const D: usize>(
     world: &World<N, D>,
     found: &A,
@@ -102,7 +102,7 @@ fn boxes<N: Space<D>, const D: usize>(world: &World<N, D>, bytes: &mut Bytes<'_>
     assert!(found.is_sorted(), "{found:?}");
 }
 
-/// Returns a shape at a position.
+/// Returns the shape of an object of the world, or another shape, and a position.
 fn probe<N: Space<D>, M: Dimension<N, D>, const D: usize>(
     world: &World<N, D>,
     bytes: &mut Bytes<'_>,

@@ -1,5 +1,6 @@
-//! Circling balls, shown in a browser while they move: `cargo run -p impinge-html --features page --example live`.
-//! With a number of seconds as the argument it ends after that time.
+//! Shows circling balls in a browser while they move: `cargo run -p impinge-html --features page
+//! --example live`. With a number of seconds as the argument it ends after that time, otherwise
+//! after an hour.
 
 use std::thread::sleep;
 use std::time::Duration;
@@ -10,7 +11,8 @@ use impinge::dim3::world::{CollisionGroups, GeometricQueryType};
 use impinge_html::{Assets, Live};
 use impinge_record::{Recorder, Registry};
 
-/// Returns a position on a circle at a time; each ball has its own speed.
+/// Returns the position of a ball on its circle at `time` seconds; each ball has its own angular
+/// speed.
 fn place(ball: u8, time: f32) -> Isometry<f32> {
     let angle = time * (0.5 + f32::from(ball) / 10.0);
     Isometry::translation(3.0 * angle.cos(), 3.0 * angle.sin(), 0.0)

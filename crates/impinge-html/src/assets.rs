@@ -1,26 +1,26 @@
-//! The parts of a page.
+//! The parts from which a page is built.
 
 use std::fs;
 use std::path::Path;
 
 use crate::error::HtmlError;
 
-/// The parts of a page, except the recording.
+/// The parts of a page except the recording.
 #[derive(Clone, Debug)]
 pub struct Assets {
-    /// The HTML with the placeholders `{{TITLE}}`, `{{STYLE}}`, `{{SCENE}}`, `{{RECORDING}}`, `{{WASM}}` and
-    /// `{{SCRIPT}}`, each once.
+    /// The HTML template. It contains each of the placeholders `{{TITLE}}`, `{{STYLE}}`,
+    /// `{{SCENE}}`, `{{RECORDING}}`, `{{WASM}}` and `{{SCRIPT}}` once.
     pub template: String,
     /// The style sheet.
     pub style: String,
-    /// The program of the page, bundled.
+    /// The bundled script of the page.
     pub script: String,
     /// The engine: a WebAssembly module, compressed by gzip.
     pub module: Vec<u8>,
 }
 
 impl Assets {
-    /// Reads `page.html`, `page.css`, `page.js` and `page.wasm.gz` in a folder.
+    /// Reads the files `page.html`, `page.css`, `page.js` and `page.wasm.gz` of a folder.
     ///
     /// # Errors
     /// If one of the files cannot be read, or a text is not UTF-8.

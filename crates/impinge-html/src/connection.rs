@@ -4,10 +4,11 @@ use std::io::{self, Read, Write};
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
-/// A connection of a client.
+/// The connection of a client, with a deadline.
 ///
-/// A time limit of the operating system restarts with each read and write, so that a client that sends single bytes
-/// would never reach it. Here all reads and writes until the deadline share the remaining time.
+/// A time limit of the operating system restarts with each read and write, so a client that sends
+/// single bytes would never reach it. With the deadline all reads and writes share the remaining
+/// time.
 #[derive(Debug)]
 pub(crate) struct Connection {
     stream: TcpStream,
@@ -26,10 +27,10 @@ impl Connection {
         self.deadline = Instant::now() + time;
     }
 
-    /// Whether the client has closed the connection, or sends unexpected bytes.
+    /// Returns `true` if the client has closed the connection, or has sent unexpected bytes.
     ///
-    /// Clients of this server send everything in their first request; one that closes its side waits for no
-    /// response.
+    /// A client sends only its request, which has been read before. A client that closes its side
+    /// of the connection does not wait for a response.
     pub(crate) fn is_gone(&mut self) -> bool {
         let mut byte = [0];
         let read = self.stream.set_nonblocking(true).and_then(|()| self.stream.read(&mut byte));
@@ -37,7 +38,7 @@ impl Connection {
         !is_waiting || self.stream.set_nonblocking(false).is_err()
     }
 
-    /// Returns the remaining time.
+    /// Returns the remaining time; an error if the deadline has passed.
     fn left(&self) -> io::Result<Duration> {
         let left = self.deadline.saturating_duration_since(Instant::now());
         if left.is_zero() { Err(io::ErrorKind::TimedOut.into()) } else { Ok(left) }
@@ -68,7 +69,7 @@ mod tests {
 
     use super::*;
 
-    /// Both ends of a connection; the first has no time left.
+    /// Returns both ends of a connection; the deadline of the server's end has passed.
     fn pair() -> (Connection, TcpStream) {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
         let client = TcpStream::connect(listener.local_addr().expect("an address"));
@@ -96,7 +97,7 @@ mod tests {
         let (mut waiting, client) = pair();
         assert!(!waiting.is_gone() && !waiting.is_gone(), "it waits");
         drop(client);
-        // Terminates: the operating system delivers the end soon.
+        // The loop ends, since the operating system delivers the end of the connection soon.
         while !waiting.is_gone() {}
         let (mut server, mut talker) = pair();
         talker.write_all(b"more").expect("it is open");

@@ -1,4 +1,4 @@
-//! Errors of making or serving a page.
+//! The errors of building and serving pages.
 
 use core::fmt;
 use std::io;
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use impinge_record::ReadError;
 
-/// An error of making or serving a page.
+/// The reason why a page cannot be built or served.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum HtmlError {
@@ -16,7 +16,7 @@ pub enum HtmlError {
     Placeholder {
         /// The placeholder.
         name: &'static str,
-        /// The number of its occurrences.
+        /// The number of its occurrences in the template.
         count: usize,
     },
     /// A file cannot be read or written.
@@ -26,7 +26,7 @@ pub enum HtmlError {
         /// The reason.
         error: io::Error,
     },
-    /// The port of the loopback interface cannot be opened: most likely another program uses it.
+    /// The port of the loopback interface cannot be opened. Usually another program uses it.
     Port {
         /// The port.
         port: u16,

@@ -1,4 +1,4 @@
-//! The page of a running program: a small server for browsers on this machine.
+//! A small server for browsers on this machine, which shows the recording of a running program.
 
 use std::io::{self, Write as _};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
@@ -15,35 +15,38 @@ use crate::log::{More, PIECE, SharedLog};
 use crate::page::Page;
 use crate::request::{self, Route};
 
-/// The largest number of requests that are served at once; further ones get the status 503.
+/// The maximum number of requests that are served at once. Further requests get the status 503.
 const MAX_CLIENTS: usize = 32;
 
-/// The largest number of connections with incomplete requests. One more closes the connection that has waited longest,
-/// so that silent connections cannot keep a browser out.
+/// The maximum number of connections whose requests are incomplete. A further connection closes the
+/// oldest of them, so that silent connections cannot keep a browser out.
 const MAX_PENDING: usize = 32;
 
-/// The time for the head of a request, and for each 64 KiB of a response; then the connection is closed.
+/// The time limit for the head of a request, and for each 64 KiB of a response. After it the
+/// connection is closed.
 const IO_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// The interval at which an idle stream checks whether its client is still connected.
 const POLL: Duration = Duration::from_millis(250);
 
-/// The time that a request waits for the slot of a client that has gone: longer than a stream takes to notice.
+/// The time for which a request waits for a free slot. It is longer than a stream needs to notice
+/// that its client has gone.
 const ADMISSION_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// The time that a stopping server waits for clients to read the rest.
+/// The time for which a stopping server waits until its clients have read the rest.
 const DRAIN_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// A server that shows the recording of a running program in a browser on the same machine.
 ///
-/// [`Self::send`] takes the bytes that [`Recorder::take_bytes`](impinge_record::Recorder::take_bytes) returns. The page
-/// follows the growing recording. A page that is opened later gets all of it from the beginning, so the server keeps
-/// all bytes. Each connection has its own thread: a slow or closed browser blocks neither the program nor other
-/// browsers, of which up to 32 follow at once.
+/// [`Self::send`] takes the bytes that
+/// [`Recorder::take_bytes`](impinge_record::Recorder::take_bytes) returns. The page follows the
+/// growing recording. A page that is opened later gets the recording from its beginning, so the
+/// server keeps all bytes. Each connection has its own thread: a slow or closed browser blocks
+/// neither the program nor other browsers. Up to 32 browsers follow at once.
 ///
-/// It listens on 127.0.0.1 alone, and accepts only requests by the names `127.0.0.1` and `localhost`. Only its own page
-/// may read the recording: requests of other sites are rejected. Dropping it ends the streams; the pages keep the
-/// received data.
+/// The server listens on 127.0.0.1 only, and accepts only requests to the names `127.0.0.1` and
+/// `localhost`. Only its own page may read the recording: requests of other sites are rejected.
+/// Dropping the server ends the streams; the pages keep the received data.
 ///
 /// ```no_run
 /// # fn run(assets: impinge_html::Assets) -> Result<(), Box<dyn std::error::Error>> {
@@ -66,7 +69,7 @@ pub struct Live {
     acceptor: Option<JoinHandle<()>>,
 }
 
-/// The data of a thread that responds to a request.
+/// The data that the threads of all connections share.
 #[derive(Debug)]
 struct Server {
     port: u16,
@@ -75,10 +78,11 @@ struct Server {
 }
 
 impl Live {
-    /// Starts a server on a port; 0 selects a free one. The recording has no bytes yet.
+    /// Starts a server on a port; 0 selects a free port. The recording is empty at first.
     ///
     /// # Errors
-    /// If the port is in use or not allowed, or the template lacks a placeholder or has one twice.
+    /// If the port is in use or not allowed, or if the template does not contain each placeholder
+    /// exactly once.
     pub fn start(assets: &Assets, title: &str, port: u16) -> Result<Self, HtmlError> {
         let scene = json!({"open": "live", "title": title, "log": "/log"});
         let page = Page { title, scene, recording: &[] }.html(assets)?;
@@ -97,7 +101,8 @@ impl Live {
         format!("http://{}/", self.address)
     }
 
-    /// Appends bytes to the recording and wakes up waiting readers. Never blocks; costs a copy of the bytes.
+    /// Appends bytes to the recording and wakes up the waiting readers. Never blocks on a reader;
+    /// costs a copy of the bytes.
     pub fn send(&self, bytes: &[u8]) {
         self.log.append(bytes);
     }
@@ -107,7 +112,7 @@ impl Live {
 impl Drop for Live {
     fn drop(&mut self) {
         self.log.close();
-        // A connection wakes up the accepting thread.
+        // A connection to the own port wakes up the accepting thread.
         let woken = TcpStream::connect_timeout(&self.address, DRAIN_TIMEOUT).is_ok();
         if let Some(acceptor) = self.acceptor.take().filter(|_| woken) {
             // The thread does not panic, and there is nothing to clean up if it did.
@@ -124,12 +129,13 @@ fn accept(listener: &TcpListener, server: &Arc<Server>) {
             return;
         }
         let Ok(stream) = stream else {
-            // There are too many open files, or the client has gone: the next connection may succeed.
+            // Too many files are open, or the client has gone: the next connection may succeed.
             thread::sleep(Duration::from_millis(10));
             continue;
         };
         let own = Arc::clone(server);
-        // If no thread can be started the connection is closed. An error is that of a client that has gone.
+        // If no thread can be started, the connection is closed. An error of `serve` means that the
+        // client has gone; it is ignored.
         let _spawned = thread::Builder::new().spawn(move || own.serve(stream));
     }
 }
@@ -149,7 +155,8 @@ impl Server {
         }
     }
 
-    /// Reads a request.
+    /// Reads a request and selects the response. While the request is incomplete, the connection
+    /// counts as pending.
     fn route(&self, stream: TcpStream) -> io::Result<Route> {
         let mut connection = Connection::new(stream.try_clone()?, IO_TIMEOUT)?;
         let _pending = self.log.wait_for_request(stream, MAX_PENDING);
@@ -181,7 +188,8 @@ impl Server {
     }
 }
 
-/// Returns the head of a response. Browsers must not cache it, and other sites must not use it.
+/// Returns the head of a response with these header fields. It forbids caching and the use by other
+/// sites.
 fn head(status: &str, fields: &str) -> String {
     format!(
         "HTTP/1.1 {status}\r\n{fields}Cache-Control: no-store\r\nConnection: close\r\n\

@@ -1,14 +1,15 @@
-//! A growing recording, and its waiting readers.
+//! A growing recording that several readers follow.
 
 use std::collections::BTreeMap;
 use std::net::{Shutdown, TcpStream};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// The number of bytes that are copied at once for a reader, while the lock is held.
+/// The maximum number of bytes that are copied for a reader while the lock is held.
 pub(crate) const PIECE: usize = 64 * 1024;
 
-/// Bytes to which more are appended, for any number of readers, until it is closed.
+/// A sequence of bytes that grows until it is closed. Any number of readers can wait for more
+/// bytes.
 #[derive(Debug, Default)]
 pub(crate) struct SharedLog {
     state: Mutex<State>,
@@ -19,11 +20,11 @@ pub(crate) struct SharedLog {
 struct State {
     bytes: Vec<u8>,
     is_closed: bool,
-    /// The number of requests in service.
+    /// The number of requests that are being served.
     clients: usize,
-    /// Connections with incomplete requests, by their order.
+    /// The connections with incomplete requests, by their number.
     pending: BTreeMap<u64, TcpStream>,
-    /// The number of connections so far.
+    /// The number of connections so far, from which connections get their number.
     connections: u64,
 }
 
@@ -32,17 +33,17 @@ struct State {
 pub(crate) enum More {
     /// The next bytes.
     Bytes(Vec<u8>),
-    /// No bytes arrived in time.
+    /// No bytes arrived within the time limit.
     Nothing,
-    /// The log is closed and read completely.
+    /// The log is closed, and all of it was read.
     End,
 }
 
-/// A request in service, until this is dropped.
+/// A slot for a request that is being served; dropping it frees the slot.
 #[derive(Debug)]
 pub(crate) struct Client<'a>(&'a SharedLog);
 
-/// A connection with an incomplete request, until this is dropped.
+/// A registered connection with an incomplete request; dropping it removes the registration.
 #[derive(Debug)]
 pub(crate) struct Pending<'a> {
     log: &'a SharedLog,
@@ -50,18 +51,19 @@ pub(crate) struct Pending<'a> {
 }
 
 impl SharedLog {
-    /// The lock is held for short copies only, which do not panic: it is never poisoned.
+    /// Locks the state. The lock is never poisoned, since it is only held for short copies that do
+    /// not panic.
     fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Appends bytes; does not wait for readers.
+    /// Appends bytes, without waiting for readers.
     pub(crate) fn append(&self, bytes: &[u8]) {
         self.state().bytes.extend(bytes);
         self.changed.notify_all();
     }
 
-    /// Closes the log. Connections with incomplete requests end.
+    /// Closes the log and all connections with incomplete requests.
     pub(crate) fn close(&self) {
         let mut state = self.state();
         state.is_closed = true;
@@ -74,7 +76,8 @@ impl SharedLog {
         self.state().is_closed
     }
 
-    /// Returns bytes from an offset on, as soon as there are any, or [`More::Nothing`] after `longest`.
+    /// Waits until there are bytes from `offset` on, and returns at most [`PIECE`] of them. Returns
+    /// [`More::Nothing`] after `longest`, [`More::End`] if the log is closed.
     pub(crate) fn wait_from(&self, offset: usize, longest: Duration) -> More {
         let waits = |state: &mut State| state.bytes.len() <= offset && !state.is_closed;
         let waited = self.changed.wait_timeout_while(self.state(), longest, waits);
@@ -87,7 +90,8 @@ impl SharedLog {
         }
     }
 
-    /// Counts a client. If there are `limit` clients it waits for a slot, at most for `longest`.
+    /// Takes a slot for a client. If all `limit` slots are taken, it waits for one, at most for
+    /// `longest`; `None` if none became free.
     pub(crate) fn enter(&self, limit: usize, longest: Duration) -> Option<Client<'_>> {
         let waits = |state: &mut State| state.clients >= limit && !state.is_closed;
         let waited = self.changed.wait_timeout_while(self.state(), longest, waits);
@@ -97,8 +101,8 @@ impl SharedLog {
         is_admitted.then(|| Client(self))
     }
 
-    /// Keeps a connection while its request is read. If there are `limit` already, the oldest of them is
-    /// closed.
+    /// Registers a connection while its request is read. If `limit` connections are registered
+    /// already, the oldest one is closed.
     pub(crate) fn wait_for_request(&self, stream: TcpStream, limit: usize) -> Pending<'_> {
         let mut state = self.state();
         state.connections += 1;
@@ -115,7 +119,7 @@ impl SharedLog {
         Pending { log: self, number }
     }
 
-    /// Waits until all clients have gone, at most for `longest`.
+    /// Waits until no client and no incomplete request is left, at most for `longest`.
     pub(crate) fn wait_for_clients(&self, longest: Duration) {
         let waits = |state: &mut State| state.clients + state.pending.len() > 0;
         let waited = self.changed.wait_timeout_while(self.state(), longest, waits);
@@ -124,7 +128,8 @@ impl SharedLog {
     }
 }
 
-/// Closes a connection, so that the thread that waits for it continues. It may be closed already.
+/// Closes a connection, so that the thread that reads from it continues. The connection may be
+/// closed already.
 fn end(stream: &TcpStream) {
     let _ended = stream.shutdown(Shutdown::Both);
 }

@@ -1,4 +1,4 @@
-//! Builds an HTML file from its parts.
+//! Builds the HTML of a page from its parts.
 
 use std::borrow::Cow;
 use std::fs;
@@ -12,14 +12,15 @@ use serde_json::{Value, json};
 use crate::assets::Assets;
 use crate::error::HtmlError;
 
-/// Returns a page that shows a recording, as one self-contained file.
+/// Returns a self-contained HTML page that shows a recording.
 ///
-/// The recording is packed, unless it is already. Its end may be missing, but it must end with a complete record:
-/// [`Replay::salvage`](impinge_record::Replay::salvage) returns such bytes. The page has about four thirds of the bytes
-/// of its parts; the time is that of packing.
+/// A recording that is not packed is packed first. Its end may be missing, but it must end with a
+/// complete record: [`Replay::salvage`](impinge_record::Replay::salvage) returns such bytes. The
+/// page is about a third larger than its parts; the time is that of packing.
 ///
 /// # Errors
-/// If the bytes cannot be packed, or the template lacks a placeholder or has one twice.
+/// If the bytes cannot be packed, or if the template does not contain each placeholder exactly
+/// once.
 ///
 /// ```
 /// use impinge_html::{Assets, export};
@@ -44,11 +45,13 @@ pub fn export(assets: &Assets, recording: &[u8], title: &str) -> Result<String, 
     Page { title, scene, recording: &packed }.html(assets)
 }
 
-/// Writes the page of the samples as `index.html` in a folder, which is created if it does not exist. The page shows
-/// `thumbnails/NAME.png` of this folder for each sample that has one.
+/// Writes the page of the samples as `index.html` into a folder, which is created if it does not
+/// exist. For each sample the page shows `thumbnails/NAME.png` of this folder, if there is such a
+/// file.
 ///
 /// # Errors
-/// If the file cannot be written, or the template lacks a placeholder or has one twice.
+/// If the file cannot be written, or if the template does not contain each placeholder exactly
+/// once.
 pub fn gallery(assets: &Assets, folder: impl AsRef<Path>) -> Result<(), HtmlError> {
     let (folder, title) = (folder.as_ref(), "impinge: samples");
     let scene = json!({"open": "samples", "title": title});
@@ -62,17 +65,20 @@ pub fn gallery(assets: &Assets, folder: impl AsRef<Path>) -> Result<(), HtmlErro
 #[derive(Debug)]
 pub(crate) struct Page<'a> {
     pub(crate) title: &'a str,
-    /// The description of what the page opens.
+    /// A JSON object that describes what the page opens: a recording, a live recording or the
+    /// samples.
     pub(crate) scene: Value,
-    /// A packed recording, or empty.
+    /// The bytes of a packed recording; empty if the page contains none.
     pub(crate) recording: &'a [u8],
 }
 
 impl Page<'_> {
-    /// Returns the whole page. All parts are inserted in one pass: a placeholder within a part is not replaced.
+    /// Returns the HTML of the page. All parts are inserted in one pass, so that a placeholder
+    /// within a part is not replaced.
     pub(crate) fn html(&self, assets: &Assets) -> Result<String, HtmlError> {
-        // No part may close its element. In JSON a character can be written as an escape, and in strings of scripts and
-        // styles after a backslash; outside of strings the sequences do not occur.
+        // No part may contain the end tag of its own element. In JSON the character can be written
+        // as an escape, in strings of scripts and styles after a backslash. Outside of strings
+        // these sequences do not occur.
         let scene = self.scene.to_string().replace('<', "\\u003c");
         let script = assets.script.replace("</script", "<\\/script").replace("<!--", "<\\!--");
         let parts = [

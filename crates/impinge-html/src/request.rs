@@ -1,11 +1,11 @@
-//! Requests of a browser on this machine.
+//! Reads HTTP requests and selects the responses.
 
 use std::io::{self, Read};
 
-/// The largest number of bytes of the head of a request.
+/// The maximum length of the head of a request, in bytes.
 const MAX_HEAD: usize = 16 * 1024;
 
-/// The largest number of headers of a request.
+/// The maximum number of header fields of a request.
 const MAX_HEADERS: usize = 64;
 
 /// The response to a request.
@@ -15,14 +15,15 @@ pub(crate) enum Route {
     Page,
     /// The growing recording.
     Log,
-    /// An error with this status.
+    /// An error page with this status.
     Refused(&'static str),
 }
 
 /// Reads the head of a request to a server on `port`, and selects the response.
 ///
 /// # Errors
-/// If the connection ends or is too slow.
+/// If the connection ends before the head is complete, or reading fails, for instance after the
+/// deadline.
 pub(crate) fn read(stream: &mut impl Read, port: u16) -> io::Result<Route> {
     let mut head = Vec::new();
     let mut piece = [0; 1024];
@@ -67,15 +68,17 @@ fn route(head: &[u8], port: u16) -> Option<Route> {
     })
 }
 
-/// Whether the `Host` of a request is a name of this machine. Another name that resolves to this machine belongs to a
-/// foreign page, which must not read the recording (DNS rebinding). Browsers omit the port 80.
+/// Returns `true` if the `Host` of a request is a name of this machine. Any other name that
+/// resolves to this machine belongs to a foreign page, which must not read the recording (DNS
+/// rebinding). Browsers omit the port if it is 80.
 fn is_own_host(host: &[u8], port: u16) -> bool {
     ["127.0.0.1", "localhost"].iter().any(|name| host == format!("{name}:{port}").as_bytes())
         || (port == 80 && [&b"127.0.0.1"[..], b"localhost"].contains(&host))
 }
 
-/// Whether another site sent the request. Browsers report this by `Sec-Fetch-Site` or `Origin`, whatever the site
-/// allows. Another port of this machine is another site too. Other programs send neither header.
+/// Returns `true` if another site sent the request. Browsers report this in `Sec-Fetch-Site` or
+/// `Origin`, independent of the settings of that site. A page from another port of this machine is
+/// another site too. Programs other than browsers usually send neither header.
 fn is_foreign(headers: &[httparse::Header<'_>], port: u16) -> bool {
     headers.iter().any(|header| {
         let is_it = |name: &str| header.name.eq_ignore_ascii_case(name);

@@ -1,4 +1,4 @@
-//! The exported file has all parts, and contains the same recording.
+//! Tests that an exported file contains all parts and the same recording.
 
 use std::fs;
 
@@ -12,7 +12,7 @@ const TEMPLATE: &str = "<title>{{TITLE}}</title><style>{{STYLE}}</style>\
     <script id=scene>{{SCENE}}</script><script id=recording>{{RECORDING}}</script>\
     <script id=wasm>{{WASM}}</script><script id=program>{{SCRIPT}}</script>";
 
-/// Returns the parts of a page without style, script and engine.
+/// Returns assets with this template and an empty style, script and engine.
 fn plain(template: String) -> Assets {
     Assets { template, style: String::new(), script: String::new(), module: Vec::new() }
 }
@@ -24,7 +24,7 @@ fn recording() -> Vec<u8> {
     recorder.finish().bytes
 }
 
-/// Returns the text between the tag with an id and the next closing tag.
+/// Returns the text between the start tag with this id and the next end tag.
 fn part<'a>(html: &'a str, id: &str) -> &'a str {
     let (_, rest) = html.split_once(&format!("<script id={id}>")).expect("the part is there");
     rest.split_once("</script>").expect("the part ends").0

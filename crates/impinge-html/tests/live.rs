@@ -1,4 +1,4 @@
-//! Tests the server by raw connections, with valid and invalid requests.
+//! Tests the server over raw connections, with valid and invalid requests.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use impinge_html::{Assets, HtmlError, Live};
 
-/// A server on a port.
+/// Starts a server on a port.
 fn serve(port: u16) -> Result<Live, HtmlError> {
     let assets = Assets {
         template: "{{TITLE}}|{{STYLE}}|{{SCENE}}|{{RECORDING}}|{{WASM}}|{{SCRIPT}}".to_owned(),
@@ -21,7 +21,7 @@ fn started() -> Live {
     serve(0).expect("some port is free")
 }
 
-/// The name and port of a server.
+/// Returns the host name and the port of a server, separated by a colon.
 fn host(live: &Live) -> String {
     let url = live.url();
     url.trim_start_matches("http://").trim_end_matches('/').to_owned()
@@ -33,7 +33,8 @@ fn connect(live: &Live) -> BufReader<TcpStream> {
     BufReader::new(stream)
 }
 
-/// Requests a path at a host; returns the connection after the head of the response, and this head.
+/// Sends a request for `path` to `host`. Returns the connection, read up to the body of the
+/// response, and the head of the response.
 fn ask(live: &Live, path: &str, host: &str) -> (BufReader<TcpStream>, String) {
     let mut connection = connect(live);
     let request = format!("GET {path} HTTP/1.1\r\nHost: {host}\r\n\r\n");
@@ -45,7 +46,7 @@ fn ask(live: &Live, path: &str, host: &str) -> (BufReader<TcpStream>, String) {
     (connection, head)
 }
 
-/// Returns the next chunk of a stream; empty at its end.
+/// Returns the next chunk of a stream; it is empty at the end of the stream.
 fn chunk(connection: &mut BufReader<TcpStream>) -> Vec<u8> {
     let mut length = String::new();
     connection.read_line(&mut length).expect("a length");
@@ -57,7 +58,7 @@ fn chunk(connection: &mut BufReader<TcpStream>) -> Vec<u8> {
     bytes
 }
 
-/// Returns the next `count` bytes of a stream, in any number of chunks.
+/// Returns the next `count` bytes of a stream, whatever its chunks are.
 fn bytes(connection: &mut BufReader<TcpStream>, count: usize) -> Vec<u8> {
     let mut all = Vec::new();
     while all.len() < count {
@@ -126,7 +127,7 @@ fn other_names_and_paths_are_refused() {
     }
     let mut connection = connect(&live);
     let long = vec![b'a'; 40_000];
-    // The server may have closed the connection before everything is written.
+    // The server may close the connection before all bytes are written.
     let _written = connection.get_mut().write_all(&[b"GET /", &long[..]].concat());
     let mut answer = Vec::new();
     let _closed = connection.read_to_end(&mut answer);
@@ -141,16 +142,16 @@ fn a_client_that_is_slow_or_gone_holds_nobody_up() {
     let (gone, _) = ask(&live, "/log", &host(&live));
     drop(gone);
     let piece = vec![1; 1 << 20];
-    // More than the buffers of a connection take: nobody reads.
+    // This is more than the buffers of a connection hold, and `stuck` is not read.
     (0..64).for_each(|_| live.send(&piece));
     let (mut quick, _) = ask(&live, "/log", &host(&live));
     assert_eq!(bytes(&mut quick, 64 << 20).len(), 64 << 20);
-    // These two have read nothing so far: dropping the server does not wait for them.
+    // These two connections are not read: dropping the server must not wait for them.
     drop(live);
     drop((silent, stuck));
 }
 
-/// More than the number of connections that are served at once.
+/// A number of connections that is larger than the limit of the server.
 const MANY: usize = 100;
 
 #[test]
@@ -158,7 +159,8 @@ fn clients_that_have_gone_keep_nobody_out() {
     let live = started();
     live.send(b"log");
     for _ in 0..MANY {
-        // Like a page that is reloaded repeatedly: no data is sent meanwhile that could fail.
+        // Each connection is dropped without being read further, as by a page that is reloaded. The
+        // server sends no data meanwhile, so it cannot notice this by a failed write.
         let (mut connection, _) = ask(&live, "/log", &host(&live));
         assert_eq!(bytes(&mut connection, 3), b"log");
     }
@@ -181,7 +183,7 @@ fn silent_connections_keep_nobody_out() {
     let silent: Vec<_> = (0..MANY)
         .map(|_| {
             let mut connection = connect(&live);
-            // The server may have closed it earlier, for others.
+            // The server may have closed the connection already, in favour of others.
             let _written = connection.get_mut().write_all(b"G");
             connection
         })

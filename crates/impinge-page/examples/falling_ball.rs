@@ -1,7 +1,9 @@
-//! Writes the recordings that the tests of the page read: `cargo run -p impinge-page --example falling_ball`.
+//! Writes the recordings that the tests of the page read: `cargo run -p impinge-page --example
+//! falling_ball`.
 //!
-//! A ball of radius 0.5 falls onto a floor whose top is at 0, two units beside a second ball that rests there. At
-//! height `h` above rest the distance of the balls is `sqrt(4 + h²) - 1`.
+//! A ball of radius 0.5 falls onto a floor whose top is at 0, two units beside a second ball that
+//! rests there. While the ball is at height `h` above its rest position, the distance between the
+//! balls is `sqrt(4 + h²) - 1`.
 
 use std::error::Error;
 use std::fs;
@@ -14,9 +16,9 @@ use impinge::shape::{Ball, Cuboid, ShapeHandle};
 use impinge::world::CollisionGroups;
 use impinge_record::{Query, Question, RayQuestion, Recordable, Recorder, Registry, Scalar};
 
-/// The number of updates; the ball rests in the last ones.
+/// The number of updates; in the last updates the ball rests.
 const STEPS: u32 = 40;
-/// The initial height above rest; the ball falls by a tenth in each step.
+/// The initial height above the rest position. The ball falls by 0.1 in each step.
 const HEIGHT: f64 = 3.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -75,7 +77,7 @@ fn advance<N: Scalar + Recordable<D>, const D: usize>(
     Ok(())
 }
 
-/// Returns a position without rotation, at a point of the plane of the first two axes.
+/// Returns a position without rotation, whose first two coordinates are `x` and `y`.
 fn at<N: Recordable<D>, const D: usize>(x: f64, y: f64) -> N::Isometry {
     let translation = Vector::<N, D>::from_fn(|axis, _| N::lit([x, y, 0.0][axis]));
     N::isometry(&Pose::from_translation(translation))

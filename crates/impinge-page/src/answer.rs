@@ -1,15 +1,15 @@
-//! Answers to the page as data: the members of `PROTOCOL.md`.
+//! Responses to the page as data. `PROTOCOL.md` describes their members.
 //!
-//! Points, vectors and boxes have three coordinates; the last is 0 in 2D. Numbers that are not finite become `null`
-//! in JSON.
+//! Points, vectors and boxes have three coordinates; the last is 0 in 2D. Numbers that are not
+//! finite become `null` in JSON.
 
 use impinge_samples::{Control, Entry, Readout};
 use serde::Serialize;
 
-/// The lowest and the highest corner of a box; `None` for an unbounded box.
+/// The corners of a box with the least and the greatest coordinates; `None` for an unbounded box.
 pub type Ends = Option<[[f64; 3]; 2]>;
 
-/// The gallery.
+/// The response to a request for the samples.
 #[derive(Clone, Debug, Serialize)]
 pub struct Gallery {
     /// The samples in order.
@@ -23,11 +23,11 @@ pub struct Info {
     pub kind: &'static str,
     /// The current step.
     pub step: usize,
-    /// Sentences for readers: stand-ins, and lost parts of a recording.
+    /// Sentences for readers about stand-ins and about lost parts of a recording.
     pub notes: Vec<String>,
-    /// 2 or 3.
+    /// The dimension of the world: 2 or 3.
     pub dimension: usize,
-    /// `f32` or `f64`.
+    /// The scalar of the world: `f32` or `f64`.
     pub scalar: String,
     /// The name of a sample.
     pub name: String,
@@ -39,12 +39,12 @@ pub struct Info {
     pub written_by: String,
     /// The number of updates of a recording so far.
     pub steps: Option<usize>,
-    /// Whether the last record of a recording was read. A stream lacks it until it ends, a recording if its program
-    /// crashed.
+    /// Whether the last record of a recording was read. It is missing from a stream until that
+    /// ends, and from a recording whose program crashed.
     pub complete: bool,
-    /// The seconds between two steps, if the recording does not define them.
+    /// The time between two steps in seconds, if the recording does not define it.
     pub time_step: f64,
-    /// A box of all objects, for the camera.
+    /// A box around all bounded objects, for the camera.
     pub bounds: [[f64; 3]; 2],
     /// The axis that points up on the screen.
     pub up: [f64; 3],
@@ -54,24 +54,25 @@ pub struct Info {
     pub controls: Vec<Control>,
 }
 
-/// The changes at a step; or the sum of several steps from this one on, if there would be too many marks.
+/// The changes at a step. If there would be too many marks, the changes of several consecutive
+/// steps are added up at the first of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct StepMark {
     /// The step.
     pub step: usize,
-    /// Pairs that started touching.
+    /// The number of pairs that started touching.
     pub started: u32,
-    /// Pairs that stopped touching.
+    /// The number of pairs that stopped touching.
     pub stopped: u32,
-    /// Pairs whose proximity changed.
+    /// The number of pairs whose proximity changed.
     pub proximities: u32,
-    /// Objects added.
+    /// The number of objects that were added.
     pub added: u32,
-    /// Objects removed.
+    /// The number of objects that were removed.
     pub removed: u32,
-    /// Changed shapes, groups, query types, data or filters.
+    /// The number of changes of shapes, groups, query types, data and filters.
     pub changed: u32,
-    /// Queries.
+    /// The number of queries.
     pub queries: u32,
 }
 
@@ -88,9 +89,9 @@ pub struct Status {
     pub contacts: usize,
     /// The difference of a replay from its recording, as a sentence for readers.
     pub diverged: Option<String>,
-    /// The first events of the update.
+    /// The events of the last update, up to a limit.
     pub events: Vec<StatusEvent>,
-    /// The number of events of the update.
+    /// The number of all events of the last update.
     pub event_count: usize,
     /// Controls that the sample changed itself.
     pub controls: Vec<Control>,
@@ -152,7 +153,7 @@ pub struct ShownGroups {
     pub whitelist: GroupNumbers,
     /// The groups with which it does not interact.
     pub blacklist: GroupNumbers,
-    /// Whether it is tested against itself.
+    /// Whether the object interacts with itself.
     pub self_collision: bool,
 }
 
@@ -160,14 +161,14 @@ pub struct ShownGroups {
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum ShownQuery {
-    /// Contact points.
+    /// The object has contact points.
     Contacts {
         /// The object's share of the prediction.
         linear: f64,
         /// The object's share of the angular prediction, in radians.
         angular: f64,
     },
-    /// Proximity.
+    /// The object has proximities.
     Proximity {
         /// The object's share of the margin.
         margin: f64,
@@ -178,7 +179,7 @@ pub enum ShownQuery {
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum ShownPair {
-    /// Contacts, as of the last update.
+    /// The contacts of the pair, as of the last update.
     Contacts {
         /// The index of the other object.
         object: usize,
@@ -189,7 +190,7 @@ pub enum ShownPair {
         /// Whether there is a contact point.
         touching: bool,
     },
-    /// Proximity, as of the last update.
+    /// The proximity of the pair, as of the last update.
     Proximity {
         /// The index of the other object.
         object: usize,
@@ -219,7 +220,7 @@ pub struct ObjectAnswer {
     pub tight_box: Ends,
     /// Its fat AABB in the broad phase, as of the last update.
     pub loosened_box: Ends,
-    /// Its pairs that touch or are near, sorted by the other objects.
+    /// Its pairs that touch or are near, sorted by the handles of the other objects.
     pub pairs: Vec<ShownPair>,
 }
 
@@ -232,7 +233,7 @@ pub struct ShownContact {
     pub b: [f64; 3],
     /// The unit normal from the first shape to the second.
     pub normal: [f64; 3],
-    /// The depth: positive if the shapes overlap.
+    /// The depth; positive if the shapes overlap.
     pub depth: f64,
 }
 
@@ -288,7 +289,8 @@ pub struct PairAnswer {
     pub points: Option<[[f64; 3]; 2]>,
     /// The contact of the objects, if they are within the prediction.
     pub contact: Option<ShownContact>,
-    /// The proximity as a word, by the margins of both.
+    /// The proximity as a word. Objects are near up to the sum of their margins, or of their
+    /// predictions if both have contact queries.
     pub proximity: &'static str,
     /// The manifolds of the world, as of the last update.
     pub manifolds: Vec<ShownManifold>,
@@ -305,7 +307,7 @@ pub struct Picked {
     pub point: [f64; 3],
     /// The outward normal at the hit point; zero in 2D.
     pub normal: [f64; 3],
-    /// The time of the hit, as a multiple of the direction.
+    /// The time of the hit: the distance divided by the length of the direction.
     pub time: f64,
 }
 
@@ -318,7 +320,7 @@ pub struct RayHit {
     pub point: [f64; 3],
     /// The outward normal at the hit point.
     pub normal: [f64; 3],
-    /// The time of the hit, as a multiple of the direction.
+    /// The time of the hit: the distance divided by the length of the direction.
     pub time: f64,
     /// The feature that is hit.
     pub feature: String,
@@ -354,6 +356,6 @@ pub struct NearestAnswer {
 pub struct Frame {
     /// The JSON text.
     pub text: String,
-    /// The sections.
+    /// The sections to which the text refers, as bytes.
     pub payload: Vec<u8>,
 }

@@ -1,4 +1,4 @@
-//! Queries of the page about all objects of a world: picking, rays, nearest objects.
+//! Queries of the page that search all objects of a world: picking, rays, nearest objects.
 
 use core::cmp::Reverse;
 
@@ -13,13 +13,13 @@ use crate::answer::{NearObject, NearestAnswer, Picked, RayAnswer, RayHit};
 use crate::request::{NearestRequest, PickRequest, RayRequest};
 use crate::space::{coordinates, point, vector};
 
-/// Whether an object has a proximity query; it is then drawn transparent.
+/// Returns `true` if an object has a proximity query; such objects are drawn transparent.
 pub(crate) fn is_sensor<N: Space<D>, const D: usize, T>(object: &CollisionObject<N, D, T>) -> bool {
     matches!(object.query_type(), GeometricQueryType::Proximity(_))
 }
 
-/// Returns the first object that a ray hits, an opaque one if there is any. A ray that begins inside an object hits
-/// its far side, which a camera at that position draws.
+/// Returns the first object that a ray hits, preferably an opaque object. A ray that begins inside
+/// an object hits its far side, which a camera at that position shows.
 pub(crate) fn pick_by_ray<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     at: &PickRequest,
@@ -27,7 +27,7 @@ pub(crate) fn pick_by_ray<N: Space<D>, const D: usize, T>(
     let ray = Ray::new(point(at.from), vector(at.direction));
     let is_opaque = |object: &CollisionObject<N, D, T>| !is_sensor(object);
     let filters = [QueryFilter::new().predicate(&is_opaque), QueryFilter::new()];
-    // Lazy: the second cast is made only if the first hits nothing.
+    // The iterator is lazy: the second cast is made only if the first one hits nothing.
     let mut hits =
         filters.iter().filter_map(|filter| world.first_ray_hit(&ray, N::INFINITY, false, filter));
     hits.next().map_or_else(Picked::default, |(object, hit)| Picked {
@@ -38,9 +38,9 @@ pub(crate) fn pick_by_ray<N: Space<D>, const D: usize, T>(
     })
 }
 
-/// Returns the object that contains a point, else the nearest one within reach. Among several that contain it, opaque
-/// bounded objects precede unbounded ones, these precede transparent ones, and among equals the one drawn last is
-/// returned.
+/// Returns the object that contains a point; if there is none, the nearest one within `reach`. If
+/// several objects contain the point, opaque objects precede transparent ones, bounded objects
+/// precede unbounded ones, and among equals the object drawn last is returned.
 pub(crate) fn pick_by_point<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     at: &PickRequest,
@@ -62,7 +62,7 @@ pub(crate) fn pick_by_point<N: Space<D>, const D: usize, T>(
     })
 }
 
-/// Returns the nearest point on an object; `None` if it contains the point of the query.
+/// Returns the nearest point on an object; `None` if the object contains the point of the query.
 fn nearest_point<N: Real, const D: usize>(points: &ClosestPoints<N, D>) -> Option<[f64; 3]> {
     match points {
         ClosestPoints::WithinMargin(_, on_object) => Some(coordinates(&on_object.coords)),
@@ -104,7 +104,8 @@ pub(crate) fn nearest<N: Space<D>, const D: usize, T>(
     NearestAnswer { nearest: nearest.collect() }
 }
 
-/// Returns a feature as text, for a composite with its part: features are numbered within their parts.
+/// Returns a feature as text. For a composite the text includes the part, since features are
+/// numbered within their parts.
 pub(crate) fn feature_text<N: Real, const D: usize>(
     feature: FeatureId,
     part: u32,

@@ -1,4 +1,4 @@
-//! The description of one object, and the state of a world at a step.
+//! Describes an object, and the state of a world at a step.
 
 use impinge::bounding_volume::Aabb;
 use impinge::math::{Real, Space, max};
@@ -12,14 +12,14 @@ use crate::groups;
 use crate::shape_text::shape_text;
 use crate::space::{Viewed, coordinates};
 
-/// The largest number of events listed in a status, which also has the number of all events.
+/// The maximum number of events listed in a status. The status also has the number of all events.
 const MAX_EVENTS: usize = 200;
 
-/// The greatest number of bytes in the label of data that is not text.
+/// The maximum number of bytes in the label of data that is not text.
 const MAX_BYTES: usize = 16;
 
-/// Returns the object with a handle of this index. The page does not know the generation of the handle, so this
-/// searches all objects.
+/// Returns the object whose handle has this index. The page does not know the generation of the
+/// handle, so all objects are searched.
 pub(crate) fn object_of<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     number: u32,
@@ -53,8 +53,8 @@ fn ends<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> Ends {
     aabb.is_bounded().then_some(corners)
 }
 
-/// Returns the data of an object: as text if it is UTF-8 without control characters, else its first bytes in
-/// hexadecimal.
+/// Returns the data of an object as a label: text if it is UTF-8 without control characters,
+/// otherwise the first bytes in hexadecimal.
 fn label(bytes: &[u8]) -> String {
     let text = str::from_utf8(bytes).ok();
     if let Some(text) = text.filter(|text| !text.chars().any(char::is_control)) {
@@ -79,13 +79,13 @@ fn pairs<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     handle: CollisionObjectHandle,
 ) -> Vec<ShownPair> {
-    // Contacts of one partner are consecutive, so that `dedup` leaves each partner once.
+    // The contacts with one object are consecutive, so `dedup` leaves each object once.
     let mut partners: Vec<_> =
         world.contacts_with(handle).map(|(other, _)| other.handle()).collect();
     partners.dedup();
     let contacts = partners.into_iter().filter_map(|other| {
         let pair = world.contact_pair(handle, other)?;
-        // The largest depth over all manifolds of the pair.
+        // The depth of a pair is the largest depth of all its manifolds.
         let deepest = pair.views().map(|view| view.deepest_contact().contact.depth).reduce(max)?;
         let (object, contacts, depth) = (other.uid(), pair.num_contacts(), deepest.as_f64());
         Some((other, ShownPair::Contacts { object, contacts, depth, touching: contacts > 0 }))
@@ -99,7 +99,7 @@ fn pairs<N: Space<D>, const D: usize, T>(
     pairs.into_iter().map(|(_, pair)| pair).collect()
 }
 
-/// Returns the state of a world. The members for recordings and samples only are empty.
+/// Returns the state of a world. Members that only recordings or samples have are empty.
 pub(crate) fn status<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     step: usize,
@@ -115,7 +115,7 @@ pub(crate) fn status<N: Space<D>, const D: usize, T>(
         before: proximity_text(event.prev_status),
         after: proximity_text(event.new_status),
     });
-    // Contacts come first in the list, whatever their number: a page lists touching objects before near ones.
+    // Contacts come first in the list, since the page lists touching objects before near ones.
     Status {
         step,
         objects: world.len(),

@@ -12,7 +12,7 @@ use crate::answer::Gallery;
 use crate::request::{Opening, Request};
 use crate::{EngineError, Recorded, Sampled, Shown, Stage, Viewed, message, parts};
 
-/// A stage of one of several scalars and dimensions.
+/// A stage of any scalar and dimension.
 type Opened = Box<dyn Stage>;
 
 /// Answers the messages of `PROTOCOL.md`, and holds one stage.
@@ -35,8 +35,8 @@ type Opened = Box<dyn Stage>;
 #[derive(Default)]
 pub struct Engine {
     stage: Option<Opened>,
-    /// The bytes of a stream whose header is incomplete: until then its scalar and dimension are unknown, and the
-    /// stage is an empty one.
+    /// The bytes of a stream whose header is still incomplete. Until it is complete, scalar and
+    /// dimension are unknown, and the stage is an empty one.
     begun: Option<Vec<u8>>,
 }
 
@@ -46,7 +46,7 @@ impl fmt::Debug for Engine {
     }
 }
 
-/// A JSON text and a payload.
+/// A response: a JSON text and a payload.
 struct Reply {
     text: String,
     payload: Vec<u8>,
@@ -71,12 +71,14 @@ impl Engine {
         Self { stage: None, begun: None }
     }
 
-    /// Shows a stage of the caller, for instance a recording whose shapes and pair filters are code of this program.
+    /// Opens a stage that the caller has created, for instance a recording whose shapes and pair
+    /// filters are code of this program.
     pub fn show(&mut self, stage: Box<dyn Stage>) {
         (self.stage, self.begun) = (Some(stage), None);
     }
 
-    /// Processes a message of any bytes; an invalid one has a response with `error`.
+    /// Processes a message. Any bytes are accepted: the response to an invalid message has a member
+    /// `error`.
     pub fn call(&mut self, bytes: &[u8]) -> Vec<u8> {
         let reply = self.answer(bytes).unwrap_or_else(|error| {
             let failure = Failure { error: error.to_string(), code: error.code() };
@@ -110,7 +112,8 @@ impl Engine {
         reply(&self.stage()?.info())
     }
 
-    /// Processes queries of the stage, and changes of it, whose response is its status.
+    /// Processes queries of the stage, and changes of it. The response to a change is the status of
+    /// the stage.
     fn ask(&mut self, request: Request) -> Result<Reply, EngineError> {
         let stage = self.stage()?;
         match request {
@@ -128,7 +131,7 @@ impl Engine {
             Request::Reset => stage.reset()?,
             Request::Control { name, value } => stage.control(&name, &control_value(value)?)?,
             Request::Drag(asked) => stage.drag(&asked)?,
-            // These are processed earlier.
+            // `answer` processes these requests.
             Request::Samples | Request::Open(_) | Request::Push => {}
         }
         reply(&stage.status())
@@ -138,7 +141,8 @@ impl Engine {
     fn open(&mut self, opening: &Opening, payload: &[u8]) -> Result<(), EngineError> {
         let stage = match opening {
             Opening::Recording => open_recording(payload)?,
-            // Any scalar and dimension: `push` replaces the stage when the header is known.
+            // An empty stage of arbitrary scalar and dimension: `push` replaces it when the header
+            // is complete.
             Opening::Stream => Box::new(Shown::new(Recorded::<f32, 3>::growing(Registry::new()))),
             Opening::Sample { name } => open_sample(name)?,
         };
@@ -150,7 +154,8 @@ impl Engine {
         Ok(())
     }
 
-    /// Appends bytes of a stream. Those of the header are collected, and passed to the stage of its type.
+    /// Appends bytes to a stream. The bytes of the header are collected first; then they are passed
+    /// to a stage with the scalar and dimension of the header.
     fn push(&mut self, bytes: &[u8]) -> Result<(), EngineError> {
         let Some(begun) = &mut self.begun else { return self.stage()?.push(bytes) };
         let before = begun.len();
@@ -185,7 +190,7 @@ fn open_recording(bytes: &[u8]) -> Result<Opened, EngineError> {
     stage_of(&Header::read(&bytes)?, Some(&bytes))
 }
 
-/// Creates the stage of a recording: of all its bytes, or of a stream without bytes yet.
+/// Creates the stage of a recording: from all of its bytes, or for `None` an empty growing one.
 fn stage_of(header: &Header, bytes: Option<&[u8]>) -> Result<Opened, EngineError> {
     match (header.scalar_bytes, header.dimension) {
         (4, 2) => recorded::<f32, 2>(bytes),
@@ -196,8 +201,8 @@ fn stage_of(header: &Header, bytes: Option<&[u8]>) -> Result<Opened, EngineError
     }
 }
 
-/// Creates the stage of a recording in a scalar and a dimension: of all its bytes, or of a stream
-/// without bytes yet.
+/// Creates the stage of a recording with this scalar and dimension: from all of its bytes, or for
+/// `None` an empty growing one.
 fn recorded<N: Viewed<D>, const D: usize>(bytes: Option<&[u8]>) -> Result<Opened, EngineError> {
     let recorded = match bytes {
         Some(bytes) => Recorded::<N, D>::open(bytes, Registry::new())?,
@@ -206,7 +211,7 @@ fn recorded<N: Viewed<D>, const D: usize>(bytes: Option<&[u8]>) -> Result<Opened
     Ok(Box::new(Shown::new(recorded)))
 }
 
-/// Converts the value of a control: `null` presses a button.
+/// Converts the value of a control; `null` is the press of a button.
 fn control_value(value: Value) -> Result<ControlValue, EngineError> {
     match (value.as_f64(), value) {
         (Some(number), _) => Ok(ControlValue::Number(number)),

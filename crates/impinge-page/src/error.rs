@@ -1,4 +1,4 @@
-//! Errors of messages.
+//! The errors that a message can cause.
 
 use core::fmt;
 
@@ -6,16 +6,16 @@ use impinge::world::WorldError;
 use impinge_record::{Problem, ReadError, RecordError};
 use impinge_samples::SampleError;
 
-/// The reason why a message has no result. The text is for authors of pages; the page translates the
+/// The reason why a message is rejected. The text is for authors of pages; the page translates the
 /// [`code`](EngineError::code) for readers.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum EngineError {
     /// The message ends before the JSON text does.
     Truncated {
-        /// The number of bytes that the layout requires.
+        /// The number of bytes that the message should have.
         wanted: u64,
-        /// The number of bytes that exist.
+        /// The number of bytes that the message has.
         found: usize,
     },
     /// The text is not JSON, or not a message.
@@ -24,17 +24,18 @@ pub enum EngineError {
     NothingOpen,
     /// The gallery has no sample of this name.
     UnknownSample(String),
-    /// A sample does not support this: it has no recorded steps, and no bytes are appended to it.
+    /// The operation is for recordings only: a sample has no recorded steps, and no bytes can be
+    /// appended to it.
     OfRecordings(&'static str),
-    /// A recording does not support this: it has no controls.
+    /// The operation is for samples only: a recording has no controls.
     OfSamples(&'static str),
-    /// More steps than one message may request.
+    /// The message requests more steps than one message may request.
     TooManySteps(u64),
     /// No object has a handle with this index.
     NoObject(u32),
-    /// A pair must have two different objects.
+    /// The two objects of a pair are the same.
     OneObject(u32),
-    /// The quaternion has length zero.
+    /// The quaternion has length zero, or is not finite.
     Rotation([f64; 4]),
     /// The value of a control has an invalid type, for instance a list.
     Value(String),
@@ -44,7 +45,7 @@ pub enum EngineError {
     Kind {
         /// The dimension.
         dimension: u8,
-        /// The bytes of a number.
+        /// The number of bytes of a number.
         scalar_bytes: u8,
     },
     /// The world rejects a change.
@@ -54,7 +55,7 @@ pub enum EngineError {
 }
 
 impl EngineError {
-    /// Returns a word for the error: `PROTOCOL.md` has the list.
+    /// Returns the code of the error; `PROTOCOL.md` lists the codes.
     #[must_use]
     pub const fn code(&self) -> &'static str {
         match self {

@@ -1,4 +1,4 @@
-//! Why two objects touch, or do not.
+//! Explains why two objects touch or do not.
 
 use impinge::bounding_volume::{Aabb, BoundingVolume};
 use impinge::math::{Real, Space, Unit, Vector, max, min};
@@ -19,7 +19,8 @@ pub(crate) struct Two<'a, N: Space<D>, const D: usize, T> {
     pub(crate) world: &'a CollisionWorld<N, D, T>,
     pub(crate) one: &'a CollisionObject<N, D, T>,
     pub(crate) two: &'a CollisionObject<N, D, T>,
-    /// Names of pair filters that are code of another program: their stand-ins accept all pairs.
+    /// The names of pair filters that are code of another program. Stand-ins, which accept all
+    /// pairs, replace them.
     pub(crate) stand_ins: &'a [String],
 }
 
@@ -28,13 +29,14 @@ pub(crate) struct Two<'a, N: Space<D>, const D: usize, T> {
 enum Limit<N> {
     /// Contacts exist up to the sum of both predictions, and of both skins.
     Prediction(N),
-    /// Objects are near up to the sum of both margins.
+    /// Contacts exist up to the sum of the predictions and skins of both objects.
     Margin(N),
 }
 
 impl<N: Real> Limit<N> {
-    /// Returns the limit of a pair. It is a proximity if either object has a proximity query; the
-    /// prediction of the other object and `skins`, the sum of both skins, are then ignored.
+    /// Returns the limit of a pair. If either object has a proximity query, the pair has a
+    /// proximity; then the prediction of the other object and `skins`, the sum of both skins, are
+    /// ignored.
     fn of(one: GeometricQueryType<N>, two: GeometricQueryType<N>, skins: N) -> Self {
         use GeometricQueryType::{Contacts, Proximity};
         match (one, two) {
@@ -71,7 +73,7 @@ pub(crate) const fn proximity_text(proximity: Proximity) -> &'static str {
 }
 
 impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
-    /// Returns the result. Costs four queries about the two shapes.
+    /// Returns the description of the pair. Costs four queries about the two shapes.
     pub(crate) fn answer(&self) -> PairAnswer {
         let skin = |object: &CollisionObject<N, D, T>| self.world.skin(object.handle());
         let skins = skin(self.one).zip(skin(self.two)).map_or(N::ZERO, |(one, two)| one + two);
@@ -107,8 +109,8 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         }
     }
 
-    /// Returns the manifolds of the world. In a world a pair has the order of the handles; the
-    /// points are flipped if the request has the other order.
+    /// Returns the manifolds of the pair, as of the last update. The world orders the objects of a
+    /// pair by their handles; if the request has the other order, the points are flipped.
     fn manifolds(&self) -> Vec<ShownManifold> {
         let (one, two) = (self.one.handle(), self.two.handle());
         let views = self.world.contact_pair(one, two).into_iter().flat_map(ContactPair::views);
@@ -127,9 +129,10 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         ManifoldPoint { contact, features: format!("{feature1}, {feature2}") }
     }
 
-    /// Returns whether the two touch as of the last update, with conditions that are tested now.
-    /// The two may disagree after a change without an update, and for a one-sided surface, which is
-    /// no condition.
+    /// Explains whether the two objects touch as of the last update. The conditions are tested with
+    /// the current state of the world. So they may contradict the result after a change without an
+    /// update. They may also contradict it for a one-sided surface, since the side is not one of
+    /// the conditions.
     fn why(&self, limit: Limit<N>, measures: &Measures<N, D>) -> Why {
         let tests =
             vec![self.groups(), self.filters(), self.boxes(), distance_test(limit, measures)];
@@ -146,7 +149,8 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         Why { touch, text, tests }
     }
 
-    /// Returns whether the pair touches as of the last update, and a sentence about it.
+    /// Returns whether the pair touches as of the last update, and a phrase that describes the
+    /// result.
     fn found(&self) -> (bool, String) {
         let (one, two) = (self.one.handle(), self.two.handle());
         if let Some(pair) = self.world.proximity_pair(one, two) {
@@ -172,7 +176,8 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         }
     }
 
-    /// Tests the groups of both, which do not matter for two fixed objects.
+    /// Tests the groups of both objects. Two fixed objects fail the test independent of their
+    /// groups.
     fn groups(&self) -> Test {
         if self.one.is_fixed() && self.two.is_fixed() {
             let text =
@@ -187,7 +192,7 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         Test { name: "groups", passes, text: groups::text(one, two) }
     }
 
-    /// Tests the pair filters of the world. Stand-ins are named as such: they reject nothing.
+    /// Tests the pair filters of the world. The text mentions stand-ins, which reject nothing.
     fn filters(&self) -> Test {
         let refusing = self.world.refusing_pair_filters(self.one.handle(), self.two.handle());
         let names: Vec<&str> = self.world.broad_phase_pair_filter_names().collect();
@@ -213,7 +218,7 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         };
         let passes = box1.intersects(&box2);
         let text = if passes {
-            // The overlap of two half-spaces may be unbounded.
+            // The overlap of the boxes of two half-spaces may be unbounded.
             let overlap = overlap(&box1, &box2).as_f64();
             let is_finite = overlap.is_finite();
             let by = if is_finite { format!(" by {}", short(overlap)) } else { String::new() };
@@ -235,12 +240,13 @@ fn overlap<N: Real, const D: usize>(box1: &Aabb<N, D>, box2: &Aabb<N, D>) -> N {
     (0..D).map(on_axis).fold(N::INFINITY, min)
 }
 
-/// Tests the distance of the shapes, or their depth, against the limit.
+/// Tests the distance of the shapes against the limit. The text also has the depth.
 fn distance_test<N: Real, const D: usize>(limit: Limit<N>, measures: &Measures<N, D>) -> Test {
     let (length, apart) = (short(limit.length().as_f64()), short(measures.distance.as_f64()));
     let passes = measures.distance <= limit.length();
     let depth = measures.contact.as_ref().map(|contact| contact.depth.as_f64());
-    // The depth is negative for shapes that are apart within the prediction; their distance is positive.
+    // If the shapes are apart within the prediction, the depth is negative and the distance
+    // positive.
     let state = match depth {
         _ if measures.distance > N::ZERO => format!("{apart} apart"),
         Some(depth) if depth > 0.0 => format!("they overlap, {} deep", short(depth)),
@@ -253,7 +259,7 @@ fn distance_test<N: Real, const D: usize>(limit: Limit<N>, measures: &Measures<N
     Test { name: "distance", passes, text: format!("{state}; {kept}") }
 }
 
-/// Converts a contact, in the world frame.
+/// Converts a contact; all vectors are in the world frame.
 pub(crate) fn shown_contact<N: Real, const D: usize>(contact: &Contact<N, D>) -> ShownContact {
     let normal: &Unit<Vector<N, D>> = &contact.normal;
     ShownContact {
@@ -264,10 +270,10 @@ pub(crate) fn shown_contact<N: Real, const D: usize>(contact: &Contact<N, D>) ->
     }
 }
 
-/// Formats a number with four significant digits, without trailing zeros; in scientific notation below 0.001 and from a
-/// million on.
+/// Formats a number with four significant digits and without trailing zeros. Magnitudes below 0.001
+/// and from a million on are in scientific notation.
 pub(crate) fn short(number: f64) -> String {
-    // Parsed again, which drops trailing zeros. The sum with zero has no negative zero.
+    // Parsing the rounded number drops trailing zeros; adding zero turns -0 into 0.
     let rounded = format!("{number:.3e}").parse().unwrap_or(number) + 0.0;
     let is_plain = rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs());
     if is_plain { rounded.to_string() } else { format!("{rounded:e}") }

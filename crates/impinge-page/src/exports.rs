@@ -1,4 +1,5 @@
-//! The exports of the WebAssembly module: functions of numbers, and one engine.
+//! The exports of the WebAssembly module: functions with numeric arguments and results, for one
+//! engine.
 #![expect(
     unsafe_code,
     reason = "the attribute that keeps a name counts as unsafe; there is no other"
@@ -35,11 +36,12 @@ extern "C" fn reserve(bytes: usize) -> usize {
     })
 }
 
-/// Processes the message in the buffer; returns the address of the response, which is valid until the next call.
+/// Processes the first `bytes` bytes of the buffer as a message. Returns the address of the
+/// response, which is valid until the next call.
 #[unsafe(no_mangle)]
 extern "C" fn call(bytes: usize) -> usize {
     HOST.with_borrow_mut(|host| {
-        // Freed after the call: a recording may have hundreds of megabytes.
+        // The message is freed after the call, since a recording may have hundreds of megabytes.
         let message = mem::take(&mut host.message);
         host.answer = host.engine.call(&message[..bytes.min(message.len())]);
         host.answer.as_ptr().addr()

@@ -1,10 +1,10 @@
-//! Collision groups as text.
+//! Describes collision groups as text.
 
 use impinge::world::CollisionGroups;
 
 use crate::answer::{GroupNumbers, ShownGroups};
 
-/// The groups of an object.
+/// Converts the groups of an object to their description.
 pub(crate) fn shown(groups: &CollisionGroups) -> ShownGroups {
     ShownGroups {
         membership: numbers(groups.membership_mask()),
@@ -20,12 +20,12 @@ fn bits(mask: u32) -> impl Iterator<Item = usize> {
 }
 
 fn numbers(mask: u32) -> GroupNumbers {
-    // New groups are members of all groups.
+    // A new object is in all groups.
     let is_all = mask == CollisionGroups::new().membership_mask();
     if is_all { GroupNumbers::All("all") } else { GroupNumbers::Some(bits(mask).collect()) }
 }
 
-/// Lists groups in a sentence.
+/// Lists the groups of a mask, for use in a sentence.
 fn listed(mask: u32) -> String {
     match numbers(mask) {
         GroupNumbers::All(all) => all.to_owned(),
@@ -37,23 +37,23 @@ fn listed(mask: u32) -> String {
     }
 }
 
-/// The groups of an object, with a name for the text.
+/// The groups of an object, and the index by which texts refer to it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Named<'a> {
     pub(crate) object: usize,
     pub(crate) groups: &'a CollisionGroups,
 }
 
-/// Returns why the groups of two objects allow or exclude a pair, as [`CollisionGroups::can_interact_with_groups`]
-/// does: the first exclusion by the lists of either.
+/// Explains why the groups of two objects allow or exclude a pair, according to
+/// [`CollisionGroups::can_interact_with_groups`]. For an exclusion it names the first reason.
 pub(crate) fn text(one: Named<'_>, two: Named<'_>) -> String {
     let refusals = [refusal(one, two), refusal(two, one)];
     let first = refusals.into_iter().flatten().next();
     first.unwrap_or_else(|| "each has a group that the other allows".to_owned())
 }
 
-/// Returns why the lists of the second object exclude the first; `None` if they allow it. The blacklist has
-/// precedence.
+/// Explains why the lists of `other` exclude the object `one`; `None` if they allow it. The
+/// blacklist has precedence.
 fn refusal(one: Named<'_>, other: Named<'_>) -> Option<String> {
     let membership = one.groups.membership_mask();
     let [whitelist, blacklist] = [other.groups.whitelist_mask(), other.groups.blacklist_mask()];

@@ -1,11 +1,12 @@
 //! The engine of a web page that shows worlds and runs queries on them.
 //!
-//! An [`Engine`] takes messages as bytes and returns responses as bytes; `PROTOCOL.md` describes both. It holds one
-//! *stage*: a recording, a growing recording, or a running sample. The page draws and sends requests; all geometry is
-//! computed here, by the public functions of the library.
+//! An [`Engine`] takes messages as bytes and returns responses as bytes; `PROTOCOL.md` describes
+//! both. It holds one *stage*: a recording, a growing recording, or a running sample. The page
+//! draws and sends requests. All geometry is computed here, by the public functions of the library.
 //!
-//! As a WebAssembly module it exports three functions of numbers. Native programs call the same engine directly:
-//! tests, and programs that have recordings with shapes and pair filters of their own.
+//! As a WebAssembly module it exports three functions with numeric arguments and results. Native
+//! programs call the same engine directly: tests, and programs whose recordings have shapes and
+//! pair filters of their own.
 
 pub mod answer;
 mod ask;

@@ -1,9 +1,10 @@
-//! The common layout of messages and responses.
+//! The layout that messages and responses have in common.
 
 use crate::EngineError;
 
-/// Returns the bytes of a JSON text and a payload: the length of the text, the text padded with spaces to a
-/// multiple of four bytes, the payload. The length includes the spaces.
+/// Returns the bytes of a message. They consist of the length of the text in four bytes, the JSON
+/// text padded with spaces to a multiple of four bytes, and the payload. The length includes the
+/// spaces.
 ///
 /// ```
 /// let bytes = impinge_page::message(r#"{"do": "samples"}"#, &[7]);
@@ -36,7 +37,7 @@ pub fn parts(bytes: &[u8]) -> Result<(&[u8], &[u8]), EngineError> {
     let wanted = 4 + u64::from(length);
     let split = usize::try_from(length).ok().filter(|length| *length <= rest.len());
     let split = split.ok_or_else(|| truncated(wanted))?;
-    // The payload is aligned; a text without one may lack its spaces.
+    // The payload begins at a multiple of four. Without a payload the padding may be missing.
     let aligned = split.next_multiple_of(4).min(rest.len());
     Ok((&rest[..split], &rest[aligned..]))
 }

@@ -16,18 +16,18 @@ use crate::stand_in::StandIns;
 use crate::time_line::marks;
 use crate::{EngineError, Viewed};
 
-/// A recording that is replayed, complete or while it grows. The data of objects may be any bytes.
+/// A replayed recording, complete or still growing. The data of its objects may be any bytes.
 ///
-/// Names that the registry lacks get stand-ins: pair filters accept all pairs, shapes become balls. The replay then
-/// differs from the recording if they matter. For a recording without an end, or with a damaged one, the earlier
-/// records are replayed. [`Info::notes`] mentions both.
+/// Pair filters and shapes that the registry lacks get stand-ins: filters that accept all pairs,
+/// and balls. If they matter, the replay differs from the recording. Of a recording without an end,
+/// or with a damaged one, the records before that are replayed. [`Info::notes`] mentions both.
 #[derive(Debug)]
 pub struct Recorded<N: Viewed<D>, const D: usize> {
     replay: Replay<N, D, Vec<u8>>,
     stand_ins: StandIns<N, D>,
     is_stream: bool,
-    /// The part that could not be read when the recording was opened. A replay of the bytes that
-    /// were kept does not report it again.
+    /// The part of the recording that could not be read when it was opened. The replay keeps only
+    /// the bytes before it, so it does not report the loss again.
     loss: Option<Loss>,
 }
 
@@ -54,11 +54,12 @@ impl<N: Viewed<D>, const D: usize> Recorded<N, D> {
         Self { replay, stand_ins, is_stream: true, loss: None }
     }
 
-    /// Reads bytes from the beginning of a recording, again for each name that gets a stand-in meanwhile.
+    /// Reads the bytes of a recording from its beginning. This is repeated whenever a missing name
+    /// gets a stand-in.
     fn read(&mut self, bytes: &[u8]) -> Result<(), ReadError> {
         loop {
             let error = if self.is_stream {
-                // Damage is an error: bytes after it are never read.
+                // In a stream damage is an error, since the bytes after it could never be read.
                 self.replay = Replay::growing(&self.stand_ins.registry);
                 self.replay.push(bytes).err()
             } else {
@@ -73,10 +74,10 @@ impl<N: Viewed<D>, const D: usize> Recorded<N, D> {
         }
     }
 
-    /// Reads all bytes again, with a stand-in for the missing name in an error.
+    /// Adds a stand-in for the missing name in an error, and reads all bytes again.
     ///
     /// # Errors
-    /// The given error, if it is of another kind.
+    /// Returns `error` itself if it is of another kind.
     fn reread(&mut self, error: ReadError) -> Result<(), ReadError> {
         if !self.stand_ins.add_for(&error) {
             return Err(error);
@@ -85,8 +86,8 @@ impl<N: Viewed<D>, const D: usize> Recorded<N, D> {
         self.read(&bytes)
     }
 
-    /// Goes to a step, or to the last one. Missing names of pair filters are detected here, where their calls are
-    /// played.
+    /// Goes to a step, or to the last one before it. Missing pair filters are detected here, when
+    /// the calls that register them are replayed.
     fn go(&mut self, step: usize) -> Result<(), ReadError> {
         while let Err(error) = self.replay.seek(step) {
             self.reread(error)?;
@@ -134,7 +135,7 @@ impl<N: Viewed<D>, const D: usize> Source<N, D> for Recorded<N, D> {
             self.reread(error)?;
             self.go(step)?;
         }
-        // A stream goes to its first update as soon as it has one, like an opened recording.
+        // Like an opened recording, a stream goes to its first update as soon as it has one.
         if step == 0 {
             self.go(1)?;
         }
@@ -158,7 +159,7 @@ impl<N: Viewed<D>, const D: usize> Source<N, D> for Recorded<N, D> {
         Err(EngineError::OfSamples("controls"))
     }
 
-    /// Moves an object; the next seek undoes this.
+    /// Moves an object in the replayed world; the next seek restores the recorded position.
     fn drag(&mut self, object: CollisionObjectHandle, to: &N::Isometry) -> Result<(), EngineError> {
         let world = self.replay.world_mut();
         world.try_set_position(object, *to)?;
@@ -176,7 +177,7 @@ impl<N: Viewed<D>, const D: usize> Source<N, D> for Recorded<N, D> {
     }
 }
 
-/// Describes the missing part of a recording for readers.
+/// Describes the missing part of a recording in a sentence for readers.
 fn loss_text(loss: &Loss) -> String {
     match loss.bytes {
         0 => "The recording has no end: its program did not finish it.".to_owned(),
@@ -189,9 +190,9 @@ fn loss_text(loss: &Loss) -> String {
     }
 }
 
-/// Describes the difference of a replay for readers.
+/// Describes the first difference of a replay from its recording for readers.
 fn divergence_text(found: &Divergence) -> String {
-    // The record of an update leads to the next step.
+    // The difference was found by the update that leads to this step.
     let step = found.step + 1;
     match found.difference {
         Difference::Object { index, field: ObjectField::Description } => {

@@ -1,9 +1,9 @@
-//! Messages of the page as data: the members of `PROTOCOL.md`.
+//! Requests of the page as data. `PROTOCOL.md` describes their members.
 
 use serde::Deserialize;
 use serde_json::Value;
 
-/// A request of the page; each variant is a value of `do`.
+/// A request of the page. The member `do` selects the variant.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase")]
 pub(crate) enum Request {
@@ -50,15 +50,15 @@ pub(crate) enum Opening {
     Sample { name: String },
 }
 
-/// The content of a frame.
+/// A request for a frame, and its content.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default)]
 pub struct FrameRequest {
-    /// Names of layers.
+    /// The names of the visible layers.
     pub layers: Vec<String>,
-    /// Objects whose boxes and contacts are drawn whatever the layers are.
+    /// The objects whose boxes and contacts are drawn even if these layers are invisible.
     pub selected: Vec<u32>,
-    /// The number of mesh ids that the page has received: meshes with smaller ids are not sent
+    /// The number of mesh ids that the page has received. Meshes with smaller ids are not sent
     /// again.
     pub known: u32,
 }
@@ -71,7 +71,7 @@ pub struct PickRequest {
     /// Its direction, of any length; ignored in 2D.
     #[serde(default)]
     pub direction: [f64; 3],
-    /// In 2D: the largest distance of an object that does not contain the point.
+    /// In 2D, the maximum distance of an object that does not contain the point.
     #[serde(default)]
     pub reach: f64,
 }
@@ -88,13 +88,13 @@ pub struct RayRequest {
     pub longest: Option<f64>,
 }
 
-/// The objects nearest to a point.
+/// A request for the objects nearest to a point.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub struct NearestRequest {
     /// The point.
     pub point: [f64; 3],
     #[serde(default = "one")]
-    /// The largest number of objects.
+    /// The maximum number of objects.
     pub count: u64,
 }
 
@@ -105,7 +105,8 @@ pub struct DragRequest {
     pub object: u32,
     /// The new position of its origin.
     pub translation: [f64; 3],
-    /// A quaternion x, y, z, w of any length but zero; without it the object keeps its rotation.
+    /// The new rotation: a quaternion x, y, z, w of any length but zero. Without it the object
+    /// keeps its rotation.
     #[serde(default)]
     pub rotation: Option<[f64; 4]>,
 }

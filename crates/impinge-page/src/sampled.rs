@@ -19,7 +19,8 @@ where
 {
     running: Running<D>,
     entry: Entry,
-    /// The controls as the page last received them, updated by the values that it has set.
+    /// The controls with the values that the page knows: those that it received, and those that it
+    /// has set.
     known: Vec<Control>,
 }
 
@@ -27,7 +28,7 @@ impl<const D: usize> Sampled<D>
 where
     f32: Viewed<D>,
 {
-    /// A sample at step 0.
+    /// Creates the stage with the sample at step 0.
     ///
     /// # Errors
     /// If its world rejects its objects.
@@ -38,7 +39,7 @@ where
         Ok(Self { running, entry: *entry, known })
     }
 
-    /// Drops the bytes that a recorder keeps until they are taken, since nothing here reads them.
+    /// Drops the recorded bytes, which nothing here reads.
     fn drop_recording(&mut self) {
         drop(self.running.take_bytes());
     }
@@ -97,8 +98,7 @@ where
         Ok(())
     }
 
-    /// Sets a control. The page knows the value that it sets, so that the next status does not
-    /// repeat it.
+    /// Sets a control. The page knows this value, so the next status does not report it.
     fn control(&mut self, name: &str, value: &ControlValue) -> Result<(), EngineError> {
         self.running.set_control(name, value)?;
         self.drop_recording();

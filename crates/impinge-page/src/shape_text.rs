@@ -1,4 +1,5 @@
-//! Shapes as text: a kind, and the arguments of its constructor with four significant digits.
+//! Describes shapes as text: the kind, and the arguments of the constructor with four significant
+//! digits.
 
 use impinge::math::{Point, Real, Vector};
 use impinge::shape::{
@@ -10,7 +11,8 @@ use impinge_record::{Recordable, ShapeData};
 use crate::answer::ShapeText;
 use crate::explain::short;
 
-/// Returns the kind and the sizes of a shape. A type of the recorded program has a kind and no sizes.
+/// Returns the kind and the sizes of a shape. A shape type of the recorded program has a kind but
+/// no sizes.
 pub(crate) fn shape_text<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> ShapeText {
     let kind = kind_text(shape.geometry().kind());
     let sizes = solid_sizes(shape).or_else(|| composite_sizes(shape)).or_else(|| own_sizes(shape));
@@ -40,7 +42,7 @@ const fn kind_text(kind: ShapeKind) -> &'static str {
     }
 }
 
-/// Returns the text of a shape of known type; `text` has the part after the kind.
+/// Returns the description of a shape of known type; `text` contains the sizes.
 fn sizes(kind: &'static str, text: String) -> Option<ShapeText> {
     Some(ShapeText { kind, text })
 }
@@ -59,7 +61,8 @@ fn distance<N: Real, const D: usize>(from: &Point<N, D>, to: &Point<N, D>) -> St
     length((to - from).norm())
 }
 
-/// Describes the convex solids of both dimensions, and the half-space.
+/// Describes the convex shapes that exist in both dimensions, and the half-space; `None` for other
+/// shapes.
 fn solid_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Option<ShapeText> {
     if let Some(ball) = shape.as_shape::<Ball<N>>() {
         return sizes("ball", format!("radius {}", length(ball.radius())));
@@ -100,9 +103,9 @@ fn solid_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Opt
     sizes("half-space", format!("normal {}", normal.join(", ")))
 }
 
-/// Describes the composites with vertices or children.
+/// Describes polylines, meshes and compounds; `None` for other shapes.
 fn composite_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Option<ShapeText> {
-    // A two-sided surface is the default and not mentioned.
+    // Two-sided is the default, so it is not mentioned.
     let sides = |is_solid: bool, is_one_sided: bool| match (is_solid, is_one_sided) {
         (true, _) => ", solid",
         (false, true) => ", one-sided",
@@ -122,7 +125,8 @@ fn composite_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) ->
     sizes("compound", format!("{} shapes", compound.num_children()))
 }
 
-/// Describes the shapes of one dimension, by their data in recordings: generic code cannot name their types.
+/// Describes the shapes that exist in one dimension only, by the data with which they are recorded:
+/// generic code cannot name their types.
 fn own_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Option<ShapeText> {
     let [kind, height, radius] = ["cylinder", "half height", "radius"];
     match N::own_data(shape)? {
@@ -137,13 +141,13 @@ fn own_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Optio
             sizes("cone", format!("{height} {}, {radius} {}", length(h), length(r)))
         }
         ShapeData::Tetrahedron([a, b, c, d]) => {
-            // Each corner with the later ones: six edges.
+            // The six edges: each corner is connected with those after it.
             let edges = [[a, b], [a, c], [a, d], [b, c], [b, d], [c, d]];
             let edges = edges.map(|[from, to]| distance(&from, &to)).join(", ");
             sizes("tetrahedron", format!("edges {edges}"))
         }
         ShapeData::HeightField(field) => {
-            // In 2D there is one row.
+            // A height field in 2D has a single row.
             let rows = field.heights.len() / field.columns.max(1);
             let grid = if rows > 1 {
                 format!("{rows} × {}", field.columns)

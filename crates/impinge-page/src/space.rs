@@ -1,4 +1,4 @@
-//! Conversions between the dimensions of the library and the page, which always has three.
+//! Converts between the dimension of the world and the page, which always has three coordinates.
 
 use impinge::math::na::{Quaternion, Translation2, Translation3, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry2, Isometry3, Point, Pose, Real, Vector, na};
@@ -9,16 +9,20 @@ use crate::answer::Picked;
 use crate::ask;
 use crate::request::PickRequest;
 
-/// The requirements of the page on a scalar and a dimension: every [`Scalar`] with `D` = 2 and `D` = 3.
+/// The requirements of the page on scalar and dimension. They are met for every [`Scalar`] with `D`
+/// = 2 and `D` = 3.
 pub trait Viewed<const D: usize>: Recordable<D> {
-    /// Returns the rotation of an isometry as a unit quaternion x, y, z, w; in 2D about the third axis.
+    /// Returns the rotation of an isometry as a unit quaternion x, y, z, w. In 2D it is about the
+    /// third axis.
     fn quaternion(isometry: &Self::Isometry) -> [f64; 4];
 
-    /// Returns the isometry of a translation and a unit quaternion; 2D uses only z and w.
+    /// Returns the isometry with a translation and a unit quaternion x, y, z, w. 2D uses only z and
+    /// w.
     fn placed(translation: &Vector<Self, D>, quaternion: [f64; 4]) -> Self::Isometry;
 
-    /// Adds a pair filter to the registry that accepts all pairs. Closures are filters of one dimension each, and a
-    /// type that is a filter in both would conflict with them.
+    /// Adds a pair filter that accepts all pairs to a registry. It is implemented for each
+    /// dimension: a closure is a filter in one dimension only, and a type that is a filter in both
+    /// would conflict with closures.
     fn with_open_filter<T>(registry: Registry<Self, D, T>, name: &str) -> Registry<Self, D, T>;
 
     /// Returns the object at a point on the screen, with the hit point and the normal.
@@ -26,7 +30,7 @@ pub trait Viewed<const D: usize>: Recordable<D> {
 }
 
 impl<N: Scalar> Viewed<2> for N {
-    /// By the half angle, from the larger of its sine and cosine.
+    /// Computes sine and cosine of the half angle, the larger of them first, to avoid cancellation.
     fn quaternion(isometry: &Isometry2<N>) -> [f64; 4] {
         let [cosine, sine] = [isometry.rotation.re, isometry.rotation.im].map(N::as_f64);
         if cosine >= 0.0 {
@@ -40,7 +44,8 @@ impl<N: Scalar> Viewed<2> for N {
 
     fn placed(translation: &Vector<N, 2>, [_, _, z, w]: [f64; 4]) -> Isometry2<N> {
         let squared = z * z + w * w;
-        // A rotation about an axis in the plane is the identity in 2D.
+        // If z and w are zero, the rotation is about an axis in the plane. In 2D this becomes the
+        // identity.
         let [cosine, sine] = if squared > 0.0 {
             [(w * w - z * z) / squared, 2.0 * z * w / squared]
         } else {
@@ -82,7 +87,7 @@ impl<N: Scalar> Viewed<3> for N {
     }
 }
 
-/// Returns three coordinates; those beyond the dimension are zero.
+/// Converts a vector to three coordinates; coordinates beyond the dimension are zero.
 pub(crate) fn coordinates<N: Real, const D: usize>(vector: &Vector<N, D>) -> [f64; 3] {
     let mut three = [0.0; 3];
     for (coordinate, own) in three.iter_mut().zip(vector.iter()) {
@@ -91,17 +96,18 @@ pub(crate) fn coordinates<N: Real, const D: usize>(vector: &Vector<N, D>) -> [f6
     three
 }
 
-/// Returns the coordinates of the dimension, rounded to its scalar.
+/// Converts three coordinates to a vector of the dimension, rounded to its scalar.
 pub(crate) fn vector<N: Real, const D: usize>(three: [f64; 3]) -> Vector<N, D> {
     Vector::<N, D>::from_fn(|axis, _| N::lit(three[axis]))
 }
 
-/// Returns the point of three coordinates.
+/// Converts three coordinates to a point of the dimension, rounded to its scalar.
 pub(crate) fn point<N: Real, const D: usize>(three: [f64; 3]) -> Point<N, D> {
     Point::from(vector(three))
 }
 
-/// Converts a pose to the type of queries about two shapes, in either dimension; its matrix has the same bits.
+/// Converts a pose to the isometry type that queries of two shapes accept in either dimension. The
+/// rotation matrix keeps its bits.
 pub(crate) fn isometry<N: Real, const D: usize>(
     pose: &Pose<N, D>,
 ) -> na::Isometry<N, na::Rotation<N, D>, D> {
@@ -109,11 +115,11 @@ pub(crate) fn isometry<N: Real, const D: usize>(
     na::Isometry::from_parts(na::Translation::from(pose.translation), rotation)
 }
 
-/// Returns a quaternion of length 1; `None` if its length is zero or not finite.
+/// Normalizes a quaternion; `None` if its length is zero or not finite.
 pub(crate) fn unit_quaternion(quaternion: [f64; 4]) -> Option<[f64; 4]> {
     let largest = quaternion.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
     let is_usable = largest > 0.0 && largest.is_finite();
-    // Divided first, to avoid overflow and underflow of the squares.
+    // Scaled by the largest component first, which avoids overflow and underflow of the squares.
     let scaled = quaternion.map(|x| x / largest);
     let length = scaled.iter().map(|x| x * x).sum::<f64>().sqrt();
     is_usable.then(|| scaled.map(|x| x / length))

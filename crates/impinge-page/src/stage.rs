@@ -17,30 +17,33 @@ use crate::frame::picture::Picture;
 use crate::request::{DragRequest, FrameRequest, NearestRequest, PickRequest, RayRequest};
 use crate::space::{Viewed, unit_quaternion, vector};
 
-/// The largest number of steps of one message.
+/// The maximum number of steps that a message may request.
 pub(crate) const MAX_STEPS: u64 = 10_000;
 
-/// A stage of an engine: the messages of the page as methods, without scalar and dimension.
+/// A stage of an engine. It has a method for each message of the page, independent of scalar and
+/// dimension.
 ///
-/// A method that fails has changed nothing, except that a step that fails midway may have changed a part.
+/// A method that fails has changed nothing. The exception is a sequence of steps that fails midway:
+/// the steps before the failure remain.
 #[expect(clippy::missing_errors_doc, reason = "the variants of the error say when they are")]
 pub trait Stage {
-    /// Returns its description.
+    /// Returns the description of the stage.
     fn info(&self) -> Info;
 
-    /// Returns the state at the current step. Controls of a sample are listed if they changed since the last call.
+    /// Returns the state at the current step. It lists the controls of a sample that have changed
+    /// since the last call.
     fn status(&mut self) -> Status;
 
     /// Appends bytes to a growing recording.
     fn push(&mut self, bytes: &[u8]) -> Result<(), EngineError>;
 
-    /// Goes to a step of a recording; a step beyond the last one goes to the last.
+    /// Goes to a step of a recording. Steps after the last one count as the last one.
     fn seek(&mut self, step: usize) -> Result<(), EngineError>;
 
-    /// Advances by some steps; a recording stays at its end.
+    /// Advances by `steps` steps. A recording stays at its end.
     fn advance(&mut self, steps: u64) -> Result<(), EngineError>;
 
-    /// Goes back to the start.
+    /// Goes back to the start: the first update of a recording, step 0 of a sample.
     fn reset(&mut self) -> Result<(), EngineError>;
 
     /// Sets a control of a sample.
@@ -52,7 +55,7 @@ pub trait Stage {
     /// Describes an object.
     fn object(&self, object: u32) -> Result<ObjectAnswer, EngineError>;
 
-    /// Describes two objects, and why they touch or do not.
+    /// Describes a pair of objects, and explains why they touch or do not.
     fn pair(&self, a: u32, b: u32) -> Result<PairAnswer, EngineError>;
 
     /// Returns the object at a point on the screen.
@@ -68,17 +71,17 @@ pub trait Stage {
     fn drag(&mut self, asked: &DragRequest) -> Result<(), EngineError>;
 }
 
-/// The source of the world of a stage: the part that differs between recordings and samples.
+/// The part of a stage that differs between recordings and samples: the source of its world.
 #[expect(clippy::missing_errors_doc, reason = "the variants of the error say when they are")]
 pub trait Source<N: Viewed<D>, const D: usize> {
     /// The data of the objects.
     type Data: RecordData;
 
-    /// The world.
+    /// Returns the world.
     fn world(&self) -> &CollisionWorld<N, D, Self::Data>;
 
-    /// Returns the description of the stage, without the members common to all stages: the
-    /// dimension, the scalar, the time of a step, the bounds and the axis up.
+    /// Returns the description of the stage. `Shown` adds the members that all stages have: the
+    /// dimension, the scalar, the time step, the bounds and the upward axis.
     fn info(&self) -> Info;
 
     /// Returns the state at the current step; see [`Stage::status`].
@@ -90,7 +93,7 @@ pub trait Source<N: Viewed<D>, const D: usize> {
     /// Goes to a step of a recording; see [`Stage::seek`].
     fn seek(&mut self, step: usize) -> Result<(), EngineError>;
 
-    /// Advances by some steps; see [`Stage::advance`].
+    /// Advances by `steps` steps; see [`Stage::advance`].
     fn advance(&mut self, steps: u64) -> Result<(), EngineError>;
 
     /// Goes back to the start; see [`Stage::reset`].
@@ -102,14 +105,14 @@ pub trait Source<N: Viewed<D>, const D: usize> {
     /// Moves an object and updates the world.
     fn drag(&mut self, object: CollisionObjectHandle, to: &N::Isometry) -> Result<(), EngineError>;
 
-    /// Draws the additions to the objects, such as queries.
+    /// Draws elements other than objects, such as queries.
     fn draw(&self, drawing: &mut DebugDrawing<N, D>, renderer: &mut dyn DebugRender<N, D>);
 
-    /// The names of pair filters that have stand-ins.
+    /// Returns the names of the pair filters that have stand-ins.
     fn stand_ins(&self) -> &[String];
 }
 
-/// A stage made of a source: its world, and the state of its drawing.
+/// A stage that consists of a source and the state of its drawing.
 ///
 /// ```
 /// use impinge::dim2::shape::{Ball, ShapeHandle};
@@ -136,7 +139,7 @@ pub struct Shown<S, N: Viewed<D>, const D: usize> {
 }
 
 impl<S: Source<N, D>, N: Viewed<D>, const D: usize> Shown<S, N, D> {
-    /// Creates a stage without drawn frames.
+    /// Creates a stage from a source; no frame has been drawn yet.
     #[must_use]
     pub fn new(source: S) -> Self {
         Self { source, picture: Picture::new() }

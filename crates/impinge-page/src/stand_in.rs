@@ -1,4 +1,4 @@
-//! Stand-ins for code of the recorded program: its pair filters and its own shapes.
+//! Stand-ins for code of the recorded program: its pair filters and its own shape types.
 
 use impinge::math::Space;
 use impinge::shape::{Ball, ShapeHandle};
@@ -6,10 +6,10 @@ use impinge_record::{Problem, ReadError, Registry};
 
 use crate::space::Viewed;
 
-/// The largest number of stand-ins of a recording; for each the recording is read again.
+/// The maximum number of stand-ins of a recording; the recording is read again for each of them.
 const MAX_STAND_INS: usize = 64;
 
-/// A registry, and its names that are stand-ins.
+/// A registry, and the names in it that are stand-ins.
 #[derive(Clone, Debug)]
 pub(crate) struct StandIns<N: Space<D>, const D: usize> {
     pub(crate) registry: Registry<N, D, Vec<u8>>,
@@ -22,8 +22,8 @@ impl<N: Viewed<D>, const D: usize> StandIns<N, D> {
         Self { registry, filters: Vec::new(), shapes: Vec::new() }
     }
 
-    /// Adds a stand-in for the missing name in an error; `false` if the error is of another kind, or there are too
-    /// many stand-ins.
+    /// Adds a stand-in for the missing name in an error. Returns `false` if the error is of another
+    /// kind, or if there are too many stand-ins.
     pub(crate) fn add_for(&mut self, error: &ReadError) -> bool {
         if self.filters.len() + self.shapes.len() >= MAX_STAND_INS {
             return false;

@@ -1,14 +1,14 @@
-//! The time line of a recording: the steps with changes.
+//! Computes the marks of the time line: the steps of a recording that have changes.
 
 use impinge_record::Mark;
 
 use crate::answer::StepMark;
 
-/// The largest number of marks that are sent.
+/// The maximum number of marks that are sent to the page.
 pub(crate) const MAX_MARKS: usize = 10_000;
 
-/// Returns the marks of a recording, without steps without changes. If there are more than
-/// [`MAX_MARKS`], neighbouring marks are added, at the step of the first of them.
+/// Returns a mark for each step with changes. If there are more than [`MAX_MARKS`], the counts of
+/// neighbouring marks are added up at the step of the first of them.
 pub(crate) fn marks(of_updates: &[Mark]) -> Vec<StepMark> {
     let marks = (1..).zip(of_updates).map(|(step, mark)| step_mark(step, mark));
     let marks: Vec<_> =

@@ -1,4 +1,4 @@
-//! Recorded queries.
+//! Runs queries on a recorded world, and records them.
 
 use impinge::world::CollisionObject;
 
@@ -10,7 +10,7 @@ use crate::question_data::{CastData, QueryData, QuestionData};
 use crate::recorder::{Recorder, index_of};
 use crate::space::Recordable;
 
-/// Queries: each calls [`Query::ask`] and is written with a hash of its result.
+/// Methods that run a query by [`Query::ask`] and record it with a hash of its result.
 impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
     /// Runs a query and records the hash of its result.
     ///

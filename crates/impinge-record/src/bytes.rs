@@ -1,17 +1,18 @@
-//! Fields of a record: little-endian numbers, and lists whose length is checked before anything is allocated.
+//! The fields of a record: little-endian numbers, and lists. The length of a list is checked before
+//! memory is allocated for it.
 
 use std::ops::Range;
 
 use crate::Scalar;
 use crate::error::{Problem, ReadError};
 
-/// Maps a signed number to an unsigned one, so that small numbers of both signs are small: 0, -1, 1, -2, ...
-/// become 0, 1, 2, 3, ...
+/// Maps signed to unsigned numbers (zigzag encoding), so that small magnitudes become small
+/// numbers: 0, -1, 1, -2, ... become 0, 1, 2, 3, ...
 pub(crate) const fn zigzag(number: i64) -> u64 {
     ((number << 1) ^ (number >> 63)).cast_unsigned()
 }
 
-/// The inverse of [`zigzag`].
+/// Maps a number of [`zigzag`] back.
 pub(crate) const fn from_zigzag(zigzag: u64) -> i64 {
     (zigzag >> 1).cast_signed() ^ -(zigzag & 1).cast_signed()
 }
@@ -23,7 +24,7 @@ pub(crate) struct Sink {
 }
 
 impl Sink {
-    /// Writes one byte: kinds and flags.
+    /// Writes one byte, used for kinds and flags.
     pub(crate) fn byte(&mut self, value: u8) {
         self.bytes.push(value);
     }
@@ -33,12 +34,13 @@ impl Sink {
         self.byte(u8::from(value));
     }
 
-    /// Writes four bytes: indices of objects or shapes, masks.
+    /// Writes four bytes, used for masks and the indices of objects and shapes.
     pub(crate) fn word(&mut self, value: u32) {
         self.bytes.extend(value.to_le_bytes());
     }
 
-    /// Writes seven bits per byte, the lowest first; all bytes but the last have the highest bit set.
+    /// Writes a number in bytes of seven bits, the lowest bits first. All bytes but the last have
+    /// the highest bit set.
     pub(crate) fn varint(&mut self, mut value: u64) {
         while value >= 0x80 {
             self.bytes.push(value.to_le_bytes()[0] | 0x80);
@@ -47,7 +49,7 @@ impl Sink {
         self.bytes.push(value.to_le_bytes()[0]);
     }
 
-    /// Writes eight bytes: hashes.
+    /// Writes eight bytes, used for hashes.
     pub(crate) fn long(&mut self, value: u64) {
         self.bytes.extend(value.to_le_bytes());
     }
@@ -57,7 +59,7 @@ impl Sink {
         self.bytes.extend(&value.bits().to_le_bytes()[..N::BYTES]);
     }
 
-    /// Writes numbers whose count the reader knows.
+    /// Writes numbers without their count, which the reader knows.
     pub(crate) fn numbers<N: Scalar>(&mut self, values: &[N]) {
         values.iter().for_each(|value| self.number(*value));
     }
@@ -74,7 +76,7 @@ impl Sink {
     }
 }
 
-/// Reads a range of the bytes of a recording. Every error has the offset in the recording.
+/// Reads a range of the bytes of a recording. Every error contains the offset in the recording.
 #[derive(Clone, Debug)]
 pub(crate) struct Source<'a> {
     bytes: &'a [u8],
@@ -83,32 +85,32 @@ pub(crate) struct Source<'a> {
 }
 
 impl<'a> Source<'a> {
-    /// Creates a reader of the fields in `range`, which lies within `bytes`.
+    /// Creates a reader of the fields in `range`, which must be within `bytes`.
     pub(crate) const fn new(bytes: &'a [u8], range: Range<usize>) -> Self {
         Self { bytes, at: range.start, end: range.end }
     }
 
-    /// The offset of the next field.
+    /// Returns the offset of the next field.
     pub(crate) const fn offset(&self) -> usize {
         self.at
     }
 
-    /// The number of bytes left in the range.
+    /// Returns the number of bytes left in the range.
     pub(crate) const fn remaining(&self) -> usize {
         self.end - self.at
     }
 
-    /// Returns the bytes read since an offset.
+    /// Returns the bytes between `offset` and the next field.
     pub(crate) fn since(&self, offset: usize) -> &'a [u8] {
         &self.bytes[offset..self.at]
     }
 
-    /// Returns an error at the next field.
+    /// Returns an error with the offset of the next field.
     pub(crate) const fn error(&self, problem: Problem) -> ReadError {
         ReadError { offset: self.at, problem }
     }
 
-    /// Reads the next `length` bytes; an error if the range has fewer.
+    /// Reads the next `length` bytes; an error if fewer are left in the range.
     pub(crate) fn take(&mut self, length: usize) -> Result<&'a [u8], ReadError> {
         if length > self.remaining() {
             return Err(self.error(Problem::Truncated));
@@ -128,7 +130,7 @@ impl<'a> Source<'a> {
         self.array::<1>().map(|[byte]| byte)
     }
 
-    /// Reads a byte below `count`.
+    /// Reads a byte less than `count`; `what` names the field in the error.
     pub(crate) fn choice(&mut self, count: u8, what: &'static str) -> Result<u8, ReadError> {
         let offset = self.at;
         let value = self.byte()?;
@@ -168,7 +170,7 @@ impl<'a> Source<'a> {
         Ok(N::of_bits(u64::from_le_bytes(bits)))
     }
 
-    /// Reads `count` numbers; allocates no more memory than the range holds.
+    /// Reads `count` numbers. Memory is allocated only if the range contains as many.
     pub(crate) fn numbers<N: Scalar>(&mut self, count: usize) -> Result<Vec<N>, ReadError> {
         if count.saturating_mul(N::BYTES) > self.remaining() {
             return Err(self.error(Problem::Truncated));
@@ -176,8 +178,8 @@ impl<'a> Source<'a> {
         (0..count).map(|_| self.number()).collect()
     }
 
-    /// Reads the length of a list; an error if that many elements of at least `least` bytes do not
-    /// fit the rest of the range. `least` is at least one.
+    /// Reads the length of a list. `least`, at least 1, is the minimum size of an element in bytes.
+    /// It is an error if the list does not fit into the rest of the range.
     pub(crate) fn count(&mut self, least: usize) -> Result<usize, ReadError> {
         let offset = self.at;
         let count = self.word()? as usize;
@@ -186,7 +188,7 @@ impl<'a> Source<'a> {
         if fits { Ok(count) } else { Err(ReadError { offset, problem }) }
     }
 
-    /// Reads a list of elements, each of which takes at least `least` bytes.
+    /// Reads a list whose elements have at least `least` bytes each.
     pub(crate) fn list<E>(
         &mut self,
         least: usize,
@@ -202,7 +204,7 @@ impl<'a> Source<'a> {
         self.take(length)
     }
 
-    /// Reads a list of bytes in UTF-8.
+    /// Reads a list of bytes as UTF-8.
     pub(crate) fn text(&mut self) -> Result<String, ReadError> {
         let offset = self.at;
         let bytes = self.blob()?.to_vec();
@@ -210,7 +212,7 @@ impl<'a> Source<'a> {
         String::from_utf8(bytes).map_err(|_| ReadError { offset, problem })
     }
 
-    /// Checks that all fields are read.
+    /// Checks that the whole range was read.
     pub(crate) fn finish(&self) -> Result<(), ReadError> {
         if self.remaining() == 0 { Ok(()) } else { Err(self.error(Problem::TrailingBytes)) }
     }

@@ -1,4 +1,4 @@
-//! The records after the header, and their fields.
+//! The records that follow the header, and their fields.
 
 use impinge::math::Space;
 use impinge::narrow_phase::GeometricQueryType;
@@ -12,7 +12,7 @@ use crate::shape_data::ShapeData;
 use crate::space::{Recordable, Scalar};
 use crate::state::{ObjectHashes, Observation};
 
-/// The kinds of records that packing handles by their fields.
+/// The codes of the records that packing splits into fields.
 pub(crate) mod kinds {
     pub(crate) const ADD: u8 = 2;
     pub(crate) const SET_POSITIONS: u8 = 3;
@@ -20,38 +20,38 @@ pub(crate) mod kinds {
     pub(crate) const UPDATE: u8 = 15;
 }
 
-/// An object, as in the call that adds it.
+/// The arguments of the call that adds an object.
 #[derive(Clone, Debug)]
 pub(crate) struct ObjectData<N: Space<D>, const D: usize> {
-    /// The index of its handle.
+    /// The index of the object's handle.
     pub(crate) index: u32,
     pub(crate) position: N::Isometry,
-    /// The index of the shape in the recording.
+    /// The index of its shape in the recording.
     pub(crate) shape: u32,
     pub(crate) groups: CollisionGroups,
     pub(crate) query_type: GeometricQueryType<N>,
     pub(crate) data: Vec<u8>,
 }
 
-/// A snapshot of the objects, from which calls rebuild a world.
+/// A snapshot of all objects, from which a world is rebuilt.
 #[derive(Clone, Debug)]
 pub(crate) struct KeyFrame<N: Space<D>, const D: usize> {
-    /// The names of the filters.
+    /// The names of the registered filters.
     pub(crate) filters: Vec<String>,
-    /// The free indices; the last one is used next.
+    /// The free indices of objects; the last one is used next.
     pub(crate) vacant: Vec<u32>,
     /// The objects sorted by index.
     pub(crate) objects: Vec<ObjectData<N, D>>,
 }
 
-/// A record.
+/// A record: a call of the recorder, or data for other records.
 #[derive(Clone, Debug)]
 pub(crate) enum Call<N: Space<D>, const D: usize> {
     /// Defines the next shape, whose index is the number of earlier shapes.
     Shape(ShapeData<N, D>),
-    /// Adds an object, at the next index of the world.
+    /// Adds an object. Its index is the next one that the world assigns.
     Add(ObjectData<N, D>),
-    /// Moves objects: all of them, or none on an error.
+    /// Moves objects. On an error none of them is moved.
     SetPositions(Vec<(u32, N::Isometry)>),
     SetShape {
         index: u32,
@@ -77,36 +77,36 @@ pub(crate) enum Call<N: Space<D>, const D: usize> {
         index: u32,
         skin: N,
     },
-    /// Moves an object with a prediction of its next position.
+    /// Moves an object, with a prediction of its next position.
     Predict {
         index: u32,
         position: N::Isometry,
         predicted: N::Isometry,
     },
-    /// Filters the pairs of one object, or of all objects, again.
+    /// Filters the pairs of one object again, or with `None` all pairs.
     Refilter(Option<u32>),
-    /// Passes a filter to the next update that rejects these sorted pairs of indices.
+    /// Makes the next update reject these pairs of indices, which are sorted.
     Refuse(Vec<[u32; 2]>),
     KeepEvents,
     UpdatePair([u32; 2]),
-    /// Removes objects. The index of the last one is used next.
+    /// Removes objects. The index of the last one in the list is used next.
     Remove(Vec<u32>),
     RegisterFilter(String),
     UnregisterFilter(String),
-    /// Runs a query; changes nothing.
+    /// Runs a query, which does not change the world.
     Query(Box<QueryData<N, D>>),
-    /// The state of the whole world. Playing it installs new phases.
+    /// The state of the whole world. Replaying it also replaces the phases by new ones.
     KeyFrame(KeyFrame<N, D>),
-    /// An update, with the hashes of the state after it.
+    /// Updates the world, with the hashes of the state after it.
     Update(Observation),
-    /// The last record.
+    /// The last record, with the number of updates.
     End {
         updates: u64,
     },
 }
 
 impl<N: Recordable<D>, const D: usize> Call<N, D> {
-    /// Returns the code of the record's kind in the format.
+    /// Returns the code of the kind of record in the format.
     pub(crate) const fn kind(&self) -> u8 {
         match self {
             Self::Shape(_) => 1,
@@ -133,7 +133,7 @@ impl<N: Recordable<D>, const D: usize> Call<N, D> {
         }
     }
 
-    /// Writes the fields of the record, in the order in which [`Self::read`] reads them.
+    /// Writes the fields of the record. [`Self::read`] reads them in the same order.
     pub(crate) fn write(&self, sink: &mut Sink) {
         match self {
             Self::Shape(shape) => sink.shape(shape),
@@ -193,14 +193,14 @@ impl<N: Recordable<D>, const D: usize> Call<N, D> {
         }
     }
 
-    /// Reads all fields of a record of a kind.
+    /// Reads the fields of a record with this code; an error if bytes are left.
     pub(crate) fn read(kind: u8, source: &mut Source<'_>) -> Result<Self, ReadError> {
         let call = Self::fields(kind, source)?;
         source.finish()?;
         Ok(call)
     }
 
-    /// Reads the fields of a record, given the code of its kind ([`Self::kind`]).
+    /// Reads the fields of a record with the code [`Self::kind`].
     fn fields(kind: u8, source: &mut Source<'_>) -> Result<Self, ReadError> {
         Ok(match kind {
             1 => Self::Shape(source.shape()?),
@@ -236,13 +236,13 @@ impl<N: Recordable<D>, const D: usize> Call<N, D> {
     }
 }
 
-/// Writes the fields of calls.
+/// Writes the fields of records.
 impl Sink {
     pub(crate) fn words(&mut self, words: &[u32]) {
         words.iter().for_each(|word| self.word(*word));
     }
 
-    /// Writes three masks and the flag of self-collision.
+    /// Writes the three masks and the flag of self-interaction.
     pub(crate) fn groups(&mut self, groups: &CollisionGroups) {
         let lists = [groups.whitelist_mask(), groups.blacklist_mask()];
         self.word(groups.membership_mask());
@@ -282,7 +282,7 @@ impl Sink {
         frame.objects.iter().for_each(|object| self.object(object));
     }
 
-    /// Writes hashes and counts, and twelve bytes for each changed object.
+    /// Writes the hashes and counts of an update, and twelve bytes for each changed object.
     fn observation(&mut self, observation: &Observation) {
         self.long(observation.state);
         self.long(observation.events);
@@ -297,9 +297,9 @@ impl Sink {
     }
 }
 
-/// Reads the fields of calls that [`Sink`] has written.
+/// Reads the fields of records.
 impl Source<'_> {
-    /// Reads masks of groups: a bit above 29 is an error.
+    /// Reads the groups of an object. A mask with a bit above 29 is an error.
     pub(crate) fn groups(&mut self) -> Result<CollisionGroups, ReadError> {
         let offset = self.offset();
         let [membership, whitelist, blacklist] = [self.word()?, self.word()?, self.word()?];

@@ -1,6 +1,6 @@
-//! User data of objects as bytes.
+//! Converts the user data of objects to bytes.
 
-/// Data of objects that can be recorded, since filters may read it.
+/// User data of objects that can be recorded. It is recorded because filters may read it.
 ///
 /// ```
 /// use impinge_record::RecordData;
@@ -21,13 +21,14 @@
 /// assert_eq!(Team::from_bytes(&Team(3).to_bytes()), Some(Team(3)));
 /// ```
 ///
-/// [`Default`] is the data of objects that occupy an index temporarily while a key frame is read; nothing reads
-/// it.
+/// While a key frame is read, temporary objects occupy free indices. Their data is the [`Default`],
+/// which is never read.
 pub trait RecordData: Default {
     /// Returns the data as bytes.
     fn to_bytes(&self) -> Vec<u8>;
 
-    /// Returns the data of these bytes; `None` if they are invalid. It is called with any bytes.
+    /// Returns the data with these bytes; `None` if they are invalid. The bytes may come from an
+    /// untrusted recording.
     fn from_bytes(bytes: &[u8]) -> Option<Self>;
 }
 

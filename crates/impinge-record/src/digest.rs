@@ -1,5 +1,5 @@
-//! The hash of a recording: FNV-1a over 64-bit words, each mixed as in `SplitMix64`. It is the same on every
-//! platform.
+//! The hash of a recording: FNV-1a over 64-bit words, each mixed as in `SplitMix64`. It is the same
+//! on every platform.
 
 use std::hash::{Hash, Hasher};
 
@@ -8,12 +8,12 @@ use impinge::shape::FeatureId;
 
 use crate::space::Scalar;
 
-/// An unfinished hash.
+/// A hash to which words are added.
 #[derive(Clone, Debug)]
 pub(crate) struct Digest(u64);
 
 impl Digest {
-    /// Returns the offset basis of FNV-1a.
+    /// Creates a hash with the offset basis of FNV-1a.
     pub(crate) const fn new() -> Self {
         Self(0xcbf2_9ce4_8422_2325)
     }
@@ -28,24 +28,25 @@ impl Digest {
         (self.0 ^ (self.0 >> 32)) as u32
     }
 
-    /// Mixes a word, so that numbers that differ only in a high bit change the low bits too.
+    /// Adds a word. It is mixed first, so that words that differ only in a high bit change the low
+    /// bits too.
     pub(crate) const fn word(&mut self, word: u64) {
         let mixed = (word ^ (word >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         self.0 = (self.0 ^ mixed ^ (mixed >> 31)).wrapping_mul(0x0000_0100_0000_01b3);
     }
 
-    /// Adds an index, as 64 bits on every platform.
+    /// Adds an index, converted to 64 bits on every platform.
     pub(crate) const fn index(&mut self, index: usize) {
         self.word(index as u64);
     }
 
-    /// Adds all bits of numbers.
+    /// Adds the bits of numbers.
     pub(crate) fn numbers<N: Scalar>(&mut self, numbers: &[N]) {
         numbers.iter().for_each(|number| self.word(number.bits()));
     }
 
-    /// Adds the kind as 0, 1 or 2, then the index.
+    /// Adds the kind of a feature as 0, 1 or 2, then its index.
     pub(crate) fn feature(&mut self, feature: FeatureId) {
         let (kind, index) = match feature {
             FeatureId::Vertex(index) => (0, index),
@@ -57,15 +58,15 @@ impl Digest {
     }
 }
 
-/// Returns the index of the pair and the index within the pair that a contact id contains, by its
-/// `Hash`.
+/// Returns the two parts of a contact id: the index of the pair, and the index within the pair.
+/// They are read through the `Hash` of the id.
 pub(crate) fn id_parts(id: ContactId) -> [u64; 2] {
     let mut parts = IdParts::default();
     id.hash(&mut parts);
     [parts.pair, parts.number]
 }
 
-/// A hasher that stores its input, since the parts of an id cannot be read otherwise.
+/// A hasher that stores its input, since an id gives no other access to its parts.
 #[derive(Debug, Default)]
 struct IdParts {
     pair: u64,
@@ -77,7 +78,7 @@ impl Hasher for IdParts {
         self.pair
     }
 
-    /// Ids write no bytes.
+    /// Ignored: an id hashes no byte slices.
     fn write(&mut self, _bytes: &[u8]) {}
 
     fn write_u32(&mut self, number: u32) {

@@ -3,27 +3,28 @@
 /// The first difference between a replay and its recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Divergence {
-    /// The number of updates before the call that differs.
+    /// The number of updates before the call whose result differs.
     pub step: usize,
-    /// The offset in bytes of the record of that call.
+    /// The offset of the record of this call, in bytes.
     pub offset: usize,
     /// The kind of difference.
     pub difference: Difference,
 }
 
-/// The kinds of differences between a replay and its recording.
+/// The kinds of difference between a replay and its recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Difference {
-    /// An object differs after an update: the first one in the order of handles.
+    /// An object differs after an update. It is the first such object in the order of handles.
     Object {
         /// The index of its handle.
         index: usize,
         /// The field of the object.
         field: ObjectField,
     },
-    /// The state after an update differs, but no object. Either the recording has no hashes of
-    /// objects, since it was packed, or all 32-bit hashes of objects agree by chance.
+    /// The state after an update differs, but no single object is known to differ. Either the
+    /// recording was packed and has no hashes of objects, or all 32-bit hashes of objects agree by
+    /// chance.
     State,
     /// The events of an update differ.
     Events,
@@ -36,6 +37,6 @@ pub enum Difference {
 pub enum ObjectField {
     /// Its position, groups or query type.
     Description,
-    /// The pairs in which it is the first object, their contacts and proximities.
+    /// The contacts and proximities of the pairs in which it is the first object.
     Pairs,
 }

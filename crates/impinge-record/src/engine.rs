@@ -1,4 +1,4 @@
-//! Recorded calls for physics engines.
+//! Recorded calls that physics engines need.
 
 use impinge::narrow_phase::CollisionObjectHandle;
 use impinge::world::CollisionObject;
@@ -10,7 +10,7 @@ use crate::recorder::{Recorder, index_of};
 use crate::space::Recordable;
 
 impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
-    /// Marks an object as fixed, or not fixed.
+    /// Sets whether an object is fixed.
     ///
     /// # Errors
     /// If the handle is stale.
@@ -24,10 +24,10 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(())
     }
 
-    /// Sets the skin of an object, for contacts.
+    /// Sets the skin of an object: the distance outside its surface at which contacts are measured.
     ///
     /// # Errors
-    /// If the handle is stale or the skin is negative or not finite.
+    /// If the handle is stale, or the skin is negative or not finite.
     pub fn set_skin(&mut self, handle: CollisionObjectHandle, skin: N) -> Result<(), RecordError> {
         self.world.try_set_skin(handle, skin)?;
         self.record(&Call::SetSkin { index: index_of(handle), skin });
@@ -49,13 +49,13 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(())
     }
 
-    /// Makes the next update filter all pairs again.
+    /// Makes the next update call the filters of all pairs again.
     pub fn refilter_pairs(&mut self) {
         self.world.refilter_pairs();
         self.record(&Call::Refilter(None));
     }
 
-    /// Makes the next update filter the pairs of one object again.
+    /// Makes the next update call the filters of the pairs of one object again.
     ///
     /// # Errors
     /// If the handle is stale.
@@ -108,13 +108,14 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         self.end_step();
     }
 
-    /// Makes the next update keep the events of the last one.
+    /// Makes the next update keep the events of the previous one.
     pub fn keep_events(&mut self) {
         self.world.keep_events();
         self.record(&Call::KeepEvents);
     }
 
-    /// Recomputes the pair of two objects at their current positions; returns whether they have a pair.
+    /// Recomputes the pair of two objects at their current positions. Returns `false` if they have
+    /// no pair.
     ///
     /// # Errors
     /// If a handle is stale.
@@ -130,14 +131,14 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(is_kept)
     }
 
-    /// Removes and returns the data of a removed object; `None` if there are none. The call is not
+    /// Removes and returns the data of a removed object; `None` if there is none. The call is not
     /// recorded, since no later step depends on it.
     pub fn take_removed(&mut self, handle: CollisionObjectHandle) -> Option<T> {
         self.world.take_removed(handle)
     }
 
-    /// Records, after a key frame, the calls that set properties that few objects have, such as
-    /// skins and fixed flags. The running world is not changed.
+    /// Records, after a key frame, the properties that few objects have: fixed flags, skins and
+    /// predicted positions. The running world is not changed.
     pub(crate) fn record_rare_facts(&mut self) {
         let mut calls = Vec::new();
         for object in self.world.collision_objects() {

@@ -1,22 +1,21 @@
-//! Errors of recording a call, and of reading a recording.
+//! The errors of recording a call, and of reading a recording.
 
 use core::fmt;
 
 use impinge::shape::{MeshError, ShapeError};
 use impinge::world::{GroupError, WorldError};
 
-/// An error of the library about the values of a file or recording, as the called constructor or
-/// method returned it.
+/// An error that a constructor or method of the library returned for values of a file or recording.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum LibraryError {
-    /// An error of a shape.
+    /// A shape is invalid.
     Shape(ShapeError),
-    /// An error of a mesh or polyline.
+    /// A mesh or polyline is invalid.
     Mesh(MeshError),
-    /// An error of collision groups.
+    /// Collision groups are invalid.
     Group(GroupError),
-    /// An error of a call of a world.
+    /// A world rejects a call.
     World(WorldError),
 }
 
@@ -63,13 +62,13 @@ impl From<WorldError> for LibraryError {
 pub enum RecordError {
     /// The world rejects the call.
     World(WorldError),
-    /// The shape has a type of the user, and the registry has no name for it.
+    /// The shape has a user-defined type, and the registry has no name for it.
     UnknownShape {
         /// The shape, as `Debug` prints it.
         shape: String,
     },
-    /// The constructors of the library do not reproduce this shape to the bit: it is a mesh or polyline whose
-    /// vertices coincided or separated after it was made.
+    /// The constructors of the library cannot reproduce this shape to the bit. It is a mesh or
+    /// polyline that was deformed so that vertices coincide that were distinct, or the reverse.
     Deformed {
         /// The shape, as `Debug` prints it.
         shape: String,
@@ -103,7 +102,7 @@ impl fmt::Display for RecordError {
 
 impl std::error::Error for RecordError {}
 
-/// The reason why bytes are not a valid recording, and the position.
+/// The reason why bytes are not a valid recording, and its position.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadError {
     /// The offset of the field, in bytes from the beginning of the recording.
@@ -118,12 +117,12 @@ pub struct ReadError {
 pub enum Problem {
     /// The bytes do not begin with the signature of a recording.
     NotARecording,
-    /// The version of the format is not supported: it is later, or 0.
+    /// The version of the format is not supported: it is 0 or newer than this crate.
     Version {
         /// The version of the recording.
         found: u32,
     },
-    /// The numbers of the recording are of another scalar than the requested one.
+    /// The recording has numbers of another scalar than the requested one.
     Scalar {
         /// The number of bytes of a scalar in the recording.
         found: u8,
@@ -133,9 +132,9 @@ pub enum Problem {
         /// The dimension of the recording.
         found: u8,
     },
-    /// The bytes end early, or a length exceeds the record.
+    /// The bytes end early, or a length exceeds its record.
     Truncated,
-    /// The checksum of a record is wrong: this record or an earlier byte was changed.
+    /// The checksum of a record is wrong: a byte of this record or of an earlier one was changed.
     Checksum,
     /// Compressed bytes of a packed recording are damaged.
     Compression,
@@ -144,20 +143,20 @@ pub enum Problem {
         /// The number of bytes.
         bytes: u64,
     },
-    /// A record has more bytes than its fields, or bytes follow the last record.
+    /// A record has bytes after its fields, or bytes follow the last record.
     TrailingBytes,
     /// The kind of a record is unknown.
     UnknownRecord(u8),
     /// A field has an invalid value.
     BadValue {
-        /// The field.
+        /// A description of the field.
         what: &'static str,
     },
-    /// A shape has the index of a child that is not defined before it.
+    /// A record has the index of a shape that is not defined before it.
     NoSuchShape(u32),
-    /// A call names an object that does not exist.
+    /// A call has the index of an object that does not exist.
     NoSuchObject(u32),
-    /// A new object has another index than in the recording.
+    /// In the replay a new object got another index than in the recording.
     OtherIndex {
         /// The index in the recording.
         recorded: u32,

@@ -1,22 +1,25 @@
-//! Recordings of collision worlds as logs of calls: written, replayed forwards and backwards, validated.
+//! Recordings of collision worlds as logs of calls. They are written, replayed forwards and
+//! backwards, and validated.
 //!
-//! A [`Recorder`] wraps a world and records each call that changes it, each query made through it, and after each
-//! update hashes of the state of the world. Since a recording consists of calls, it does not depend on the memory
-//! layout of the library. [`Replay`] returns the world at any step. [`validate`] replays all steps and returns the
-//! first step and object in which the replay differs from the recording, on this machine or with this version.
+//! A [`Recorder`] wraps a world. It records each call that changes the world, each query made
+//! through the recorder, and after each update hashes of the state of the world. Since a recording
+//! consists of calls, it does not depend on the memory layout of the library. [`Replay`] returns
+//! the world at any step. [`validate`] replays all steps and returns the first step and object in
+//! which the replay differs from the recording, on this machine or with this version.
 //!
-//! A recording can be read while it grows ([`Replay::growing`]), and without its end ([`Replay::salvage`]). It has a
-//! time line ([`Replay::marks`]) and the recorded queries ([`Replay::queries`]). [`pack`] compresses it, for files that
-//! are sent.
+//! A recording can be read while it grows ([`Replay::growing`]), and without its end
+//! ([`Replay::salvage`]). It has a time line ([`Replay::marks`]) and the recorded queries
+//! ([`Replay::queries`]). [`pack`] compresses it for transfer.
 //!
-//! Shapes and pair filters of the user are code: a recording has their names, and a [`Registry`] the objects of these
-//! names. `FORMAT.md` describes the bytes.
+//! User-defined shapes and pair filters are code. A recording contains only their names, and a
+//! [`Registry`] maps these names to objects. `FORMAT.md` describes the bytes.
 //!
-//! Recordings are treated as untrusted input: errors have the offset, lengths are compared with the remaining bytes
-//! before memory is allocated, and shapes are made by the constructors of the library. Reading takes memory in
-//! proportion to the bytes, and unpacking at most [`MAX_UNPACKED`] bytes and twice as many for the streams. A recording
-//! may still describe a world that is expensive to update: if n objects all overlap, there are n (n - 1) / 2 pairs,
-//! each of at most [`MAX_PARTS`] parts.
+//! Recordings are treated as untrusted input: errors have an offset, lengths are compared with the
+//! remaining bytes before memory is allocated, and shapes are created by the constructors of the
+//! library. Reading takes memory in proportion to the number of bytes. Unpacking takes at most
+//! [`MAX_UNPACKED`] bytes for the recording and twice as many for the streams. A recording may
+//! still describe a world that is expensive to update: if n objects all overlap, there are n (n -
+//! 1) / 2 pairs, each of shapes with up to [`MAX_PARTS`] parts.
 #![forbid(unsafe_code)]
 
 mod asking;

@@ -15,7 +15,7 @@ const MAGIC: [u8; 8] = *b"\x89IPREC\r\n";
 /// The version of the library in the header.
 const WRITER: &str = concat!("impinge ", env!("CARGO_PKG_VERSION"));
 
-/// An unfinished recording.
+/// The bytes of an unfinished recording, and their checksum.
 #[derive(Clone, Debug)]
 pub(crate) struct Log {
     pub(crate) bytes: Vec<u8>,
@@ -29,7 +29,7 @@ impl Log {
         sink.bytes.extend(MAGIC);
         sink.word(FORMAT_VERSION);
         sink.blob(WRITER.as_bytes());
-        // At most eight bytes and three dimensions.
+        // These fit into a byte: there are at most eight bytes per number and three dimensions.
         sink.bytes.extend([N::BYTES, D].map(|small| u8::try_from(small).unwrap_or(u8::MAX)));
         sink.number(margin);
         let mut log = Self::empty();
@@ -37,7 +37,8 @@ impl Log {
         log
     }
 
-    /// Appends a kind, the length of the fields, the fields, and the checksum of all bytes so far except checksums.
+    /// Appends a record: its kind, the length of its fields, the fields, and the checksum of all
+    /// bytes so far except checksums.
     pub(crate) fn record<N: Recordable<D>, const D: usize>(&mut self, call: &Call<N, D>) {
         let (mut fields, mut sink) = (Sink::default(), Sink::default());
         call.write(&mut fields);
@@ -46,12 +47,12 @@ impl Log {
         self.append(&sink.bytes);
     }
 
-    /// Creates a log without a header.
+    /// Creates a log without a header, for the unpacker.
     pub(crate) fn empty() -> Self {
         Self { bytes: Vec::new(), checksum: crc32fast::Hasher::new() }
     }
 
-    /// Returns the last checksum.
+    /// Returns the checksum of all bytes so far except checksums.
     pub(crate) fn checksum(&self) -> u32 {
         self.checksum.clone().finalize()
     }
@@ -69,11 +70,11 @@ impl Log {
 pub struct Header {
     /// The version of the format.
     pub version: u32,
-    /// The program that wrote it, with its version.
+    /// The program that wrote the recording, with its version.
     pub writer: String,
-    /// The bytes of a number: 4 for `f32`, 8 for `f64`.
+    /// The number of bytes of a number: 4 for `f32`, 8 for `f64`.
     pub scalar_bytes: u8,
-    /// The dimension.
+    /// The dimension of the world.
     pub dimension: u8,
 }
 
@@ -82,7 +83,7 @@ impl Header {
     /// not verified.
     ///
     /// # Errors
-    /// If the bytes do not begin as a recording of a known version does.
+    /// If the bytes do not begin with the header of a recording of a supported version.
     ///
     /// ```
     /// use impinge_record::{Header, Recorder, Registry};
@@ -95,7 +96,7 @@ impl Header {
         Self::fields(&mut Source::new(bytes, 0..bytes.len()))
     }
 
-    /// Whether bytes whose header cannot be read, because of this error, may be the beginning of a
+    /// Returns `true` if bytes for which [`Self::read`] returned `error` may be the beginning of a
     /// valid header.
     ///
     /// ```
@@ -115,7 +116,7 @@ impl Header {
         }
     }
 
-    /// Returns the offset of the checksum of the header, if the bytes contain it.
+    /// Returns the offset of the checksum of the header; an error if the bytes end before it.
     pub(crate) fn end(bytes: &[u8]) -> Result<usize, ReadError> {
         let mut source = Source::new(bytes, 0..bytes.len());
         let header = Self::fields(&mut source)?;
@@ -138,7 +139,7 @@ impl Header {
     }
 }
 
-/// The position of a record in the bytes.
+/// The kind and the position of a record in the bytes.
 #[derive(Clone, Debug)]
 pub(crate) struct Raw {
     pub(crate) kind: u8,
@@ -149,7 +150,7 @@ pub(crate) struct Raw {
 }
 
 impl Raw {
-    /// Returns the record at an offset; does not verify its checksum.
+    /// Finds the record at an offset, without verifying its checksum.
     pub(crate) fn at(bytes: &[u8], offset: usize) -> Result<Self, ReadError> {
         let mut source = Source::new(bytes, offset..bytes.len());
         let (kind, length) = (source.byte()?, source.count(1)?);
@@ -167,7 +168,7 @@ impl Raw {
     }
 }
 
-/// The position up to which a recording has been read. It advances record by record, past correct checksums only.
+/// The position up to which a recording was read. It advances by records with correct checksums.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cursor {
     checksum: crc32fast::Hasher,
@@ -175,12 +176,12 @@ pub(crate) struct Cursor {
 }
 
 impl Cursor {
-    /// The offset of the next record; 0 before the header.
+    /// Returns the offset of the next record; 0 before the header.
     pub(crate) const fn offset(&self) -> usize {
         self.offset
     }
 
-    /// Reads the header and verifies its checksum; returns the margin.
+    /// Reads the header and verifies its checksum; returns the margin of the world.
     pub(crate) fn header<N: Recordable<D>, const D: usize>(
         &mut self,
         bytes: &[u8],
@@ -201,7 +202,8 @@ impl Cursor {
         Ok(margin)
     }
 
-    /// Verifies the checksum of all bytes up to `end`, which follows there, and moves past it.
+    /// Verifies the checksum at the offset `end`, which is that of all bytes before it, and moves
+    /// behind it.
     pub(crate) fn pass(&mut self, bytes: &[u8], end: usize) -> Result<(), ReadError> {
         let mut source = Source::new(bytes, end..bytes.len());
         let expected = source.word()?;
@@ -215,8 +217,8 @@ impl Cursor {
     }
 }
 
-/// Recomputes the checksums of a recording, up to the first incomplete record, so that tests can change bytes that
-/// checksums protect.
+/// Recomputes the checksums of a recording, up to the first incomplete record. With it tests can
+/// change bytes that checksums protect.
 #[doc(hidden)]
 pub fn reseal(bytes: &mut [u8]) {
     let mut checksum = crc32fast::Hasher::new();

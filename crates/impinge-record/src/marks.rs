@@ -6,7 +6,7 @@ use impinge::world::CollisionWorld;
 use crate::call::Call;
 use crate::space::Recordable;
 
-/// The numbers of events of each kind in an update.
+/// The number of events of each kind in an update.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EventCounts {
     /// The number of pairs that started touching.
@@ -31,7 +31,7 @@ impl EventCounts {
     }
 }
 
-/// The changes of an update, and the calls since the previous update.
+/// The counts of changes for an update: its events, and the calls since the previous update.
 ///
 /// ```
 /// use impinge::dim3::math::Isometry;
@@ -58,14 +58,15 @@ impl EventCounts {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Mark {
-    /// The number of added objects, without those of the initial state and of key frames.
+    /// The number of added objects. Objects of the initial state and of key frames are not counted.
     pub added: u32,
     /// The number of removed objects.
     pub removed: u32,
-    /// The number of set positions: an object whose position is set twice counts twice.
+    /// The number of calls that set a position, counted per object: an object that is moved twice
+    /// counts twice.
     pub moved: u32,
-    /// The number of other changes: of shapes, groups, query types, data, filters, skins and fixed
-    /// flags.
+    /// The number of other changes: of shapes, groups, query types, data, filters, skins, fixed
+    /// flags, and requests to filter again.
     pub changed: u32,
     /// The number of queries.
     pub queries: u32,
@@ -102,22 +103,22 @@ impl Mark {
     }
 }
 
-/// Converts a count to 32 bits. Counted items take bytes of the recording or are pairs of a world,
-/// so that counts fit.
+/// Converts a count to 32 bits. All counts fit: counted items take bytes of the recording, or are
+/// pairs of a world.
 fn small(count: usize) -> u32 {
     u32::try_from(count).unwrap_or(u32::MAX)
 }
 
-/// A key frame, or the beginning: a position in the recording from which a world can be rebuilt.
+/// A position in the recording from which a world can be rebuilt: a key frame, or the beginning.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct FrameMark {
     /// The number of updates before the key frame.
     pub(crate) step: usize,
     /// The offset of the key frame's record.
     pub(crate) offset: usize,
-    /// The first step at which a world that is rebuilt from this key frame has the events of the
-    /// recording. In its first update all pairs start, and `keep_events` may carry these events to
-    /// later updates.
+    /// The first step at which a world that is rebuilt from this key frame has the recorded events.
+    /// In its first update all pairs start, and `keep_events` may carry these events over to later
+    /// updates.
     whole_from: usize,
 }
 
@@ -126,13 +127,13 @@ pub(crate) struct FrameMark {
 pub(crate) struct Timeline {
     /// The offset of the first record.
     pub(crate) start: usize,
-    /// For each update, its changes.
+    /// The changes of each update.
     pub(crate) marks: Vec<Mark>,
     /// The key frames, in order of their steps.
     frames: Vec<FrameMark>,
     /// Whether `keep_events` was called since the last update.
     keeps_events: bool,
-    /// The changes by the calls since the last update.
+    /// The counts of the calls since the last update.
     next: Mark,
 }
 
@@ -164,8 +165,8 @@ impl Timeline {
         }
     }
 
-    /// Returns the last key frame from which a step can be rebuilt with its events; the beginning
-    /// of the recording if there is none.
+    /// Returns the last key frame from which the world at a step can be rebuilt with its events; if
+    /// there is none, the beginning of the recording.
     pub(crate) fn frame_before(&self, step: usize) -> FrameMark {
         let frames = self.frames.partition_point(|frame| frame.whole_from <= step);
         let beginning = FrameMark { step: 0, offset: self.start, whole_from: 0 };

@@ -1,4 +1,4 @@
-//! A world to which recorded calls are applied.
+//! Applies recorded calls to a world.
 
 use impinge::bounding_volume::Aabb;
 use impinge::broad_phase::DBVTBroadPhase;
@@ -19,7 +19,7 @@ use crate::shapes::ShapeTable;
 use crate::space::Recordable;
 use crate::state::{Observation, Observer};
 
-/// The shapes and named filters that records refer to.
+/// The data to which records refer: shapes, named filters and the margin.
 #[derive(Debug)]
 pub(crate) struct Resources<N: Recordable<D>, const D: usize, T> {
     pub(crate) shapes: ShapeTable<N, D>,
@@ -27,32 +27,33 @@ pub(crate) struct Resources<N: Recordable<D>, const D: usize, T> {
     pub(crate) margin: N,
 }
 
-/// A world, and for each index of the recording the handle of its object.
+/// A world, with the handles of its objects by their index in the recording.
 #[derive(Debug)]
 pub(crate) struct Player<N: Recordable<D>, const D: usize, T> {
     pub(crate) world: CollisionWorld<N, D, T>,
     handles: Vec<Option<CollisionObjectHandle>>,
     observer: Observer,
-    /// The pairs that the filter of the next update rejects, sorted; empty without such a filter.
+    /// The sorted pairs of indices that the next update rejects; empty if it has no filter.
     refused: Vec<[u32; 2]>,
     /// The queries since the last update, with their results.
     asked: Vec<Asked<N, D>>,
     /// The queries between the last two updates, with their results.
     pub(crate) queries: Vec<Asked<N, D>>,
-    /// Whether no call was applied yet, so that a key frame would create the world.
+    /// Whether no call was applied yet. Then a key frame creates the objects instead of only
+    /// replacing the phases.
     is_new: bool,
-    /// Whether a key frame created the world and no update followed: in the next update all pairs
-    /// start.
+    /// Whether a key frame has created the objects and no update followed. In the next update all
+    /// pairs start.
     is_remade: bool,
     /// Whether the events of the last update include those of a rebuilt world, which differ from
-    /// the recorded ones.
+    /// the recorded events.
     has_other_events: bool,
     /// Whether `keep_events` was called since the last update.
     keeps_events: bool,
 }
 
-/// Replaces the phases of a world by new ones of the library, which start at the next update. The results then
-/// depend on the objects alone, not on the history.
+/// Replaces the phases of a world by new ones, whose pairs start at the next update. The later
+/// results then depend only on the objects, not on the history of the world.
 pub(crate) fn exchange_phases<N: Recordable<D>, const D: usize, T>(
     world: &mut CollisionWorld<N, D, T>,
     margin: N,
@@ -86,7 +87,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         }
     }
 
-    /// Applies a call; returns the difference between its result and the recorded one.
+    /// Applies a call. Returns the difference between its result and the recorded one; `None` if
+    /// they are equal.
     pub(crate) fn apply(
         &mut self,
         call: Call<N, D>,
@@ -141,13 +143,13 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         Ok(None)
     }
 
-    /// Returns the handle of the object at an index; an error if there is none.
+    /// Returns the handle of the object with an index; an error if there is none.
     fn handle(&self, index: u32) -> Result<CollisionObjectHandle, Problem> {
         let handle = self.handles.get(index as usize).copied().flatten();
         handle.ok_or(Problem::NoSuchObject(index))
     }
 
-    /// Adds an object. Its index follows from the earlier calls and must be the recorded one.
+    /// Adds an object. The world assigns its index, which must be the recorded one.
     fn add(
         &mut self,
         object: ObjectData<N, D>,
@@ -164,7 +166,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         if handle.uid() != index as usize {
             return Err(Problem::OtherIndex { recorded: index, replayed: handle.uid() });
         }
-        // The world assigned the index, so that it is at most one more than the largest before.
+        // The world assigned the index. So it exceeds the largest earlier index by at most one, and
+        // the list grows little.
         if self.handles.len() <= handle.uid() {
             self.handles.resize(handle.uid() + 1, None);
         }
@@ -172,7 +175,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         Ok(())
     }
 
-    /// Moves objects one by one: a recorder writes the call only if all can be moved.
+    /// Moves objects one by one. A recorder writes this call only if all of them can be moved.
     fn set_positions(&mut self, positions: &[(u32, N::Isometry)]) -> Result<(), Problem> {
         for (index, position) in positions {
             self.world.try_set_position(self.handle(*index)?, *position)?;
@@ -180,7 +183,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         Ok(())
     }
 
-    /// Replaces the data of an object. Filters that read it are called again only for new pairs.
+    /// Replaces the data of an object. Filters that read it are not called again for existing
+    /// pairs.
     fn set_data(&mut self, index: u32, data: &[u8]) -> Result<(), Problem> {
         let handle = self.handle(index)?;
         let object = self.world.collision_object_mut(handle);
@@ -188,13 +192,14 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         Ok(())
     }
 
-    /// Makes the next update reject pairs.
+    /// Makes the next update reject these pairs.
     fn refuse(&mut self, mut pairs: Vec<[u32; 2]>) {
         pairs.sort_unstable();
         self.refused = pairs;
     }
 
-    /// Updates the world, with the recorded results of a filter that was passed to the update.
+    /// Updates the world. If the recorded update had a filter, its recorded results are used
+    /// instead.
     fn update_world(&mut self) {
         let refused = std::mem::take(&mut self.refused);
         if refused.is_empty() {
@@ -205,7 +210,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         });
     }
 
-    /// Removes objects; their indices are then free.
+    /// Removes objects, which frees their indices.
     fn remove(&mut self, indices: &[u32]) -> Result<(), Problem> {
         let handles: Result<Vec<_>, _> = indices.iter().map(|index| self.handle(*index)).collect();
         self.world.try_remove(&handles?)?;
@@ -219,7 +224,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         if is_known { Ok(()) } else { Err(Problem::UnknownFilter(name.to_owned())) }
     }
 
-    /// Runs a query again and compares the hash of the result.
+    /// Runs a recorded query and compares the hash of its result with the recorded one.
     fn ask(
         &mut self,
         query: &QueryData<N, D>,
@@ -241,13 +246,13 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         self.observer = Observer::default();
     }
 
-    /// Adds the objects of a key frame at their indices, to a world without objects.
+    /// Adds the objects of a key frame with their indices to an empty world.
     fn remake(
         &mut self,
         frame: KeyFrame<N, D>,
         resources: &Resources<N, D, T>,
     ) -> Result<(), Problem> {
-        // Filters are called at the first update.
+        // The filters are registered now, and first called by the next update.
         for name in &frame.filters {
             self.register(name, resources)?;
         }
@@ -261,14 +266,14 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
             self.add(object, resources)?;
         }
         vacant.try_for_each(|index| self.hold_place(index))?;
-        // The index that was removed last is used next.
+        // The free indices are freed in this order, so that the last one is used next.
         frame.vacant.iter().try_for_each(|index| self.remove(&[*index]))?;
         self.begin_anew(resources.margin);
         self.is_remade = true;
         Ok(())
     }
 
-    /// Adds an object that only occupies an index, and is removed before the update.
+    /// Adds a temporary object that only occupies an index. It is removed before the next update.
     fn hold_place(&mut self, index: u32) -> Result<(), Problem> {
         let (position, ball) = (N::isometry(&Pose::identity()), Ball::try_new(N::ONE)?);
         let (shape, groups) = (ShapeHandle::new(ball), CollisionGroups::empty());
@@ -277,13 +282,15 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         self.enter(handle, index)
     }
 
-    /// Updates the world and compares its hashes. Objects are compared only if the hash of the state differs.
+    /// Updates the world and compares its hashes with the recorded ones. Objects are compared only
+    /// if the hash of the state differs.
     fn update(&mut self, recorded: &Observation) -> Option<Difference> {
         let before = self.observer.clone();
         self.update_world();
         self.queries = std::mem::take(&mut self.asked);
         let replayed = self.observer.observe(&self.world);
-        // The recorded world had its pairs before the key frame; in a rebuilt world all of them start.
+        // The recorded world had its pairs before the key frame, while in a rebuilt world all pairs
+        // start.
         let keeps_events = std::mem::take(&mut self.keeps_events);
         let has_other_events = std::mem::take(&mut self.is_remade);
         self.has_other_events = has_other_events || self.has_other_events && keeps_events;
@@ -302,7 +309,7 @@ fn data_of<T: RecordData>(bytes: &[u8]) -> Result<T, Problem> {
     T::from_bytes(bytes).ok_or(Problem::BadValue { what: "the data of an object" })
 }
 
-/// Returns the question with its shapes.
+/// Converts a recorded query to one with shapes instead of their indices.
 fn question_of<N: Recordable<D>, const D: usize>(
     question: &QuestionData<N, D>,
     shapes: &ShapeTable<N, D>,

@@ -10,50 +10,51 @@ use impinge::world::{CollisionGroups, CollisionWorld, NearObject, QueryFilter};
 use crate::digest::Digest;
 use crate::space::Recordable;
 
-/// The kind of a query with its arguments. Each variant names a method of
+/// The kind of a query with its arguments. Each variant corresponds to a method of
 /// [`CollisionWorld`](impinge::world::CollisionWorld).
 #[derive(Clone, Debug)]
 pub enum Question<N: Space<D>, const D: usize> {
-    /// `first_ray_hit`.
+    /// A query by `first_ray_hit`.
     FirstRayHit(RayQuestion<N, D>),
-    /// `ray_hits`.
+    /// A query by `ray_hits`.
     RayHits(RayQuestion<N, D>),
-    /// `objects_containing`.
+    /// A query by `objects_containing`.
     Containing(Point<N, D>),
-    /// `project_point`: onto the boundary for points inside unless `solid`.
+    /// A query by `project_point`. Unless `solid`, a point inside an object is projected to its
+    /// boundary.
     ProjectPoint {
         /// The point.
         point: Point<N, D>,
-        /// The largest distance of a result.
+        /// The maximum distance of a result.
         max_distance: N,
         /// Whether a point inside is its own projection.
         solid: bool,
     },
-    /// `objects_in_aabb`.
+    /// A query by `objects_in_aabb`.
     InAabb(Aabb<N, D>),
-    /// `objects_overlapping`.
+    /// A query by `objects_overlapping`.
     Overlapping(PlacedShape<N, D>),
-    /// `nearest_objects`.
+    /// A query by `nearest_objects`.
     Nearest {
         /// The shape from which distances are measured.
         from: PlacedShape<N, D>,
-        /// The largest number of objects.
+        /// The maximum number of objects.
         count: u32,
-        /// The largest distance of a result.
+        /// The maximum distance of a result.
         max_distance: N,
     },
-    /// `cast_shape`.
+    /// A query by `cast_shape`.
     CastShape(CastQuestion<N, D>),
-    /// `cast_shape_all`.
+    /// A query by `cast_shape_all`.
     CastShapeAll(CastQuestion<N, D>),
 }
 
-/// The arguments of a query about a ray.
+/// The arguments of a ray cast.
 #[derive(Clone, Copy, Debug)]
 pub struct RayQuestion<N: Space<D>, const D: usize> {
     /// The ray.
     pub ray: Ray<N, D>,
-    /// The largest time of a hit.
+    /// The maximum time of a hit.
     pub max_time: N,
     /// Whether rays that begin inside a solid hit it at time zero.
     pub solid: bool,
@@ -71,31 +72,31 @@ pub struct PlacedShape<N: Space<D>, const D: usize> {
 /// The arguments of a shape cast.
 #[derive(Clone, Debug)]
 pub struct CastQuestion<N: Space<D>, const D: usize> {
-    /// The shape at its start.
+    /// The shape at the start of its motion.
     pub start: PlacedShape<N, D>,
     /// The velocity, in the world frame.
     pub velocity: Vector<N, D>,
-    /// The maximum time and the target distance of the cast.
+    /// The options of the cast, such as the maximum time and the target distance.
     pub options: ImpactOptions<N>,
 }
 
-/// A question, and the objects that it is about.
+/// A query with its filter.
 ///
-/// A recording cannot store predicates, which are code: a query has groups and excluded objects
-/// only, and [`Recorder::ask_where`](crate::Recorder::ask_where) converts a predicate to excluded
+/// A predicate is code and cannot be recorded, so the filter consists of groups and excluded
+/// objects. [`Recorder::ask_where`](crate::Recorder::ask_where) converts a predicate to excluded
 /// objects.
 #[derive(Clone, Debug)]
 pub struct Query<N: Space<D>, const D: usize> {
-    /// The question.
+    /// The kind of the query with its arguments.
     pub question: Question<N, D>,
-    /// The groups of the query; `None` for all objects.
+    /// The groups of the query; `None` admits all objects.
     pub groups: Option<CollisionGroups>,
-    /// Excluded objects; stale handles are ignored.
+    /// The excluded objects; stale handles are ignored.
     pub excluded: Vec<CollisionObjectHandle>,
 }
 
 impl<N: Space<D>, const D: usize> Query<N, D> {
-    /// Creates a query about all objects.
+    /// Creates a query that admits all objects.
     #[must_use]
     pub const fn new(question: Question<N, D>) -> Self {
         Self { question, groups: None, excluded: Vec::new() }
@@ -109,7 +110,7 @@ pub struct Asked<N: Space<D>, const D: usize> {
     pub query: Query<N, D>,
     /// The result, computed by the replay.
     pub answer: Vec<Found<N, D>>,
-    /// Whether the result has the bits of the recorded one.
+    /// Whether the result is equal to the recorded one, to the bit.
     pub is_same: bool,
 }
 
@@ -125,17 +126,17 @@ pub struct Found<N: Space<D>, const D: usize> {
 /// The data that a query computes for an object.
 #[derive(Clone, Copy, Debug)]
 pub enum Detail<N: Space<D>, const D: usize> {
-    /// No data: queries by points, boxes and overlaps.
+    /// No data; of queries for points, boxes and overlaps.
     Object,
     /// The hit of a ray.
     Ray(RayIntersection<N, D>),
     /// The projection of a point.
     Projection(PointProjection<N, D>),
-    /// A distance and its closest points.
+    /// The distance of an object, and the closest points.
     Near {
         /// The distance.
         distance: N,
-        /// The nearest points.
+        /// The closest points.
         points: ClosestPoints<N, D>,
     },
     /// The impact of a shape cast.
@@ -154,8 +155,7 @@ impl<N: Space<D>, const D: usize> Found<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Query<N, D> {
-    /// Runs the query in a world; the results are in the order of the method that the question
-    /// names.
+    /// Runs the query in a world. The results are in the order of the corresponding method.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point};
@@ -242,7 +242,7 @@ impl<N: Space<D>, const D: usize> From<(CollisionObjectHandle, Detail<N, D>)> fo
     }
 }
 
-/// Returns the hash of a result, with all bits of its numbers.
+/// Returns the hash of a result, over all bits of its numbers.
 pub(crate) fn answer_hash<N: Recordable<D>, const D: usize>(answer: &[Found<N, D>]) -> u64 {
     let mut digest = Digest::new();
     for found in answer {

@@ -1,4 +1,4 @@
-//! Queries as in records: each shape is an index.
+//! Queries in the form of records: shapes are indices.
 
 use impinge::bounding_volume::{Aabb, Ray};
 use impinge::math::{Point, Space, Vector};
@@ -9,22 +9,22 @@ use crate::bytes::{Sink, Source};
 use crate::error::{Problem, ReadError};
 use crate::space::Recordable;
 
-/// A query whose shape is given by its index in the recording.
+/// A query whose shapes and objects are indices in the recording.
 #[derive(Clone, Debug)]
 pub(crate) struct QueryData<N: Space<D>, const D: usize> {
-    /// The question.
+    /// The kind of the query with its arguments.
     pub(crate) question: QuestionData<N, D>,
     pub(crate) groups: Option<CollisionGroups>,
-    /// The indices of existing excluded objects.
+    /// The indices of the excluded objects; stale handles are omitted.
     pub(crate) excluded: Vec<u32>,
     /// The hash of the result.
     pub(crate) answer: u64,
 }
 
-/// A question whose shape is given by its index in the recording.
+/// A [`Question`](crate::Question) whose shape is an index in the recording.
 #[derive(Clone, Debug)]
 pub(crate) enum QuestionData<N: Space<D>, const D: usize> {
-    /// A ray: the first hit, or all hits.
+    /// A ray cast for the first hit, or for all hits.
     Ray {
         all: bool,
         ray: Ray<N, D>,
@@ -72,7 +72,7 @@ impl Sink {
         self.long(query.answer);
     }
 
-    /// Writes a kind, then the arguments of the method that the question names.
+    /// Writes the kind of a query, then its arguments.
     fn question<N: Recordable<D>, const D: usize>(&mut self, question: &QuestionData<N, D>) {
         match question {
             QuestionData::Ray { all, ray, max_time, solid } => {
@@ -111,7 +111,8 @@ impl Sink {
         }
     }
 
-    /// Writes a shape cast. The tolerance is always written, so that the record has a fixed length.
+    /// Writes a shape cast. Without a tolerance a zero is written, so that the record has a fixed
+    /// length.
     fn cast<N: Recordable<D>, const D: usize>(&mut self, cast: &CastData<N, D>) {
         self.byte(if cast.all { 8 } else { 7 });
         self.isometry::<N, D>(&cast.position);
@@ -169,7 +170,8 @@ impl Source<'_> {
         })
     }
 
-    /// Reads a box with ordered corners, or the unbounded box, which no constructor accepts.
+    /// Reads a box with ordered corners, or the unbounded box. The constructor with corners rejects
+    /// the latter, so it is handled separately.
     fn aabb<N: Recordable<D>, const D: usize>(&mut self) -> Result<Aabb<N, D>, ReadError> {
         let error = self.error(Problem::BadValue { what: "a box" });
         let (mins, maxs) = (self.point()?, self.point()?);

@@ -18,19 +18,21 @@ use crate::shapes::KnownShapes;
 use crate::space::Recordable;
 use crate::state::Observer;
 
-/// A collision world that records the calls which change it, and the queries made through it.
+/// A collision world that records the calls that change it, and the queries made through it.
 ///
-/// It owns the world and dereferences to it for reading only ([`Deref`]), so that no change is unrecorded. Each method
-/// calls the method of [`CollisionWorld`] of the same name and returns its errors; neither the world nor the recording
-/// has then changed. Queries through `Deref` are not recorded, which does no harm.
+/// It owns the world and dereferences to it for reading only ([`Deref`]), so that every change is
+/// recorded. Each method calls the method of [`CollisionWorld`] with the same name and returns its
+/// errors; after an error neither the world nor the recording has changed. Queries through `Deref`
+/// are not recorded; they have no influence on the replay.
 ///
-/// An update is recorded with hashes of its result, to the bit: positions, groups, query types, pairs, contacts,
-/// proximities and events. That costs O(objects + contacts) time, and 12 bytes for each object whose hashes changed. A
-/// shape is written once, by value, and is kept alive while the recorder lives.
+/// An update is recorded with hashes of all bits of its result: positions, groups, query types,
+/// pairs, contacts, proximities and events. This costs O(objects + contacts) time, and 12 bytes for
+/// each object whose hashes changed. A shape is written once, by value, and is kept alive as long
+/// as the recorder.
 ///
-/// Changes without a method here cannot be recorded: other phases ([`CollisionWorld::set_broad_phase`],
-/// [`CollisionWorld::set_narrow_phase`]) and algorithms of a narrow phase are code, and the data of an object is
-/// replaced, not borrowed mutably.
+/// Changes without a method here cannot be recorded: other phases
+/// ([`CollisionWorld::set_broad_phase`], [`CollisionWorld::set_narrow_phase`]) and algorithms of a
+/// narrow phase are code. The data of an object can only be replaced, not borrowed mutably.
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;
@@ -60,21 +62,21 @@ pub struct Recorder<N: Recordable<D>, const D: usize, T> {
     observer: Observer,
     log: Log,
     updates: u64,
-    /// A key frame is written before each update whose index is a positive multiple of this; never, if
-    /// `None`.
+    /// The number of updates between key frames; without it no key frames are written.
     key_frames: Option<NonZeroU64>,
 }
 
-/// The result of a recorder.
+/// A finished recording, and the world that was recorded.
 #[derive(Debug)]
 pub struct Recording<N: Recordable<D>, const D: usize, T> {
-    /// The bytes that [`Recorder::take_bytes`] has not taken; if it was not called, the whole recording.
+    /// The bytes that [`Recorder::take_bytes`] has not returned yet: the whole recording if it was
+    /// not called.
     pub bytes: Vec<u8>,
     /// The world.
     pub world: CollisionWorld<N, D, T>,
 }
 
-/// A world that cannot be recorded.
+/// The reason why a world cannot be recorded, and the world.
 #[derive(Debug)]
 pub struct Refused<N: Recordable<D>, const D: usize, T> {
     /// The reason.
@@ -84,7 +86,7 @@ pub struct Refused<N: Recordable<D>, const D: usize, T> {
 }
 
 impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
-    /// Creates a recorder of a new world without objects.
+    /// Creates a recorder with an empty world.
     ///
     /// # Errors
     /// If the margin is negative, NaN or infinite.
@@ -128,9 +130,9 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Self { world, margin, registry, shapes, observer, log, updates, key_frames }
     }
 
-    /// Writes a key frame before every update whose index is a positive multiple of `updates`: a replay then
-    /// goes back by at most as many updates. Without key frames, the default, it goes back to the
-    /// start of the recording.
+    /// Writes a key frame before every update whose index is a positive multiple of `updates`. A
+    /// replay that goes backwards then repeats little more than `updates` updates. Without key
+    /// frames, the default, it goes back to the start of the recording.
     ///
     /// A key frame takes about as many bytes as adding all objects. Its update recomputes every
     /// pair, and contacts get new ids, as with [`Self::of_world`]. Key frames do not change the
@@ -173,7 +175,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(())
     }
 
-    /// Removes the objects for which `keeps` is false, in order of the handles.
+    /// Removes the objects for which `keeps` returns `false`. It is called in the order of handles.
     pub fn retain(&mut self, mut keeps: impl FnMut(&CollisionObject<N, D, T>) -> bool) {
         let leaving = self.world.collision_objects().filter(|object| !keeps(object));
         let leaving: Vec<_> = leaving.map(CollisionObject::handle).collect();
@@ -198,7 +200,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         self.set_positions(&[(handle, position)])
     }
 
-    /// Moves some objects, all or none.
+    /// Moves objects; on an error none of them is moved.
     ///
     /// # Errors
     /// As [`Self::set_position`].
@@ -212,7 +214,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(())
     }
 
-    /// Gives an object another shape.
+    /// Replaces the shape of an object.
     ///
     /// # Errors
     /// If the handle is stale or the shape cannot be written.
@@ -266,7 +268,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(result)
     }
 
-    /// Gives an object other groups.
+    /// Replaces the groups of an object.
     ///
     /// # Errors
     /// If the handle is stale.
@@ -280,10 +282,10 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(())
     }
 
-    /// Gives an object another query type.
+    /// Replaces the query type of an object.
     ///
     /// # Errors
-    /// If the handle is stale or a number of the query type is negative or not finite.
+    /// If the handle is stale, or a number of the query type is negative or not finite.
     pub fn set_query_type(
         &mut self,
         handle: CollisionObjectHandle,
@@ -295,7 +297,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(())
     }
 
-    /// Gives an object other data.
+    /// Replaces the data of an object.
     ///
     /// # Errors
     /// If the handle is stale.
@@ -319,7 +321,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(())
     }
 
-    /// Unregisters the pair filter of a name, if it exists.
+    /// Unregisters the pair filter with this name, if it exists.
     pub fn unregister_broad_phase_pair_filter(&mut self, name: &str) {
         self.world.unregister_broad_phase_pair_filter(name);
         self.record(&Call::UnregisterFilter(name.to_owned()));
@@ -332,7 +334,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         self.end_step();
     }
 
-    /// Writes a key frame, if the next update needs one.
+    /// Writes a key frame, if the next update is to have one.
     pub(crate) fn begin_step(&mut self) {
         if self.key_frames.is_some_and(|every| self.updates > 0 && self.updates % every == 0) {
             let known = self.key_frame();
@@ -340,14 +342,14 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         }
     }
 
-    /// Records a finished update.
+    /// Records an update that has just run.
     pub(crate) fn end_step(&mut self) {
         self.updates += 1;
         let observation = self.observer.observe(&self.world);
         self.record(&Call::Update(observation));
     }
 
-    /// Writes the calls that rebuild the world, and installs new phases in it.
+    /// Writes a key frame of the world, and installs new phases in it.
     fn key_frame(&mut self) -> Result<(), RecordError> {
         let mut objects = Vec::with_capacity(self.world.len());
         for object in self.world.collision_objects() {
@@ -370,8 +372,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(())
     }
 
-    /// Returns the free indices; the last one is used next. Indices that can never be used again
-    /// come first.
+    /// Returns the free indices for a key frame; the last one is used next. Indices that the world
+    /// can never use again come first.
     fn vacant(&self, objects: &[ObjectData<N, D>]) -> Vec<u32> {
         let small = |index| u32::try_from(index).expect("an index has 31 bits");
         let free: Vec<u32> = self.world.vacant_indices().map(small).collect();
@@ -384,7 +386,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         spent.chain(free).collect()
     }
 
-    /// Returns the bytes written since the last call: for recordings that are written to a file as they grow.
+    /// Returns the bytes that were written since the last call, for recordings that are written to
+    /// a file as they grow.
     ///
     /// ```
     /// use impinge_record::{Recorder, Registry, validate};
@@ -403,7 +406,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         std::mem::take(&mut self.log.bytes)
     }
 
-    /// Ends the recording.
+    /// Writes the last record and ends the recording.
     #[must_use]
     pub fn finish(mut self) -> Recording<N, D, T> {
         self.record(&Call::End { updates: self.updates });
@@ -416,7 +419,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         self.shapes.number(shape, &self.registry)
     }
 
-    /// Writes a record, after its new shapes.
+    /// Writes a record, preceded by those of the new shapes to which it refers.
     pub(crate) fn record(&mut self, call: &Call<N, D>) {
         for shape in self.shapes.unwritten.drain(..) {
             self.log.record(&Call::Shape(shape));
@@ -434,7 +437,7 @@ fn unknown_filter<N: Recordable<D>, const D: usize, T>(
     names.find(|name| !registry.has_filter(name)).map(str::to_owned)
 }
 
-/// Returns the index of an object, by which the recording names it.
+/// Returns the index of an object's handle, which identifies the object in the recording.
 pub(crate) fn index_of(handle: CollisionObjectHandle) -> u32 {
     u32::try_from(handle.uid()).expect("an index has 31 bits")
 }

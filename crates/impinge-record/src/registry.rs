@@ -1,4 +1,5 @@
-//! Objects that a recording names but does not contain: shapes of user types, and pair filters.
+//! Objects of which a recording contains only the names: shapes of user-defined types, and pair
+//! filters.
 
 use core::fmt;
 use std::collections::BTreeMap;
@@ -8,11 +9,11 @@ use impinge::math::Space;
 use impinge::shape::ShapeHandle;
 use impinge::world::{BroadPhasePairFilter, CollisionWorld};
 
-/// Registers a filter in a world.
+/// A function that registers a filter in a world.
 type Register<N, const D: usize, T> = Arc<dyn Fn(&mut CollisionWorld<N, D, T>) + Send + Sync>;
 
-/// Shapes of user types and pair filters, by name. A recording contains only the names. The program
-/// that replays it must register equal shapes and filters under these names.
+/// Shapes of user-defined types and pair filters, by name. A recording contains only the names. The
+/// program that replays it must register equal shapes and filters under the same names.
 ///
 /// ```
 /// use impinge::dim2::world::CollisionObject;
@@ -35,14 +36,14 @@ impl<N: Space<D>, const D: usize, T> Registry<N, D, T> {
         Self { shapes: BTreeMap::new(), filters: BTreeMap::new() }
     }
 
-    /// Names a shape: this handle and its clones.
+    /// Adds a shape under a name. The name stands for this handle and its clones.
     #[must_use]
     pub fn with_shape(mut self, name: &str, shape: ShapeHandle<N, D>) -> Self {
         self.shapes.insert(name.to_owned(), shape);
         self
     }
 
-    /// Names a pair filter.
+    /// Adds a pair filter under a name.
     #[must_use]
     pub fn with_filter<F>(mut self, name: &str, filter: F) -> Self
     where
@@ -56,25 +57,26 @@ impl<N: Space<D>, const D: usize, T> Registry<N, D, T> {
         self
     }
 
-    /// Whether a filter has this name.
+    /// Returns `true` if a filter has this name.
     #[must_use]
     pub fn has_filter(&self, name: &str) -> bool {
         self.filters.contains_key(name)
     }
 
-    /// Returns the shape of a name.
+    /// Returns the shape with this name; `None` if there is none.
     #[must_use]
     pub fn shape(&self, name: &str) -> Option<&ShapeHandle<N, D>> {
         self.shapes.get(name)
     }
 
-    /// Returns the name of a shape; the first one if it has several names, `None` if it has none.
+    /// Returns the name of a shape: the first one in alphabetical order if it has several, `None`
+    /// if it has none.
     pub(crate) fn name_of(&self, shape: &ShapeHandle<N, D>) -> Option<&str> {
         let mut shapes = self.shapes.iter();
         shapes.find(|(_, own)| own.is_same(shape)).map(|(name, _)| name.as_str())
     }
 
-    /// Registers the filter of a name in a world; `false` if there is none.
+    /// Registers the filter with this name in a world; returns `false` if there is none.
     pub(crate) fn register(&self, name: &str, world: &mut CollisionWorld<N, D, T>) -> bool {
         let register = self.filters.get(name);
         if let Some(register) = register {

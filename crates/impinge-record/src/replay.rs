@@ -16,10 +16,12 @@ use crate::space::Recordable;
 
 /// A recording and its world at a step, which is the number of applied updates.
 ///
-/// Going forwards applies the calls of each step, or those from a key frame on, if one is nearer. Going backwards
-/// rebuilds the world from the last key frame at least two updates before the step, or from the start.
+/// Going forwards applies the calls of each step; if a key frame lies between, it applies the calls
+/// from there on. Going backwards rebuilds the world from the last key frame at least two updates
+/// before the step, or from the start.
 ///
-/// Memory: the recording and its shapes, 40 bytes for each update, and one world.
+/// It takes the memory of the recording and its shapes, of a [`Mark`] for each update, and of one
+/// world.
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;
@@ -51,16 +53,16 @@ use crate::space::Recordable;
 pub struct Replay<N: Recordable<D>, const D: usize, T> {
     bytes: Vec<u8>,
     resources: Resources<N, D, T>,
-    /// The position up to which the bytes have been read.
+    /// The position up to which the records were read.
     cursor: Cursor,
     timeline: Timeline,
-    /// Whether the last record has been read.
+    /// Whether the last record was read.
     is_complete: bool,
     /// The error after which no more bytes are accepted.
     damage: Option<ReadError>,
     loss: Option<Loss>,
     player: Player<N, D, T>,
-    /// Whether the world was changed by the user.
+    /// Whether the caller may have changed the world.
     is_changed: bool,
     step: usize,
     /// The offset of the next record to be played.
@@ -68,23 +70,23 @@ pub struct Replay<N: Recordable<D>, const D: usize, T> {
     divergence: Option<Divergence>,
 }
 
-/// The unreadable end of a recording.
+/// The end of a recording that could not be read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loss {
-    /// The offset at which it begins: the bytes before it are kept.
+    /// The offset at which the unreadable part begins; the bytes before it are kept.
     pub offset: usize,
-    /// The number of its bytes; 0 if the recording only lacks its last record.
+    /// The number of its bytes; 0 if only the last record is missing.
     pub bytes: usize,
     /// The reason why it could not be read.
     pub error: ReadError,
 }
 
-/// How reading ended without an error.
+/// The way in which reading ended without an error.
 #[derive(Debug)]
 enum Reading {
     /// The last record was read.
     Ended,
-    /// The next record, or the header, is incomplete; the error describes the missing part.
+    /// The next record, or the header, is incomplete. The error describes the missing part.
     Waits(ReadError),
 }
 
@@ -126,7 +128,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
     /// ```
     #[must_use]
     pub fn growing(registry: &Registry<N, D, T>) -> Self {
-        // The header has the margin, and another world is then made.
+        // When the header is read, a world with its margin replaces this one.
         let (shapes, margin) = (ShapeTable::new(), N::ZERO);
         Self {
             bytes: Vec::new(),
@@ -208,7 +210,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         }
     }
 
-    /// Reads the complete records: their checksums and fields, the shapes, and the time line.
+    /// Reads the complete records. It verifies their checksums and fields, creates the shapes, and
+    /// extends the time line.
     fn scan(&mut self) -> Result<Reading, ReadError> {
         if self.cursor.offset() == 0 {
             match self.scan_header() {
@@ -230,7 +233,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         if is_last { Ok(Reading::Ended) } else { Err(ReadError { offset, problem }) }
     }
 
-    /// Reads the header, and makes the world with its margin.
+    /// Reads the header, and creates the world with its margin.
     fn scan_header(&mut self) -> Result<(), ReadError> {
         let mut cursor = self.cursor.clone();
         let margin = cursor.header(&self.bytes)?;
@@ -268,63 +271,64 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         if is_right { Ok(()) } else { Err(ReadError { offset, problem }) }
     }
 
-    /// The received bytes of the recording; after [`Self::salvage`] without the lost ones.
+    /// Returns the received bytes of the recording; after [`Self::salvage`] without the lost part.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// Whether the last record was received. Only a growing or salvaged recording may lack it.
+    /// Returns `true` if the last record was received. Only a growing or salvaged recording may
+    /// lack it.
     #[must_use]
     pub const fn is_complete(&self) -> bool {
         self.is_complete
     }
 
-    /// The part that [`Self::salvage`] has dropped; `None` if the recording is complete.
+    /// Returns the part that [`Self::salvage`] has dropped; `None` if the recording is complete.
     #[must_use]
     pub const fn loss(&self) -> Option<&Loss> {
         self.loss.as_ref()
     }
 
-    /// The world at the step.
+    /// Returns the world at the current step.
     #[must_use]
     pub const fn world(&self) -> &CollisionWorld<N, D, T> {
         &self.player.world
     }
 
-    /// The world for experiments. The next [`Self::seek`], also to the same step, undoes all changes: it rebuilds
-    /// the world.
+    /// Returns the world, to be changed for experiments. The next [`Self::seek`], even to the same
+    /// step, rebuilds the world without the changes.
     pub const fn world_mut(&mut self) -> &mut CollisionWorld<N, D, T> {
         self.is_changed = true;
         &mut self.player.world
     }
 
-    /// The number of updates of the world.
+    /// Returns the current step: the number of updates of the world.
     #[must_use]
     pub const fn step(&self) -> usize {
         self.step
     }
 
-    /// The number of updates of the recording.
+    /// Returns the number of updates of the recording.
     #[must_use]
     pub const fn len(&self) -> usize {
         self.timeline.marks.len()
     }
 
-    /// Whether the recording has no update.
+    /// Returns `true` if the recording has no update.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.timeline.marks.is_empty()
     }
 
-    /// The time line: a mark for each update. It is known without playing.
+    /// Returns the time line: a mark for each update. It is available without replaying.
     #[must_use]
     pub fn marks(&self) -> &[Mark] {
         &self.timeline.marks
     }
 
-    /// The queries between the previous update and the current one, in order, with results that were computed when
-    /// they were played, before the current update. At step 0 there are none.
+    /// Returns the queries between the previous update and the current one, in order. Their results
+    /// were computed when they were replayed, before the current update. At step 0 there are none.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point};
@@ -351,18 +355,19 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         &self.player.queries
     }
 
-    /// The first difference from the recording in the played steps, in any direction.
+    /// Returns the first difference from the recording that was found in the replayed steps; `None`
+    /// if there was none.
     #[must_use]
     pub const fn divergence(&self) -> Option<Divergence> {
         self.divergence
     }
 
-    /// Goes to a step, forwards or backwards: the state just after its update. A step beyond the last one goes to
-    /// the last.
+    /// Goes to a step, forwards or backwards: to the state just after its update. A step beyond the
+    /// last one goes to the last one.
     ///
     /// # Errors
-    /// If a call cannot be applied, so that no recorder wrote the bytes. The world is then in the state after the
-    /// calls before it.
+    /// If a call cannot be applied; then the bytes were not written by a recorder. The world is in
+    /// the state after the calls before it.
     pub fn seek(&mut self, step: usize) -> Result<(), ReadError> {
         let step = step.min(self.len());
         let frame = self.timeline.frame_before(step);
@@ -375,8 +380,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         Ok(())
     }
 
-    /// Goes to the end: also applies the calls after the last update. A recording of a world that was never updated
-    /// has all of its objects there.
+    /// Goes to the end, and also applies the calls after the last update. If the recorded world was
+    /// never updated, its objects exist only there.
     ///
     /// # Errors
     /// As [`Self::seek`].
@@ -393,7 +398,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         Ok(())
     }
 
-    /// Makes a new world before a key frame, or before the first call.
+    /// Creates a new world, and goes to a key frame or to the first call.
     fn restart(&mut self, mark: FrameMark) -> Result<(), ReadError> {
         let FrameMark { step, offset, .. } = mark;
         let made = Player::new(self.resources.margin);
@@ -418,10 +423,11 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
     }
 }
 
-/// Replays a whole recording and compares every hash. Returns `None` if the replay equals the recording, to the bit.
+/// Replays a whole recording and compares every hash. Returns `None` if the replay is equal to the
+/// recording, to the bit.
 ///
-/// If the hash of the state differs, the hashes of its objects name the first differing object by handle. The
-/// recording has them unless it was packed.
+/// If the hash of the state differs, the hashes of objects determine the first differing object in
+/// the order of handles. A packed recording does not contain them.
 ///
 /// # Errors
 /// As [`Replay::open`] and [`Replay::seek`].
@@ -430,7 +436,7 @@ pub fn validate<N: Recordable<D>, const D: usize, T: RecordData>(
     registry: &Registry<N, D, T>,
 ) -> Result<Option<Divergence>, ReadError> {
     let mut replay = Replay::open(bytes, registry)?;
-    // Every call from the first one on, regardless of key frames.
+    // All calls are applied from the first one on; key frames do not skip any.
     replay.finish()?;
     Ok(replay.divergence)
 }

@@ -1,4 +1,4 @@
-//! Shapes as data: the arguments of the constructors of the library.
+//! Shapes as plain data: the arguments of the constructors of the library.
 
 use impinge::math::{Point, Space, Unit, Vector};
 use impinge::shape::{
@@ -10,7 +10,7 @@ use crate::bytes::{Sink, Source};
 use crate::error::{Problem, ReadError, RecordError};
 use crate::space::{Recordable, Scalar};
 
-/// A shape by value. Shapes within it are numbers in the list of shapes of the recording.
+/// A shape by value. Shapes within it are indices in the list of shapes of the recording.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(missing_docs, reason = "the fields are the arguments of the constructors")]
 pub enum ShapeData<N: Space<D>, const D: usize> {
@@ -35,25 +35,26 @@ pub enum ShapeData<N: Space<D>, const D: usize> {
     HeightField(Field<N, D>),
 }
 
-/// The value of the field of sides for a solid body; for a surface the field is whether it has one side only.
+/// The value of the byte `sides` for a solid. For a surface the byte is 1 if it is one-sided,
+/// otherwise 0.
 const SOLID: u8 = 2;
-/// The byte of [`SOLID`] and [`GHOSTS`], in errors.
+/// The name of the byte `sides` in errors.
 const SIDES: &str = "the sides of a mesh";
-/// Added to the sides of a mesh with ghosts.
+/// A bit that is added to the byte `sides` of a mesh with ghosts.
 const GHOSTS: u8 = 4;
 
-/// The arguments of a triangle mesh or a polyline.
+/// The arguments of a triangle mesh or a polyline; `ENDS` is the number of vertices of a part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh<N: Space<D>, const D: usize, const ENDS: usize> {
     /// The vertices.
     pub vertices: Vec<Point<N, D>>,
-    /// The vertex indices of each part.
+    /// The vertex indices of each triangle or segment.
     pub parts: Vec<[u32; ENDS]>,
-    /// The vertex indices of each ghost of a mesh; empty for a polyline.
+    /// The vertex indices of each ghost triangle of a mesh; empty for a polyline.
     pub ghosts: Vec<[u32; ENDS]>,
-    /// Whether it has no contacts from behind, as a solid has none.
+    /// Whether it has no contacts from behind; also `true` for a solid.
     pub is_one_sided: bool,
-    /// Whether it is solid, not a surface.
+    /// Whether it is a solid instead of a surface.
     pub is_solid: bool,
     /// Whether contacts treat each part separately.
     pub keeps_internal_edges: bool,
@@ -62,13 +63,14 @@ pub struct Mesh<N: Space<D>, const D: usize, const ENDS: usize> {
 /// The arguments of a height field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field<N: Space<D>, const D: usize> {
-    /// The number of heights in a row; in 2D all of them.
+    /// The number of heights in a row; in 2D the number of all heights.
     pub columns: usize,
     /// The heights, row by row.
     pub heights: Vec<N>,
     /// The scale.
     pub scale: Vector<N, D>,
-    /// For each cell: bits 0 and 1 for removed parts, bit 2 for a backward diagonal, bit 3 for a ghost.
+    /// A byte for each cell: bits 0 and 1 mark removed parts, bit 2 a backward diagonal, bit 3 a
+    /// ghost.
     pub marks: Vec<u8>,
     /// Whether it has no contacts from behind.
     pub is_one_sided: bool,
@@ -76,7 +78,8 @@ pub struct Field<N: Space<D>, const D: usize> {
     pub keeps_internal_edges: bool,
 }
 
-/// Returns the shape as data; `number` returns the number of a shape within it. `None` for a user type.
+/// Converts a shape to data; `number` returns the index of a shape within it. `None` for a
+/// user-defined type.
 pub(crate) fn data_of<N: Recordable<D>, const D: usize>(
     shape: &ShapeHandle<N, D>,
     number: &mut dyn FnMut(&ShapeHandle<N, D>) -> Result<u32, RecordError>,
@@ -96,7 +99,8 @@ pub(crate) fn data_of<N: Recordable<D>, const D: usize>(
     Ok(data.or_else(|| N::own_data(&**shape)))
 }
 
-/// Returns the data of convex solids of both dimensions, and of the half-space.
+/// Converts the convex shapes that exist in both dimensions, and the half-space; `None` for other
+/// shapes.
 fn solid_data<N: Recordable<D>, const D: usize>(
     shape: &dyn Shape<N, D>,
 ) -> Option<ShapeData<N, D>> {
@@ -120,7 +124,7 @@ fn solid_data<N: Recordable<D>, const D: usize>(
     })
 }
 
-/// Returns the data of composites with vertices.
+/// Converts polylines and meshes; `None` for other shapes.
 fn mesh_data<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Option<ShapeData<N, D>> {
     if let Some(line) = shape.as_shape::<Polyline<N, D>>() {
         return Some(ShapeData::Polyline(Mesh {
@@ -143,7 +147,7 @@ fn mesh_data<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Optio
     }))
 }
 
-/// Whether the two shapes, of equal data, join their parts in the same way.
+/// Returns `true` if two shapes with equal data have the same adjacency between their parts.
 pub(crate) fn joins_alike<N: Recordable<D>, const D: usize>(
     shape1: &dyn Shape<N, D>,
     shape2: &dyn Shape<N, D>,
@@ -167,11 +171,12 @@ pub(crate) fn joins_alike<N: Recordable<D>, const D: usize>(
 }
 
 impl<N: Recordable<D>, const D: usize> ShapeData<N, D> {
-    /// Makes the shape, by the constructors that check their arguments; `shape` returns the shapes within it, and
-    /// named ones.
+    /// Creates the shape with the constructors that check their arguments. `shape` returns the
+    /// shape with an index.
     ///
     /// # Errors
-    /// If a constructor rejects the values, if `shape` returns an error, or if this dimension has no such shape.
+    /// If a constructor rejects the values, if `shape` returns an error, if the shape is a named
+    /// one, or if this dimension has no such shape.
     pub fn make(
         &self,
         shape: &dyn Fn(u32) -> Result<ShapeHandle<N, D>, Problem>,
@@ -203,7 +208,7 @@ impl<N: Recordable<D>, const D: usize> ShapeData<N, D> {
         })
     }
 
-    /// Returns the numbers of the shapes within it.
+    /// Returns the indices of the shapes within this shape.
     pub(crate) fn inner(&self) -> Vec<u32> {
         match self {
             Self::Rounded { shape, .. } => vec![*shape],
@@ -213,14 +218,14 @@ impl<N: Recordable<D>, const D: usize> ShapeData<N, D> {
     }
 }
 
-/// Makes the half-space of a normal, which is not normalized: that could change its bits.
+/// Creates a half-space. The normal is not normalized, since that could change its bits.
 fn half_space<N: Recordable<D>, const D: usize>(
     normal: &Vector<N, D>,
 ) -> Result<ShapeHandle<N, D>, Problem> {
     Ok(ShapeHandle::new(Plane::<N, D>::try_new(Unit::new_unchecked(*normal))?))
 }
 
-/// Makes a polyline of its arguments.
+/// Creates a polyline from its arguments.
 fn line_of_parts<N: Recordable<D>, const D: usize>(
     mesh: &Mesh<N, D, 2>,
 ) -> Result<ShapeHandle<N, D>, Problem> {
@@ -231,7 +236,7 @@ fn line_of_parts<N: Recordable<D>, const D: usize>(
     Ok(ShapeHandle::new(line))
 }
 
-/// Makes a mesh of its arguments.
+/// Creates a mesh from its arguments.
 fn mesh_of_parts<N: Recordable<D>, const D: usize>(
     parts: &Mesh<N, D, 3>,
 ) -> Result<ShapeHandle<N, D>, Problem> {
@@ -245,7 +250,7 @@ fn mesh_of_parts<N: Recordable<D>, const D: usize>(
 
 /// Writes the fields of shapes.
 impl Sink {
-    /// Writes points whose count the reader knows.
+    /// Writes points without their count, which the reader knows.
     pub(crate) fn points<N: Scalar, const D: usize>(&mut self, points: &[Point<N, D>]) {
         points.iter().for_each(|point| self.numbers(point.coords.as_slice()));
     }
@@ -260,7 +265,7 @@ impl Sink {
         self.numbers(&N::isometry_numbers(isometry));
     }
 
-    /// Writes vertices, parts, the number of sides and a flag.
+    /// Writes the vertices, the parts, the byte `sides`, a flag, and the ghosts if there are any.
     fn mesh<N: Recordable<D>, const D: usize, const ENDS: usize>(
         &mut self,
         mesh: &Mesh<N, D, ENDS>,
@@ -278,7 +283,8 @@ impl Sink {
         }
     }
 
-    /// Writes the number of heights in a row, the heights, the scale, the marks and two flags.
+    /// Writes the arguments of a height field: the number of heights in a row, the heights, the
+    /// scale, the marks and two flags.
     fn field<N: Recordable<D>, const D: usize>(&mut self, field: &Field<N, D>) {
         self.count(field.columns);
         self.count(field.heights.len());
@@ -289,7 +295,7 @@ impl Sink {
         self.flag(field.keeps_internal_edges);
     }
 
-    /// Writes the points, then the loops of the faces.
+    /// Writes the points of a hull, then the vertex indices of each face.
     fn hull<N: Scalar, const D: usize>(&mut self, points: &[Point<N, D>], faces: &[Vec<u32>]) {
         self.point_list(points);
         self.count(faces.len());
@@ -299,7 +305,8 @@ impl Sink {
         }
     }
 
-    /// Writes positions and numbers of shapes that are defined before.
+    /// Writes the children of a compound: their positions and the indices of their shapes, which
+    /// are defined before.
     fn children<N: Recordable<D>, const D: usize>(&mut self, children: &[(N::Isometry, u32)]) {
         self.count(children.len());
         for (at, child) in children {
@@ -308,7 +315,7 @@ impl Sink {
         }
     }
 
-    /// Writes a kind, then the fields of the shape.
+    /// Writes the kind of a shape, then its fields.
     pub(crate) fn shape<N: Recordable<D>, const D: usize>(&mut self, shape: &ShapeData<N, D>) {
         self.byte(shape.kind());
         match shape {
@@ -344,7 +351,7 @@ impl Sink {
 }
 
 impl<N: Space<D>, const D: usize> ShapeData<N, D> {
-    /// The number of the kind in the format.
+    /// Returns the code of the kind of shape in the format.
     const fn kind(&self) -> u8 {
         match self {
             Self::Ball(_) => 0,
@@ -395,7 +402,8 @@ impl Source<'_> {
         self.list(D * N::BYTES, Self::point)
     }
 
-    /// Reads an isometry unchanged, whether or not its rotation is valid: the world rejects those that are not finite.
+    /// Reads an isometry unchanged, whether or not its rotation is valid. The world rejects
+    /// isometries that are not finite.
     pub(crate) fn isometry<N: Recordable<D>, const D: usize>(
         &mut self,
     ) -> Result<N::Isometry, ReadError> {
@@ -412,7 +420,8 @@ impl Source<'_> {
     ) -> Result<Mesh<N, D, ENDS>, ReadError> {
         let vertices = self.point_list()?;
         let parts = self.corners()?;
-        // Bits: 0 and 1 for the sides, 2 for ghosts, which polylines have not.
+        // The bits of `sides`: 0 and 1 for one-sided and solid, 2 for ghosts, which polylines do
+        // not have.
         let sides = self.choice(if ENDS == 3 { 7 } else { 3 }, SIDES)?;
         let keeps_internal_edges = self.flag()?;
         let ghosts = if sides < GHOSTS { Vec::new() } else { self.corners()? };
@@ -423,7 +432,7 @@ impl Source<'_> {
         Ok(Mesh { vertices, parts, ghosts, is_one_sided, is_solid, keeps_internal_edges })
     }
 
-    /// Reads a list of the corners of parts.
+    /// Reads a list of parts, each as its vertex indices.
     fn corners<const ENDS: usize>(&mut self) -> Result<Vec<[u32; ENDS]>, ReadError> {
         self.list(4 * ENDS, |source| {
             let mut part = [0; ENDS];
@@ -445,12 +454,12 @@ impl Source<'_> {
         })
     }
 
-    /// Reads loops of vertices: each takes at least the four bytes of its count.
+    /// Reads the faces of a hull. A face takes at least the four bytes of its count.
     fn faces(&mut self) -> Result<Vec<Vec<u32>>, ReadError> {
         self.list(4, |source| source.list(4, Self::word))
     }
 
-    /// Reads a shape that [`Sink::shape`] wrote.
+    /// Reads a shape that [`Sink::shape`] has written.
     pub(crate) fn shape<N: Recordable<D>, const D: usize>(
         &mut self,
     ) -> Result<ShapeData<N, D>, ReadError> {

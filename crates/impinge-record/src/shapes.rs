@@ -1,4 +1,4 @@
-//! The shapes of a recording: each is stored once and has an index.
+//! The shapes of a recording. Each shape is stored once and has an index.
 
 use std::collections::BTreeMap;
 
@@ -10,13 +10,13 @@ use crate::registry::Registry;
 use crate::shape_data::{ShapeData, data_of, joins_alike};
 use crate::space::Recordable;
 
-/// The largest nesting depth: a rounded shape or compound is one deeper than its content.
+/// The maximum nesting depth of a shape. A rounded shape or compound has one more than its content.
 pub const MAX_DEPTH: u32 = impinge::shape::MAX_NESTING;
 
-/// The largest number of parts of a shape; parts of a shared shape count for each use.
+/// The maximum number of parts of a shape. The parts of a shared shape count for each use.
 pub const MAX_PARTS: usize = 1 << 20;
 
-/// A shape, with its depth and number of parts.
+/// A shape with its nesting depth and its number of parts.
 #[derive(Clone, Debug)]
 struct SizedShape<N: Space<D>, const D: usize> {
     handle: ShapeHandle<N, D>,
@@ -24,7 +24,7 @@ struct SizedShape<N: Space<D>, const D: usize> {
     parts: usize,
 }
 
-/// Shapes by index.
+/// The shapes of a recording, by index.
 #[derive(Clone, Debug)]
 pub(crate) struct ShapeTable<N: Space<D>, const D: usize> {
     shapes: Vec<SizedShape<N, D>>,
@@ -52,7 +52,7 @@ impl<N: Recordable<D>, const D: usize> ShapeTable<N, D> {
         self.push(data, handle)
     }
 
-    /// Makes the shape of some data; an error if it would be too complex.
+    /// Creates the shape with this data; an error if it would be too complex.
     fn make<T>(
         &self,
         data: &ShapeData<N, D>,
@@ -66,7 +66,8 @@ impl<N: Recordable<D>, const D: usize> ShapeTable<N, D> {
         data.make(&|number| self.get(number).cloned())
     }
 
-    /// Returns the nesting depth of a shape of this data, and the number of parts of its children.
+    /// Returns the nesting depth that a shape with this data would have, and the number of parts of
+    /// its children.
     fn check(&self, data: &ShapeData<N, D>) -> Result<[usize; 2], Problem> {
         let (mut depth, mut parts) = (0, 0_usize);
         for number in data.inner() {
@@ -78,7 +79,7 @@ impl<N: Recordable<D>, const D: usize> ShapeTable<N, D> {
         if is_simple { Ok([depth as usize, parts]) } else { Err(Problem::TooComplex) }
     }
 
-    /// Assigns the next index to a shape made of some data.
+    /// Assigns the next index to a shape with this data.
     fn push(&mut self, data: &ShapeData<N, D>, handle: ShapeHandle<N, D>) -> Result<(), Problem> {
         let [depth, inner] = self.check(data)?;
         let own = handle.geometry().as_composite().map_or(1, |parts| parts.num_parts() as usize);
@@ -88,12 +89,12 @@ impl<N: Recordable<D>, const D: usize> ShapeTable<N, D> {
     }
 }
 
-/// The shapes that a recorder has written. They are kept alive, since their addresses identify
-/// them.
+/// The shapes that a recorder has written. They are kept alive, since they are identified by their
+/// addresses.
 #[derive(Clone, Debug)]
 pub(crate) struct KnownShapes<N: Space<D>, const D: usize> {
     table: ShapeTable<N, D>,
-    /// For each address, the index of the shape. It is used for look-ups only: nothing depends on
+    /// The index of each shape by its address. It is used for look-ups only: no result depends on
     /// the order of addresses.
     numbers: BTreeMap<usize, u32>,
     /// The shapes that are not written yet.
@@ -106,13 +107,13 @@ impl<N: Recordable<D>, const D: usize> KnownShapes<N, D> {
         Self { table: ShapeTable::new(), numbers: BTreeMap::new(), unwritten: Vec::new() }
     }
 
-    /// Returns the index of a shape; a new index if the shape was not seen before.
+    /// Returns the index of a shape. A shape that occurs for the first time gets the next index.
     pub(crate) fn number<T>(
         &mut self,
         shape: &ShapeHandle<N, D>,
         registry: &Registry<N, D, T>,
     ) -> Result<u32, RecordError> {
-        // The shape is kept alive below, so that no other shape gets its address.
+        // The table keeps the shape alive, so no other shape can get its address.
         let address = std::ptr::from_ref(&**shape).cast::<()>().addr();
         if let Some(&number) = self.numbers.get(&address) {
             return Ok(number);
@@ -130,8 +131,9 @@ impl<N: Recordable<D>, const D: usize> KnownShapes<N, D> {
         Ok(number)
     }
 
-    /// Checks that the data reproduce the shape: the same data, and parts that are joined in the same way. A mesh
-    /// with moved vertices keeps the adjacency that it was made with, which does not follow from its vertices.
+    /// Checks that the data reproduces the shape: with the same data and the same adjacency of
+    /// parts. A mesh whose vertices were moved keeps its original adjacency, which may not follow
+    /// from the new positions.
     fn check<T>(
         &self,
         data: &ShapeData<N, D>,
@@ -152,7 +154,7 @@ impl<N: Recordable<D>, const D: usize> KnownShapes<N, D> {
     }
 }
 
-/// Returns the name in the registry of a shape of a user type.
+/// Returns the name under which the registry has a shape; `None` if it has none.
 fn named<N: Recordable<D>, const D: usize, T>(
     shape: &ShapeHandle<N, D>,
     registry: &Registry<N, D, T>,

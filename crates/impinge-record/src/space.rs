@@ -1,4 +1,4 @@
-//! Requirements of recordings on a scalar and a dimension.
+//! The requirements of recordings on scalar and dimension.
 
 use impinge::math::{Point, Real, Space};
 use impinge::shape::{
@@ -25,30 +25,31 @@ impl Scalar for f64 {
 
 /// A scalar and a dimension whose worlds can be recorded: every [`Scalar`] with `D` = 2 and `D` = 3.
 pub trait Recordable<const D: usize>: Space<D> + Scalar {
-    /// The number of scalars that describe an isometry.
+    /// The number of scalars that represent an isometry.
     const ISOMETRY_NUMBERS: usize;
 
-    /// Returns the scalars of an isometry: the translation, then cosine and sine of the rotation in 2D, the
-    /// components i, j, k, w of its quaternion in 3D. They are unchanged: normalizing them could change bits.
+    /// Returns the scalars of an isometry: the translation, then the cosine and sine of the
+    /// rotation in 2D, or the components i, j, k, w of its quaternion in 3D. They are not
+    /// normalized, since that could change bits.
     fn isometry_numbers(isometry: &Self::Isometry) -> Vec<Self> {
         Self::numbers(isometry)[..Self::ISOMETRY_NUMBERS].to_vec()
     }
 
-    /// Returns the isometry of these scalars, unchanged: the rotation is not normalized. `None` if their number
-    /// is wrong.
+    /// Returns the isometry with these scalars. Its rotation is not normalized. `None` if their
+    /// number is wrong.
     fn isometry_of(numbers: &[Self]) -> Option<Self::Isometry> {
         let mut padded = [Self::ZERO; 7];
         padded[..Self::ISOMETRY_NUMBERS].copy_from_slice(numbers.get(..Self::ISOMETRY_NUMBERS)?);
         (numbers.len() == Self::ISOMETRY_NUMBERS).then(|| Self::of_numbers(&padded))
     }
 
-    /// Returns shapes that exist in one dimension only as data; `None` for others.
+    /// Converts a shape that exists in one dimension only to data; `None` for other shapes.
     fn own_data(shape: &dyn Shape<Self, D>) -> Option<ShapeData<Self, D>>;
 
-    /// Makes a shape of the data of [`Self::own_data`].
+    /// Creates a shape from the data of [`Self::own_data`].
     ///
     /// # Errors
-    /// If the library rejects the values, or this dimension has no shape of this data.
+    /// If the library rejects the values, or if this dimension has no such shape.
     fn own_shape(data: &ShapeData<Self, D>) -> Result<ShapeHandle<Self, D>, Problem>;
 
     /// Returns the one-sided polyline in 2D; in 3D the polyline itself.
@@ -70,7 +71,7 @@ pub trait Recordable<const D: usize>: Space<D> + Scalar {
     fn solid_mesh(mesh: TriMesh<Self, D>) -> Result<TriMesh<Self, D>, MeshError>;
 }
 
-/// The dimension has no shape of this data.
+/// The problem of data for a shape that this dimension does not have.
 const FOREIGN: Problem = Problem::BadValue { what: "the kind of a shape" };
 
 impl<N: Scalar> Recordable<2> for N {
@@ -158,14 +159,14 @@ impl<N: Scalar> Recordable<3> for N {
     }
 }
 
-/// The faces are omitted if the hull of the points alone is equal to the bit.
+/// Converts a hull. Its faces are omitted if the hull of its points is equal to it, to the bit.
 fn hull_data<N: Scalar>(hull: &ConvexHull<N>, faces: Vec<Vec<u32>>) -> ShapeData<N, 3> {
     let points = hull.vertices().to_vec();
     let is_given_by_points = hull_of(&points, &[]).is_ok_and(|other| other == *hull);
     ShapeData::Hull { points, faces: if is_given_by_points { Vec::new() } else { faces } }
 }
 
-/// Without faces, makes the hull of the points.
+/// Creates a hull with these faces; if there are none, the convex hull of the points.
 fn hull_of<N: Scalar>(
     points: &[Point<N, 3>],
     faces: &[Vec<u32>],
@@ -176,12 +177,12 @@ fn hull_of<N: Scalar>(
     Ok(ConvexHull::try_new(points, faces)?)
 }
 
-/// Bits of [`Field::marks`].
+/// The bits of [`Field::marks`].
 const HOLES: [u8; 2] = [1, 2];
 const BACKWARD: u8 = 4;
 const GHOST: u8 = 8;
 
-/// Returns the arguments of a height field in 2D: a mark for each segment.
+/// Converts a height field in 2D; it has a mark for each segment.
 fn line_data<N: Scalar>(field: &HeightField<N, 2>) -> Field<N, 2> {
     let mark = |cell| u8::from(field.is_hole(cell)) + GHOST * u8::from(field.is_ghost(cell));
     let marks = (0..).take(field.num_cells()).map(mark);
@@ -195,7 +196,7 @@ fn line_data<N: Scalar>(field: &HeightField<N, 2>) -> Field<N, 2> {
     }
 }
 
-/// Makes the height field of these arguments, in 2D.
+/// Creates a height field in 2D from its arguments.
 fn line_of<N: Scalar>(data: &Field<N, 2>) -> Result<HeightField<N, 2>, Problem> {
     let field = HeightField::<N, 2>::try_new(data.heights.clone(), data.scale)?;
     check_marks(data, field.num_cells(), HOLES[0] + GHOST)?;
@@ -205,8 +206,8 @@ fn line_of<N: Scalar>(data: &Field<N, 2>) -> Result<HeightField<N, 2>, Problem> 
     Ok(if data.keeps_internal_edges { field.with_internal_edges_kept() } else { field })
 }
 
-/// Returns the arguments of a height field in 3D: a mark for each cell of two triangles. Each diagonal is
-/// written, whatever rule made it.
+/// Converts a height field in 3D; it has a mark for each cell of two triangles. The diagonal of
+/// each cell is written, whichever rule has set it.
 fn sheet_data<N: Scalar>(field: &HeightField<N, 3>) -> Field<N, 3> {
     let columns = field.columns() - 1;
     let mark = |cell: u32| {
@@ -228,7 +229,8 @@ fn sheet_data<N: Scalar>(field: &HeightField<N, 3>) -> Field<N, 3> {
     }
 }
 
-/// Makes the height field of these arguments, in 3D. The constructor rejects heights that make no whole rows.
+/// Creates a height field in 3D from its arguments. The constructor rejects heights that do not
+/// form complete rows.
 fn sheet_of<N: Scalar>(data: &Field<N, 3>) -> Result<HeightField<N, 3>, Problem> {
     let rows = data.heights.len() / data.columns.max(1);
     let heights = data.heights.clone();
@@ -249,7 +251,7 @@ fn sheet_of<N: Scalar>(data: &Field<N, 3>) -> Result<HeightField<N, 3>, Problem>
     Ok(if data.keeps_internal_edges { field.with_internal_edges_kept() } else { field })
 }
 
-/// Checks that there is a mark for each cell, with known bits only.
+/// Checks that there is one mark for each cell, and that marks have only bits of `bits`.
 fn check_marks<N: Recordable<D>, const D: usize>(
     field: &Field<N, D>,
     cells: usize,

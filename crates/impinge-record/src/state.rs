@@ -1,4 +1,5 @@
-//! Hashes of a world after an update: of the whole state, of its events, and of each changed object.
+//! Hashes of a world after an update: of the whole state, of its events, and of each changed
+//! object.
 
 use impinge::narrow_phase::{ContactEvent, ContactPair, GeometricQueryType, ProximityEvent};
 use impinge::query::{ContactPoint, Proximity};
@@ -9,12 +10,12 @@ use crate::divergence::{Difference, ObjectField};
 use crate::marks::EventCounts;
 use crate::space::Recordable;
 
-/// The recorded hashes of an object.
+/// The recorded hashes of one object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ObjectHashes {
     /// The index of the object.
     pub(crate) index: u32,
-    /// The hash of the properties that calls have set.
+    /// The hash of the properties that calls set, such as the position and the groups.
     pub(crate) description: u32,
     /// The hash of the pairs in which the object is the first, with their contacts.
     pub(crate) pairs: u32,
@@ -29,29 +30,29 @@ pub(crate) struct Observation {
     pub(crate) events: u64,
     /// The number of events of each kind in the update; `None` in version 1 of the format.
     pub(crate) counts: Option<EventCounts>,
-    /// The objects whose hashes differ from those after the previous update, in order; packed recordings
-    /// omit them.
+    /// The objects whose hashes differ from those after the previous update, in the order of
+    /// indices; `None` in packed recordings.
     pub(crate) changed: Option<Vec<ObjectHashes>>,
 }
 
-/// The state that is kept from one update to the next.
+/// The state that is needed to compute the hashes of the next update.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Observer {
-    /// The index of the pair of the first contact. Indices of pairs are hashed relative to it,
-    /// since they continue after the phases are replaced.
+    /// The pair index of the first contact. Pair indices are hashed relative to it, since their
+    /// values are not reset when the phases are replaced.
     first_pair: Option<u64>,
-    /// For each index of an object, its two hashes; zero for indices that never had an object.
+    /// The two hashes of each object by index; zero for indices that never had an object.
     known: Vec<[u32; 2]>,
 }
 
 impl Observer {
-    /// Computes the hashes after an update. O(objects + pairs + contacts).
+    /// Computes the hashes after an update. Costs O(objects + pairs + contacts).
     pub(crate) fn observe<N: Recordable<D>, const D: usize, T>(
         &mut self,
         world: &CollisionWorld<N, D, T>,
     ) -> Observation {
         let pairs = self.pair_digests(world);
-        // Objects come in order of their indices, so that lists by index grow at the end.
+        // Objects are in the order of their indices, so lists by index only grow at the end.
         let mut all = Digest::new();
         let mut changed = Vec::new();
         let mut known = Vec::with_capacity(self.known.len());
@@ -76,13 +77,13 @@ impl Observer {
         Observation { state, events, counts, changed: Some(changed) }
     }
 
-    /// Returns the hashes by index after the recorded changes. The hashes of indices that are no longer
-    /// used are out of date.
+    /// Returns the hashes by index after applying the recorded changes. Hashes of indices that are
+    /// no longer used are out of date.
     pub(crate) fn after(&self, changed: &[ObjectHashes]) -> Vec<[u32; 2]> {
         let mut known = self.known.clone();
         for ObjectHashes { index, description, pairs } in changed {
             let index = *index as usize;
-            // An index beyond the next one was not written by a recorder.
+            // The list grows by at most one element. A recorder never writes an index beyond that.
             known.resize(known.len().max(index.min(known.len()) + 1), [0; 2]);
             if let Some(hashes) = known.get_mut(index) {
                 *hashes = [*description, *pairs];
@@ -91,7 +92,7 @@ impl Observer {
         known
     }
 
-    /// Returns the first object whose hashes differ from the recorded ones.
+    /// Returns the first object whose hashes differ from the recorded ones; `None` if all agree.
     pub(crate) fn difference(&self, recorded: &[[u32; 2]]) -> Option<Difference> {
         let living = self.known.iter().enumerate().filter(|(_, hashes)| **hashes != [0; 2]);
         for (index, own) in living {
@@ -105,7 +106,7 @@ impl Observer {
         None
     }
 
-    /// Returns by index a hash of the pairs in which an object is the first.
+    /// Returns, by index, a hash of the pairs in which the object is the first one.
     fn pair_digests<N: Recordable<D>, const D: usize, T>(
         &mut self,
         world: &CollisionWorld<N, D, T>,
@@ -137,7 +138,7 @@ impl Observer {
         }
     }
 
-    /// Adds geometry, id, features and parts of a contact.
+    /// Adds the geometry, the id, the features and the parts of a contact.
     fn point<N: Recordable<D>, const D: usize>(
         &mut self,
         point: &ContactPoint<N, D>,
@@ -158,7 +159,8 @@ impl Observer {
     }
 }
 
-/// Adds position, groups, query type, and rare properties: the state that calls have set.
+/// Returns the hash of the state of an object that calls have set: its position, groups, query
+/// type, and rare properties.
 fn description_digest<N: Recordable<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     object: &CollisionObject<N, D, T>,
@@ -188,7 +190,7 @@ fn description_digest<N: Recordable<D>, const D: usize, T>(
     digest
 }
 
-/// Returns the hash of the events of the last update, in order.
+/// Returns the hash of the events of the last update, in their order.
 fn events_hash<N: Recordable<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) -> u64 {
     let mut digest = Digest::new();
     for event in world.contact_events() {
@@ -207,7 +209,7 @@ fn events_hash<N: Recordable<D>, const D: usize, T>(world: &CollisionWorld<N, D,
     digest.finish()
 }
 
-/// Returns a code for each proximity that does not depend on the order of the library's variants.
+/// Returns a code for a proximity. It does not depend on the order of the variants in the library.
 const fn proximity_number(proximity: Proximity) -> u64 {
     match proximity {
         Proximity::Intersecting => 2,

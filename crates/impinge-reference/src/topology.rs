@@ -34,8 +34,8 @@ pub enum Fault {
         /// The vertex indices of the edge in the direction of its face.
         edge: (usize, usize),
     },
-    /// Vertices minus edges plus faces is not two. There are several components, a handle, or a
-    /// vertex that joins components.
+    /// Vertices minus edges plus faces is not two, or the faces at a vertex form several fans. The
+    /// surface has several components, a handle, or a vertex that joins components.
     Euler {
         /// The number of vertices that faces use.
         vertices: usize,
@@ -44,7 +44,7 @@ pub enum Fault {
         /// The number of faces.
         faces: usize,
     },
-    /// A face or polygon has zero area.
+    /// A face has zero area, or the area of a polygon is zero or negative, so that it is clockwise.
     NoArea {
         /// The index of the face; zero for a polygon.
         face: usize,
@@ -161,8 +161,8 @@ pub fn volume(vertices: &[[f64; 3]], faces: &[Vec<usize>]) -> f64 {
     faces.iter().map(cone).sum::<f64>() / 6.0
 }
 
-/// Checks that a closed counter-clockwise polygon has at least three distinct corners and encloses
-/// an area.
+/// Checks that a closed polygon has at least three distinct corners and a positive area, so that it
+/// is counter-clockwise.
 ///
 /// # Errors
 /// The [`Fault`], with face 0.

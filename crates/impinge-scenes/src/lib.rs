@@ -136,7 +136,7 @@ impl<const D: usize> Scene<D> {
     }
 }
 
-/// Rounds a value to `f32`, as worlds of both scalars get it.
+/// Rounds a value to `f32`, so that worlds of both scalars get equal numbers.
 #[expect(clippy::cast_possible_truncation, reason = "rounds to nearest, as documented")]
 fn rounded(value: f64) -> f64 {
     f64::from(value as f32)

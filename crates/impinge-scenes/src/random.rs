@@ -64,8 +64,8 @@ impl Random {
 /// Returns the `D`-th root of `x ≥ 0`.
 ///
 /// Newton's iteration from above decreases monotonically. While far from the root, each step
-/// divides the error by at least `D / (D − 1)`, so that counts of objects never reach the limit of
-/// iterations.
+/// divides the error by at least `D / (D − 1)`, so that 200 iterations suffice for any count of
+/// objects.
 pub(crate) fn root<const D: usize>(x: f64) -> f64 {
     let degree = D as f64;
     let mut guess = if x > 1.0 { x } else { 1.0 };

@@ -1,4 +1,4 @@
-//! Counts what the doc comments of the scenes claim.
+//! Checks by counting what the doc comments of the scenes claim.
 
 use impinge_scenes::{
     Placement, Scene, SceneQuery, SceneShape, SolidKind, aligned_pile, asteroids, crowd,
@@ -46,7 +46,8 @@ fn holds<const D: usize>(scene: &Scene<D>, object: usize, step: u32, world: &[f6
     (0..D).all(|i| point[i].abs() <= half_extents[i])
 }
 
-/// Each box contains the points halfway to its neighbours on the grid, so that it touches them all.
+/// Checks that each box contains the points halfway to its neighbours on the grid, so that it
+/// touches all of them.
 fn check_pile<const D: usize>(count: usize, expected_pairs: usize) {
     let scene: Scene<D> = pile(count);
     assert_eq!(scene.objects.len(), count, "size");
@@ -274,8 +275,8 @@ fn both_grounds_are_one() {
     );
 }
 
-/// Returns two averages over the box vehicles: the number of ground vertices within their lower
-/// third, and of those below or above their boxes.
+/// Returns two averages over the box vehicles: the number of terrain vertices within the lower
+/// third of the box, and the number of those below, within or above the box.
 fn vertices_under_boxes<const D: usize>(scene: &Scene<D>, step: u32) -> [f64; 2] {
     let (SceneShape::TriMesh { vertices, .. } | SceneShape::Polyline { vertices }) =
         &scene.objects[0].shape

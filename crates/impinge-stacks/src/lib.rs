@@ -3,8 +3,8 @@
 //! [`Solver`] is a minimal rigid-body solver for use with a collision library. [`stacks2`] and
 //! [`stacks3`] are scenes as plain numbers, [`pairs2`] and [`pairs3`] are pairs to be shaken.
 //! [`play`] and [`shake`] measure whether the solids rest, and whether contacts keep their ids and
-//! positions. Contacts come from a [`ContactSource`]: [`Impinge`] is that of this library; others
-//! can be implemented.
+//! positions. Contacts come from a [`ContactSource`]: [`Impinge`] implements it with this library,
+//! and other libraries can be connected by further implementations.
 
 #![forbid(unsafe_code)]
 #![expect(clippy::disallowed_types, reason = "maps are looked up by id here, and never walked")]

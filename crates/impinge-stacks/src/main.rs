@@ -3,13 +3,13 @@
 //! ```text
 //! cargo run --release -p impinge-stacks --no-default-features -- [WORD...] [OPTION...]
 //!
-//!   WORD          only scenes and pairs whose name contains a word; "table1" and "table2" choose a table
-//!   --points N    manifolds of at most N points instead of the default
-//!   --reuse X     pairs keep their contacts up to a way X
-//!   --by-place    the solver finds impulses by the nearest old point, not by id
-//!   --one-way     the solver takes contacts in the same order in all iterations
-//!   --steps N     steps of a scene, 600 if not said
-//!   --f64         in f64 (not with --no-default-features)
+//!   WORD          run only scenes and pairs whose name contains WORD; "table1", "table2": a table
+//!   --points N    keep at most N points per manifold instead of the default
+//!   --reuse X     reuse contacts of pairs within the tolerance X
+//!   --by-place    find old impulses by the nearest old point, not by contact id
+//!   --one-way     take contacts in the same order in all iterations
+//!   --steps N     simulate N steps per scene instead of 600
+//!   --f64         compute in f64 (not with --no-default-features)
 //! ```
 
 #![forbid(unsafe_code)]

@@ -136,8 +136,9 @@ fn of_space(shape: &SceneShape<3>) -> Mass<3> {
     }
 }
 
-/// Sums the signed tetrahedra from the origin to each triangle of each face, with the covariance of each in closed
-/// form: Jonathan Blow and Atman Binstock, "How to find the inertia tensor of a 3D solid body" (2004).
+/// Sums the signed tetrahedra from the origin to each triangle of each face, with the covariance of
+/// each in closed form: Jonathan Blow and Atman Binstock, "How to find the inertia tensor of a 3D
+/// solid body" (2004).
 fn hull(points: &[[f64; 3]]) -> Mass<3> {
     let hull = space::convex_hull(&rounded(points)).expect("the points span space");
     let (mut volume, mut first) = (0.0, Vector::<f64, 3>::zeros());
@@ -175,7 +176,7 @@ fn steiner(at: &Vector<f64, 3>) -> Matrix<f64, 3> {
     Matrix::<f64, 3>::identity() * at.dot(at) - at * at.transpose()
 }
 
-/// The scalar with which the library is always compiled.
+/// Rounds points to `f32`, the scalar with which the library is always compiled.
 #[expect(clippy::cast_possible_truncation, reason = "rounds to nearest")]
 fn rounded<const D: usize>(points: &[[f64; D]]) -> Vec<Point<f32, D>> {
     points.iter().map(|point| Point::from(point.map(|x| x as f32))).collect()

@@ -69,7 +69,7 @@ pub struct Solver<N: Turn<D>, const D: usize, K> {
     /// The number of iterations over all contacts in a step.
     pub iterations: usize,
     /// Whether every other iteration takes the contacts in reverse order. With one order the
-    /// remaining errors all have the same direction, and a tall stack leans.
+    /// remaining errors all have the same direction, and a tall stack tilts.
     pub alternates: bool,
     /// The fraction of the penetration beyond the slop that is corrected in a step.
     pub baumgarte: N,
@@ -80,8 +80,8 @@ pub struct Solver<N: Turn<D>, const D: usize, K> {
 }
 
 impl<N: Turn<D>, const D: usize, K: Copy + Eq + Hash> Solver<N, D, K> {
-    /// The defaults: 60 steps per second, 10 iterations, gravity 10 along the negative second axis,
-    /// friction 0.5.
+    /// Creates a solver with the defaults: 60 steps per second, 10 iterations, gravity 10 along the
+    /// negative second axis, friction 0.5.
     #[must_use]
     pub fn new(memory: Memory<N, D, K>) -> Self {
         let mut gravity = Vector::<N, D>::zeros();
@@ -263,7 +263,7 @@ mod tests {
     use impinge_scenes::{Placement, SceneShape};
 
     /// Returns contacts computed without a library: the lowest corners of boxes (in 2D squares)
-    /// above the half-space below zero, which is the first body.
+    /// above the half-space `y <= 0`, which is the first body.
     struct Corners;
 
     impl<N: Stage<D>, const D: usize> ContactSource<N, D> for Corners {
@@ -303,8 +303,8 @@ mod tests {
         assert_eq!((outcome.counts.new, outcome.counts.points()), (0, (1 << (D - 1)) as f64));
     }
 
-    /// Gravity is tilted: a box slides if the slope exceeds the friction, with the remaining
-    /// acceleration.
+    /// Tilts gravity by `slope`, and asserts that a box slides only if the slope exceeds the
+    /// friction coefficient, with the acceleration that remains after friction.
     fn slides<N: Stage<D>, const D: usize>() {
         for slope in [0.4, 0.6] {
             let mut bodies: Vec<Body<N, D>> = bodies_of(&boxes());
@@ -320,8 +320,8 @@ mod tests {
         }
     }
 
-    /// The total momentum, and the angular momentum about the origin, of two free bodies that
-    /// collide are conserved.
+    /// Asserts that a collision of two free bodies conserves the total momentum and the total
+    /// angular momentum about the origin.
     fn keeps_momentum<N: Stage<D>, const D: usize>() {
         let mut bodies: Vec<Body<N, D>> = bodies_of(&boxes::<D>());
         bodies[0] = bodies[1];

@@ -59,7 +59,7 @@ impl<N: Stage<D>, const D: usize> Impinge<N, D> {
     }
 }
 
-/// Fixed objects have no contacts with each other.
+/// Returns the collision groups of an object: fixed objects do not interact with each other.
 fn groups(is_fixed: bool) -> CollisionGroups {
     let groups = CollisionGroups::new();
     if is_fixed {

@@ -55,7 +55,7 @@ pub enum Solid<const D: usize> {
 pub struct Mass<const D: usize> {
     /// The volume; in 2D the area.
     pub mass: f64,
-    /// The center of mass.
+    /// The centre of mass.
     pub center: [f64; D],
     /// The inertia tensor about the centre of mass; 2D uses only the last entry of the diagonal.
     pub inertia: [[f64; 3]; 3],

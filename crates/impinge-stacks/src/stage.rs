@@ -21,7 +21,7 @@ pub trait Stage<const D: usize>: Turn<D> {
     fn mass_of(solid: &Solid<D>) -> Mass<D>;
     /// Returns the inverse of an inertia tensor.
     fn inverse_inertia(inertia: &[[f64; 3]; 3]) -> Self::Inertia;
-    /// The inverse inertia of a fixed body.
+    /// Returns the inverse inertia of a fixed body, zero.
     fn no_inertia() -> Self::Inertia;
 }
 

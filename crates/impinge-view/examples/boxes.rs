@@ -1,5 +1,5 @@
-//! A stair of boxes, as a PNG. The argument is the path of the file; without it a temporary file is
-//! written.
+//! Draws a stair of boxes and writes it as a PNG. The argument is the path of the file; without it
+//! a temporary file is written.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -9,8 +9,8 @@ use impinge_view::{Camera, PngPicture};
 use std::path::PathBuf;
 use std::{env, fs, io};
 
-/// The faces of a box; its corner `i` has the upper end of axis `k` if bit `k` of `i` is set.
-/// Counter-clockwise as seen from outside.
+/// The faces of a box, counter-clockwise when seen from outside. Corner `i` is at the upper end of
+/// axis `k` if bit `k` of `i` is set.
 const FACES: [[u32; 4]; 6] =
     [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
 

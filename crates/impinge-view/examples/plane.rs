@@ -1,5 +1,5 @@
-//! The contact of a ball with a floor in 2D, as an SVG. The argument is the path of the file; without it a
-//! temporary file is written.
+//! Draws the contact of a ball with a floor in 2D and writes it as an SVG. The argument is the path
+//! of the file; without it a temporary file is written.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -9,7 +9,7 @@ use impinge_view::SvgPicture;
 use std::path::PathBuf;
 use std::{env, fs, io};
 
-/// Returns a convex polygon, with its sides as lines.
+/// Returns the mesh of a convex polygon, with its sides as lines.
 fn polygon(id: u64, vertices: Vec<Point<f64>>) -> ShapeMesh<f64, 2> {
     let count = u32::try_from(vertices.len()).expect("a few corners");
     ShapeMesh {
@@ -20,8 +20,8 @@ fn polygon(id: u64, vertices: Vec<Point<f64>>) -> ShapeMesh<f64, 2> {
     }
 }
 
-/// Returns the corners of a regular polygon with 3 * 2^`doublings` corners on a circle: the direction at
-/// half the angle between two corners is that of their sum.
+/// Returns the corners of a regular polygon with 3 * 2^`doublings` corners on a circle. Each
+/// doubling adds the normalized sum of two adjacent corners, which is halfway between them.
 fn circle(radius: f64, doublings: u32) -> Vec<Point<f64>> {
     let root = 0.75_f64.sqrt();
     let mut corners =

@@ -3,10 +3,10 @@
 use impinge::dim3::math::{Point, Real, Vector};
 use impinge::math::unit;
 
-/// A direction of view and a projection; the position follows from the framed content.
+/// A direction of view and a projection. The position follows from the framed content.
 ///
-/// World frame. A 2D scene has `z = 0`; [`Camera::plane`] shows it with x to the right and y
-/// upwards.
+/// All vectors are in the world frame. A 2D scene has `z = 0`; [`Camera::plane`] shows it with x to
+/// the right and y upwards.
 ///
 /// ```
 /// use impinge::dim3::math::{Point, Vector};
@@ -37,12 +37,13 @@ impl Camera {
         Self::look_along(&-Vector::z(), &Vector::y())
     }
 
-    /// Returns an orthographic camera that looks along a direction; `up` points to the upper side of
-    /// the picture.
+    /// Returns an orthographic camera that looks along `direction`; `up` points to the upper side
+    /// of the picture.
     ///
-    /// Neither needs to be a unit vector, nor `up` perpendicular to the direction. A direction that
-    /// is zero or not finite becomes `-z`. An `up` that is zero, not finite, or parallel to the
-    /// direction is replaced by the axis that is the most perpendicular to the direction.
+    /// The vectors need not be unit vectors, nor perpendicular to each other. A direction that is
+    /// zero or not finite becomes `-z`. An `up` that is zero, not finite, or parallel to the
+    /// direction is replaced by a vector derived from the axis that is the most perpendicular to
+    /// the direction.
     #[must_use]
     pub fn look_along(direction: &Vector<f64>, up: &Vector<f64>) -> Self {
         let back = -unit_of(direction).unwrap_or_else(|| -Vector::z());
@@ -54,8 +55,8 @@ impl Camera {
         Self { axes: [right, back.cross(&right), back], tangent: 0.0, framed: None }
     }
 
-    /// Returns a perspective camera with the same direction. The angle of view, in radians, covers
-    /// the whole scene, and is clamped to 0.01 to 2.5; NaN counts as the minimum.
+    /// Returns a perspective camera with the same direction. `view_angle` is the angle, in radians,
+    /// that covers the whole scene. It is clamped to 0.01 to 2.5; NaN counts as the minimum.
     #[must_use]
     pub fn perspective(self, view_angle: f64) -> Self {
         let [least, largest] = ANGLES;
@@ -67,21 +68,21 @@ impl Camera {
 
     /// Frames a box, given by two opposite corners, instead of all drawn content.
     ///
-    /// Content outside is clipped by the sides of the picture. If a corner is not finite, the
-    /// picture frames all content.
+    /// Content outside the box is clipped by the sides of the picture. If a corner is not finite,
+    /// the picture frames all content.
     #[must_use]
     pub fn fit(self, bounds: [Point<f64>; 2]) -> Self {
         let is_finite = bounds.iter().all(|corner| corner.iter().all(|x| x.is_finite()));
         Self { framed: is_finite.then_some(bounds), ..self }
     }
 
-    /// Returns the unit vector to the right side of the picture.
+    /// Returns the unit vector that points to the right in the picture.
     #[must_use]
     pub fn right(&self) -> Vector<f64> {
         self.axes[0]
     }
 
-    /// Returns the unit vector to the upper side of the picture.
+    /// Returns the unit vector that points upwards in the picture.
     #[must_use]
     pub fn up(&self) -> Vector<f64> {
         self.axes[1]
@@ -108,13 +109,13 @@ impl Camera {
     }
 }
 
-/// Returns the unit vector of a vector of any length; `None` for zero, infinite and NaN.
+/// Normalizes a vector; `None` if it is zero, infinite or NaN. Very short and very long vectors are
+/// scaled first.
 fn unit_of(v: &Vector<f64>) -> Option<Vector<f64>> {
     unit(v).map(|(direction, _)| direction)
 }
 
-/// Returns the unit vector of the cross product of two unit vectors; `None` if these are parallel up
-/// to rounding.
+/// Normalizes the cross product of two unit vectors; `None` if they are parallel up to rounding.
 fn unit_of_sine(v: &Vector<f64>) -> Option<Vector<f64>> {
     (v.norm_squared() > 1e-20).then(|| v / v.norm())
 }

@@ -7,17 +7,17 @@ use crate::image::Image;
 pub struct Difference {
     /// The width and height of each image.
     pub sizes: [[u32; 2]; 2],
-    /// The number of pixels that differ by more than the tolerance, including those that only one image
-    /// has.
+    /// The number of pixels that differ by more than the tolerance. Pixels that only one image has
+    /// are included.
     pub pixels: u64,
-    /// The largest difference of a channel among the common pixels.
+    /// The largest difference of a channel, among the pixels that both images have.
     pub largest: u8,
     /// The first image, faded, with the differing pixels in magenta.
     pub picture: Image,
 }
 
 impl Difference {
-    /// Whether no pixel differs by more than the tolerance.
+    /// Returns `true` if no pixel differs by more than the tolerance.
     #[must_use]
     pub fn is_none(&self) -> bool {
         self.pixels == 0

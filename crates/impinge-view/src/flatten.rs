@@ -7,14 +7,15 @@ use crate::shade::edge_tone;
 use impinge::debug_render::{Color, Drawn};
 use impinge::dim3::math::{Point, Vector};
 
-/// The lines and faces of a drawing.
+/// The lines and faces of a drawing, in the world frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Flat {
     pub(crate) strokes: Vec<Stroke>,
     pub(crate) faces: Vec<Face>,
 }
 
-/// A triangle with normals in the camera's frame, on the visible side.
+/// A triangle in the world frame, with normals in the camera's frame that point to the visible
+/// side.
 #[derive(Clone, Debug)]
 pub(crate) struct Face {
     pub(crate) corners: [Point<f64>; 3],
@@ -26,8 +27,8 @@ pub(crate) struct Face {
     pub(crate) is_alone: bool,
 }
 
-/// Returns the lines and faces of a recording, including the edges of meshes in a darker tone, and
-/// the silhouettes of their surfaces as seen through a lens.
+/// Returns the lines and faces of a recording. They include the edges of meshes in a darker tone,
+/// and the silhouettes of their surfaces as seen through the lens.
 pub(crate) fn flatten(recording: &Recording, lens: &Lens) -> Flat {
     let mut flat = Flat::default();
     for placed in &recording.placed {

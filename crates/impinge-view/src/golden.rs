@@ -1,4 +1,4 @@
-//! Comparison of images with golden images.
+//! Compares images and texts with golden files.
 
 use crate::compare::compare;
 use crate::image::{Image, ImageError};
@@ -6,9 +6,11 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::{env, fmt, fs, io};
 
-/// A folder of golden images, and a folder for the image and the difference of a failed test.
+/// A folder of golden images, and a folder for the results of failed tests: the image and its
+/// difference.
 ///
-/// With the environment variable `IMPINGE_BLESS=1` a check writes the golden image instead of reading it.
+/// With the environment variable `IMPINGE_BLESS=1` a check writes the golden image instead of
+/// reading it.
 ///
 /// ```
 /// use impinge_view::{Golden, GoldenError, Image};
@@ -28,8 +30,9 @@ pub struct Golden {
 }
 
 impl Golden {
-    /// Uses the golden images in a folder. Failures are written to `impinge-view` in the folder
-    /// `CARGO_TARGET_DIR`, or in the `target` of the workspace of the current folder.
+    /// Uses the golden images in a folder. Results of failed checks are written to the folder
+    /// `impinge-view` in `CARGO_TARGET_DIR`, or in the folder `target` of the workspace that
+    /// contains the current folder.
     #[must_use]
     pub fn new(folder: impl Into<PathBuf>) -> Self {
         let bless = env::var_os("IMPINGE_BLESS").is_some_and(|value| value == "1");
@@ -37,7 +40,7 @@ impl Golden {
         Self { folder: folder.into(), failures, bless, tolerance: 0, allowed: 0 }
     }
 
-    /// Writes failures to another folder.
+    /// Sets the folder to which results of failed checks are written.
     #[must_use]
     pub fn with_failures(self, failures: impl Into<PathBuf>) -> Self {
         Self { failures: failures.into(), ..self }
@@ -49,19 +52,20 @@ impl Golden {
         Self { bless, ..self }
     }
 
-    /// Allows each channel to differ by `tolerance`, and `allowed` pixels by more. Without this, the
-    /// images must be equal.
+    /// Allows each channel to differ by `tolerance`, and `allowed` pixels to differ by more. By
+    /// default the images must be equal.
     #[must_use]
     pub fn with_bound(self, tolerance: u8, allowed: u64) -> Self {
         Self { tolerance, allowed, ..self }
     }
 
-    /// Compares an image with the golden one, `NAME.png`.
+    /// Compares an image with the golden image `NAME.png`.
     ///
     /// # Errors
     ///
-    /// If there is no golden image, it cannot be read, or the image differs by more than the bound. Then
-    /// `NAME.png` and, after a comparison, `NAME.difference.png` are written to the folder of failures.
+    /// If there is no golden image, it cannot be read, or the image differs by more than the bound.
+    /// Then `NAME.png` and, after a comparison, `NAME.difference.png` are written to the folder of
+    /// failures.
     pub fn check(&self, name: &str, image: &Image) -> Result<(), GoldenError> {
         let path = self.folder.join(format!("{name}.png"));
         if self.bless {
@@ -84,12 +88,13 @@ impl Golden {
         Err(GoldenError::Differs { pixels, largest, image: found })
     }
 
-    /// Compares a text with the golden file of this name, for instance a picture `NAME.svg`. The bound
-    /// applies to images only.
+    /// Compares a text with the golden file of this name, for instance a picture `NAME.svg`. The
+    /// texts must be equal; the bound of [`Self::with_bound`] applies to images only.
     ///
     /// # Errors
     ///
-    /// If there is no golden text, or it differs. The text is then written to the folder of failures.
+    /// If there is no golden text, or it differs. The text is then written to the folder of
+    /// failures.
     pub fn check_text(&self, name: &str, text: &str) -> Result<(), GoldenError> {
         let path = self.folder.join(name);
         if self.bless {
@@ -136,13 +141,13 @@ pub enum GoldenError {
         /// The path of the written image.
         image: PathBuf,
     },
-    /// More pixels differ than allowed, or the size does.
+    /// More pixels differ than allowed, or the sizes differ.
     Differs {
         /// The number of differing pixels.
         pixels: u64,
         /// The largest difference of a channel.
         largest: u8,
-        /// The path of the written image; the difference is beside it.
+        /// The path of the written image. The difference is in the same folder.
         image: PathBuf,
     },
     /// A text differs.

@@ -1,4 +1,4 @@
-//! Visibility of lines: the parts that surfaces hide.
+//! Visibility of lines: finds the parts that surfaces hide.
 
 use crate::flatten::{Face, Flat};
 use crate::lens::{OnScreen, View};
@@ -11,14 +11,14 @@ pub(crate) struct Run {
     pub(crate) ends: [OnScreen; 2],
 }
 
-/// The largest number of samples along a line.
+/// The maximum number of samples along a line.
 const MAX_SAMPLES: usize = 4096;
-/// Shorter runs, in samples, are merged with the previous run.
+/// The minimum number of samples of a run. Shorter runs are merged with the previous run.
 const MIN_RUN: usize = 3;
-/// Samples per pixel.
+/// The number of samples along a line per pixel of length.
 const FINENESS: f64 = 2.0;
 
-/// Returns the depths of all opaque faces.
+/// Rasterizes all opaque faces; only the depths of the result are used.
 pub(crate) fn depths(flat: &Flat, view: &View, size: [usize; 2]) -> Raster {
     let mut raster = Raster::new(size, [0; 3]);
     let is_opaque = |face: &&Face| face.color.alpha == u8::MAX;
@@ -35,7 +35,8 @@ pub(crate) fn depths(flat: &Flat, view: &View, size: [usize; 2]) -> Raster {
     raster
 }
 
-/// Returns the runs of a line in order. Costs a depth look-up for each half pixel.
+/// Returns the runs of a line, from its start to its end. Costs nine depth look-ups for each half
+/// pixel of length.
 pub(crate) fn runs(ends: &[OnScreen; 2], depths: &Raster) -> Vec<Run> {
     let [start, end] = *ends;
     let (dx, dy) = (end.x - start.x, end.y - start.y);
@@ -56,9 +57,9 @@ pub(crate) fn runs(ends: &[OnScreen; 2], depths: &Raster) -> Vec<Run> {
     turns.iter().zip(ends).map(run).collect()
 }
 
-/// Whether the surfaces at the pixel of a point and at its eight neighbours are all nearer than the
-/// point. Beside a silhouette the surface is steep, so that the pixel itself is often nearer. A
-/// neighbour beyond the silhouette is not.
+/// Returns `true` if the surfaces at the pixel of a point and at its eight neighbours are all
+/// nearer than the point. Near a silhouette the surface is steep, so that the pixel itself is often
+/// nearer, but a neighbour beyond the silhouette is not.
 fn is_hidden(at: &OnScreen, depths: &Raster) -> bool {
     const STEPS: [f64; 3] = [-1.0, 0.0, 1.0];
     let hides = |dx: f64, dy: f64| {
@@ -67,8 +68,8 @@ fn is_hidden(at: &OnScreen, depths: &Raster) -> bool {
     STEPS.iter().all(|dy| STEPS.iter().all(|dx| hides(*dx, *dy)))
 }
 
-/// Returns, for each run, the index of its first sample and whether the run is hidden. There must
-/// be at least one sample.
+/// Returns, for each run, the index of its first sample and whether the run is hidden. `hidden` has
+/// at least one sample.
 fn turns(hidden: &[bool]) -> Vec<(usize, bool)> {
     let mut found: Vec<(usize, bool)> = Vec::new();
     let mut index = 0;

@@ -1,4 +1,4 @@
-//! Images in memory, and as PNG.
+//! Images in memory, and their conversion from and to PNG.
 
 use crate::palette::{MAX_COLORS, Palette};
 use crate::raster::whole;
@@ -33,7 +33,7 @@ impl Image {
         Self { size, pixels: vec![pixel; count] }
     }
 
-    /// Returns an opaque image; `size` must match the number of pixels.
+    /// Returns an opaque image; the number of pixels must be the product of `size`.
     pub(crate) fn opaque(size: [u32; 2], pixels: &[[u8; 3]]) -> Self {
         let pixels = pixels.iter().map(|[red, green, blue]| [*red, *green, *blue, 255]);
         Self { size, pixels: pixels.collect() }
@@ -45,7 +45,7 @@ impl Image {
         self.size
     }
 
-    /// Returns all pixels, row by row from the top.
+    /// Returns all pixels, row by row from the top, each row from the left.
     #[must_use]
     pub fn pixels(&self) -> &[[u8; 4]] {
         &self.pixels
@@ -62,12 +62,13 @@ impl Image {
         self.pixels[y as usize * self.size[0] as usize + x as usize]
     }
 
-    /// Changes a pixel, which must exist.
+    /// Changes a pixel, which must be inside the image.
     pub(crate) fn set_pixel(&mut self, x: u32, y: u32, pixel: [u8; 4]) {
         self.pixels[y as usize * self.size[0] as usize + x as usize] = pixel;
     }
 
-    /// Changes the colour of the pixel that contains a point, if there is one.
+    /// Changes the colour of the pixel that contains the point `at`. A point outside the image has
+    /// no effect.
     pub(crate) fn change(&mut self, at: [f64; 2], color: impl Fn([u8; 3]) -> [u8; 3]) {
         let is_inside = (0..2).all(|axis| at[axis] >= 0.0 && at[axis] < f64::from(self.size[axis]));
         if is_inside {
@@ -79,11 +80,12 @@ impl Image {
         }
     }
 
-    /// Returns the image reduced to at most `count` colours, which makes its file smaller; `count` is
-    /// clamped to 2 to 256.
+    /// Returns the image reduced to at most `count` colours, which makes its file smaller; `count`
+    /// is clamped to 2 to 256.
     ///
-    /// The colours are means of boxes that split the pixels in halves repeatedly (P. Heckbert, *Color
-    /// Image Quantization for Frame Buffer Display*, 1982). Opaque images stay opaque.
+    /// The colours are the means of boxes in colour space, which are split into halves repeatedly
+    /// (P. Heckbert, *Color Image Quantization for Frame Buffer Display*, 1982). Opaque images stay
+    /// opaque.
     ///
     /// ```
     /// use impinge::debug_render::{Color, DebugRender, Drawn};
@@ -106,7 +108,8 @@ impl Image {
         Self { size: self.size, pixels }
     }
 
-    /// Returns the bytes of a PNG file: with a palette, if there are at most 256 colours, all opaque.
+    /// Returns the bytes of a PNG file. It has a palette if the image has at most 256 colours, all
+    /// opaque.
     ///
     /// # Panics
     ///
@@ -127,7 +130,8 @@ impl Image {
         encoder.set_color(kind);
         encoder.set_depth(png::BitDepth::Eight);
         if palette.is_some() {
-            // Differences of indices are meaningless.
+            // The filters of PNG encode differences of neighbouring values, which are meaningless
+            // for palette indices.
             encoder.set_filter(png::Filter::NoFilter);
         }
         encoder.set_compression(png::Compression::High);
@@ -138,12 +142,12 @@ impl Image {
         bytes
     }
 
-    /// Reads a PNG file. Files with 16 bits per channel or a palette are converted, gray ones are an
-    /// error.
+    /// Reads a PNG file. Files with 16 bits per channel or with a palette are converted.
     ///
     /// # Errors
     ///
-    /// If the bytes are not a PNG, truncated, gray, or larger than 8192 pixels.
+    /// If the bytes are not a PNG, or are truncated. If the image is grayscale, or wider or higher
+    /// than 8192 pixels.
     pub fn from_png(bytes: &[u8]) -> Result<Self, ImageError> {
         let mut decoder = png::Decoder::new(Cursor::new(bytes));
         decoder.set_transformations(

@@ -12,25 +12,27 @@ pub(crate) struct KeptMesh {
     pub(crate) vertices: Vec<Point<f64>>,
     pub(crate) lines: Vec<[usize; 2]>,
     pub(crate) triangles: Vec<[usize; 3]>,
-    /// A normal for each corner of each triangle: equal at smooth edges, zero if degenerate.
+    /// The normal of each corner of each triangle. At smooth edges the normals of both triangles
+    /// are equal. A degenerate triangle has zero normals.
     pub(crate) normals: Vec<[Vector<f64>; 3]>,
     pub(crate) hinges: Vec<Hinge>,
     /// The number of lines and triangles with an invalid index or vertex.
     pub(crate) left_out: u64,
 }
 
-/// An edge of exactly two triangles.
+/// An edge that exactly two triangles share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Hinge {
     pub(crate) ends: [usize; 2],
     pub(crate) triangles: [usize; 2],
 }
 
-/// The smallest cosine of the angle between the normals of two faces with a smooth edge.
+/// The minimum cosine of the angle between the normals of two faces that share a smooth corner.
 const SMOOTH: f64 = 0.75;
 
 impl KeptMesh {
-    /// Keeps the finite part of a mesh. Costs `O(n log n)`.
+    /// Converts a mesh. Lines and triangles whose vertices are not finite or do not exist are
+    /// omitted and counted. Costs `O(n log n)`.
     pub(crate) fn new<N: Real, const D: usize>(mesh: &ShapeMesh<N, D>) -> Self {
         let found: Vec<_> = mesh.vertices.iter().map(embed).collect();
         let is_good = |index: &u32| matches!(found.get(*index as usize), Some(Some(_)));
@@ -48,10 +50,11 @@ impl KeptMesh {
         kept
     }
 
-    /// Returns the triangles with each vertex replaced by the first equal one.
+    /// Returns the triangles, with the index of each vertex replaced by that of the first vertex at
+    /// the same position.
     fn welded(&self) -> Vec<[usize; 3]> {
         let mut first = BTreeMap::new();
-        // The sum with zero is equal for both zeros.
+        // Adding zero turns -0 into +0, so that both zeros have the same bits.
         let bits =
             |vertex: &Point<f64>| [vertex.x, vertex.y, vertex.z].map(|x| (x + 0.0).to_bits());
         let vertices = self.vertices.iter().enumerate();
@@ -60,8 +63,8 @@ impl KeptMesh {
         self.triangles.iter().map(|corners| corners.map(|index| index_of[index])).collect()
     }
 
-    /// Returns for each corner the sum of the normals of the faces around it that are connected
-    /// smoothly.
+    /// Returns a unit normal for each corner: that of the area-weighted sum over the faces at this
+    /// corner whose normals differ little from that of its triangle.
     fn corner_normals(&self, welded: &[[usize; 3]]) -> Vec<[Vector<f64>; 3]> {
         let normals: Vec<_> = (0..self.triangles.len()).map(|index| self.normal(index)).collect();
         let units: Vec<_> = normals.iter().map(unit).collect();
@@ -87,7 +90,7 @@ impl KeptMesh {
     }
 }
 
-/// Returns the unit vector of a vector; zero if the vector is zero or too small.
+/// Normalizes a vector. Returns zero if its norm is zero.
 pub(crate) fn unit(v: &Vector<f64>) -> Vector<f64> {
     let norm = v.norm();
     if norm > 0.0 { v / norm } else { Vector::zeros() }
@@ -111,7 +114,8 @@ mod tests {
     use super::*;
     use impinge::dim3::math::Point as Point3;
 
-    /// Returns two triangles that share an edge along z, the second tilted up by a slope.
+    /// Returns two triangles that share an edge along z, and a third one with an invalid index. The
+    /// second triangle is tilted up by `slope`.
     fn roof(slope: f32) -> ShapeMesh<f32, 3> {
         let vertices = [[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [1.0, slope, 0.0]];
         ShapeMesh {

@@ -1,9 +1,9 @@
-//! Placement of texts beside their points.
+//! Places texts beside their points.
 
 use crate::lens::{View, larger};
 use crate::recording::{Label, Recording};
 
-/// The size of a character in pixels.
+/// The size of a character, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Letter {
     pub(crate) width: f64,
@@ -20,21 +20,23 @@ pub(crate) struct PlacedLabel<'a> {
     pub(crate) at: [f64; 2],
 }
 
-/// A rectangle from its upper left to its lower right corner.
+/// A rectangle, by its upper left and its lower right corner. Pixels, y downwards.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
     low: [f64; 2],
     high: [f64; 2],
 }
 
-/// The distance from a point to the nearest side of its text.
+/// The horizontal and the vertical distance from a point to its text, in pixels.
 const GAP: f64 = 5.0;
 
-/// Returns the texts whose points are on a page of a size in pixels, in drawing order.
+/// Places the texts of a recording on a page whose size is in pixels. Texts are in drawing order;
+/// those whose points are not on the page are omitted.
 ///
-/// A text is placed to the upper right of its point. If it would leave the page or overlap an earlier
-/// text there, it is placed to the lower right, upper left or lower left, and if none of these is free,
-/// at the upper right shifted onto the page. Costs O(n^2) comparisons for n texts.
+/// A text is placed to the upper right of its point. If it would leave the page or overlap an
+/// earlier text there, it is placed to the lower right, upper left or lower left. If none of these
+/// is free, it is placed at the upper right, shifted onto the page. Costs O(n^2) comparisons for n
+/// texts.
 pub(crate) fn placed_labels<'a>(
     recording: &'a Recording,
     view: &View,
@@ -57,7 +59,8 @@ pub(crate) fn placed_labels<'a>(
     placed
 }
 
-/// Returns the first frame beside a point that is inside the page and overlaps no other.
+/// Returns the first frame beside a point that is inside the page and overlaps no earlier frame. If
+/// there is none, returns the frame to the upper right, shifted onto the page.
 fn free_frame(point: [f64; 2], size: [f64; 2], page: [f64; 2], taken: &[Frame]) -> Frame {
     let [right, above] = [point[0] + GAP, point[1] - GAP - size[1]];
     let [left, below] = [point[0] - GAP - size[0], point[1] + GAP];

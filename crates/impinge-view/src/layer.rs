@@ -5,13 +5,13 @@ use impinge::debug_render::Drawn;
 /// The name and style of a layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Layer {
-    /// The class of its group in SVG.
+    /// The class of the group of the layer in SVG.
     pub(crate) class: &'static str,
-    /// Its name in legends.
+    /// The name of the layer in legends.
     pub(crate) name: &'static str,
-    /// The width of its lines in pixels.
+    /// The width of lines, in pixels.
     pub(crate) width: f64,
-    /// Whether it is drawn, fainter, through surfaces that hide it.
+    /// Whether the layer is also drawn, fainter, where surfaces hide it.
     pub(crate) shows_through: bool,
 }
 

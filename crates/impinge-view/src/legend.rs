@@ -1,9 +1,10 @@
-//! Positions of the entries of a legend.
+//! Computes the positions of the entries of a legend.
 
 use crate::layer::Layer;
 use impinge::debug_render::Color;
 
-/// A layer, and the start of the line of its colour; its name begins [`NAME_AT`] further.
+/// A layer, its colour, and the left end of the line that shows the colour. The name begins
+/// [`NAME_AT`] pixels to the right of this end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LegendEntry {
     pub(crate) layer: Layer,
@@ -11,19 +12,19 @@ pub(crate) struct LegendEntry {
     pub(crate) at: [f64; 2],
 }
 
-/// The length of the line of a colour.
+/// The length of the line that shows a colour, in pixels.
 pub(crate) const SWATCH: f64 = 16.0;
-/// The distance from the start of the line to the name.
+/// The distance from the left end of the line to the name, in pixels.
 pub(crate) const NAME_AT: f64 = 22.0;
-/// The height of a row.
+/// The height of a row, in pixels.
 const ROW: f64 = 20.0;
-/// The margin of a row.
+/// The distance from the left side of the picture to the first entry of a row, in pixels.
 const MARGIN: f64 = 16.0;
-/// The distance from the end of a name to the next line.
+/// The distance from the end of a name to the next entry, in pixels.
 const GAP: f64 = 14.0;
 
-/// Returns an entry for each layer, in as many rows as the width in pixels requires, and the height of
-/// all rows. `letter` is the width of a character.
+/// Returns an entry for each layer, and the height of all rows in pixels. The number of rows
+/// depends on `width`, in pixels. `letter` is the width of a character.
 pub(crate) fn legend(
     layers: &[(Layer, Color)],
     width: f64,
@@ -53,7 +54,7 @@ mod tests {
         let layers =
             [Drawn::Object, Drawn::Query, Drawn::QueryHit].map(|what| (Layer::of(what), color));
         let (wide, height) = legend(&layers, 500.0, 7.0);
-        // "objects" and "queries" have seven letters each.
+        // The names "objects" and "queries" have seven letters each.
         let x: Vec<_> = wide.iter().map(|entry| entry.at[0]).collect();
         assert_eq!(x, [16.0, 101.0, 186.0], "a line, a name and a gap each");
         assert_eq!(height, 30.0, "one row");

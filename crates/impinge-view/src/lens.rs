@@ -1,32 +1,32 @@
-//! Projection from points of the world to points of the picture.
+//! Projects points of the world to points of the picture.
 
 use crate::camera::Camera;
 use impinge::dim3::math::{Point, Vector};
 
-/// A camera with a position at which the angle of view covers the framed content.
+/// A camera, placed so that its angle of view covers the framed content.
 #[derive(Clone, Debug)]
 pub(crate) struct Lens {
     axes: [Vector<f64>; 3],
     is_perspective: bool,
     /// The position of the viewer in the camera's frame; zero for an orthographic camera.
     eye: Vector<f64>,
-    /// The distance of the near plane from the viewer; nearer points are not drawn.
+    /// The distance of the near plane from the viewer. Points nearer than this plane are not drawn.
     near: f64,
     low: [f64; 2],
     high: [f64; 2],
 }
 
-/// A [`Lens`] and the part of the picture that its framed extents fill.
+/// A [`Lens`] and the part of the picture that the framed content fills.
 #[derive(Clone, Debug)]
 pub(crate) struct View {
     lens: Lens,
-    /// Pixels per unit length in the image plane.
+    /// The number of pixels per unit of length in the image plane.
     scale: f64,
     center: [f64; 2],
 }
 
-/// A point of the picture in pixels, y downwards; depths grow away from the viewer and are linear in
-/// x and y, also in perspective.
+/// A point of the picture in pixels, y downwards. The depth grows away from the viewer. Along a
+/// line it is linear in x and y, also in perspective.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct OnScreen {
     pub(crate) x: f64,
@@ -42,8 +42,8 @@ pub(crate) struct Window {
 }
 
 impl Lens {
-    /// Returns the lens of a camera that frames points; without points, a square of side 1 at the
-    /// origin.
+    /// Returns the lens of a camera that frames `points`, or the box of [`Camera::fit`] if one is
+    /// set. Without points it frames the origin.
     pub(crate) fn new(camera: &Camera, points: &[Point<f64>]) -> Self {
         let framed = camera.framed();
         let points = framed.as_deref().unwrap_or(points);
@@ -65,10 +65,11 @@ impl Lens {
         lens
     }
 
-    /// Moves the eye to the smallest distance at which the points are inside the angle of view.
+    /// Moves the eye to the smallest distance at which all points are inside the angle of view.
     ///
-    /// A point is inside on the right if `x - ex <= t (ez - z)`, so that `ex + t ez` must be at
-    /// least the maximum of `x + t z`; the other sides are analogous.
+    /// With the tangent `t` and the eye `e`, a point is inside the right side if `x - e.x <= t (e.z
+    /// - z)`. So `e.x + t e.z` must be at least the maximum of `x + t z`. The other sides are
+    /// analogous. The eye stays in front of all points.
     fn place_eye(&mut self, tangent: f64, points: &[Point<f64>]) {
         let mut sides = [f64::NEG_INFINITY; 4];
         let mut z = [f64::INFINITY, f64::NEG_INFINITY];
@@ -102,7 +103,8 @@ impl Lens {
         [self.high[0] - self.low[0], self.high[1] - self.low[1]]
     }
 
-    /// Returns the view in which the framed extents fill a window, with their aspect ratio.
+    /// Returns the view in which the framed content fills the window as far as its aspect ratio
+    /// allows, in the centre of the window.
     pub(crate) fn within(self, window: &Window) -> View {
         let [width, height] = self.size();
         let fit = |extent: f64, pixels: f64| {
@@ -114,18 +116,18 @@ impl Lens {
         View { lens: self, scale: if scale.is_finite() { scale } else { least }, center }
     }
 
-    /// Returns a point in the camera's frame: x to the right, y up, z towards the viewer.
+    /// Transforms a point to the camera's frame: x to the right, y up, z towards the viewer.
     fn local(&self, point: &Point<f64>) -> Vector<f64> {
         self.turned(&point.coords)
     }
 
-    /// Returns a direction in the camera's frame.
+    /// Rotates a direction to the camera's frame.
     pub(crate) fn turned(&self, v: &Vector<f64>) -> Vector<f64> {
         Vector::new(self.axes[0].dot(v), self.axes[1].dot(v), self.axes[2].dot(v))
     }
 
-    /// Returns the distance of a point from the viewer along the direction of view; for an
-    /// orthographic camera, from the origin of the camera's frame.
+    /// Returns the distance of a point from the viewer along the direction of view. For an
+    /// orthographic camera it is measured from the origin of the camera's frame.
     fn distance(&self, local: &Vector<f64>) -> f64 {
         self.eye.z - local.z
     }
@@ -140,7 +142,8 @@ impl Lens {
         }
     }
 
-    /// Whether the viewer is on the front side of the plane through `on` with a normal.
+    /// Returns `true` if the viewer is on the front side of the plane through `on` with this
+    /// normal.
     pub(crate) fn faces(&self, normal: &Vector<f64>, on: &Point<f64>) -> bool {
         let normal = self.turned(normal);
         if self.is_perspective {
@@ -152,7 +155,7 @@ impl Lens {
 }
 
 impl View {
-    /// Returns the number of pixels of a length at a point.
+    /// Converts a length at the point `at` to pixels.
     pub(crate) fn pixels(&self, length: f64, at: &Point<f64>) -> f64 {
         let distance = self.lens.distance(&self.lens.local(at));
         if self.lens.is_perspective {
@@ -162,23 +165,23 @@ impl View {
         }
     }
 
-    /// Projects a point, moved towards the viewer by `bias` pixels; `None` if it is nearer than the
-    /// near plane.
+    /// Projects a point. Its depth is that of the point moved towards the viewer by `bias` pixels.
+    /// `None` if the point is nearer than the near plane.
     pub(crate) fn point(&self, at: &Point<f64>, bias: f64) -> Option<OnScreen> {
         let local = self.lens.local(at);
         (self.lens.distance(&local) >= self.lens.near).then(|| self.project(&local, bias))
     }
 
-    /// Projects a line segment, clipped to the far side of the near plane; `None` if no part of it
-    /// remains.
+    /// Projects the part of a line segment beyond the near plane; `None` if no part remains. `bias`
+    /// is that of [`Self::point`].
     pub(crate) fn line(&self, ends: &[Point<f64>; 2], bias: f64) -> Option<[OnScreen; 2]> {
         let cut = self.cut(ends);
         let [start, end] = cut[..] else { return None };
         Some([self.project(&start, bias), self.project(&end, bias)])
     }
 
-    /// Projects the corners of a triangle, clipped to the far side of the near plane. Returns 0, 3
-    /// or 4 corners, in order around the clipped polygon.
+    /// Projects the part of a triangle beyond the near plane. Returns the 3 or 4 corners in order
+    /// around the clipped polygon; none if nothing remains.
     pub(crate) fn triangle(&self, corners: &[Point<f64>; 3], bias: f64) -> Vec<OnScreen> {
         self.cut(corners).iter().map(|local| self.project(local, bias)).collect()
     }

@@ -1,4 +1,4 @@
-//! Texts as pixels.
+//! Draws texts into images.
 
 use crate::image::Image;
 use crate::labels::Letter;
@@ -6,30 +6,30 @@ use crate::shade::mixed;
 use impinge::debug_render::Color;
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 
-/// The only compiled font size: legible and small.
+/// The size of the font, in pixels; other sizes are not compiled in.
 const HEIGHT: RasterHeight = RasterHeight::Size16;
 const WEIGHT: FontWeight = FontWeight::Regular;
-/// The rows of a character above its base line.
+/// The number of rows of a character above its base line.
 const ASCENT: u8 = 13;
-/// The opacity of the halo behind characters, of 1.
+/// The opacity of the halo behind characters, from 0 to 1.
 const HALO: f64 = 0.75;
 
-/// The size of the characters.
+/// Returns the size of a character; all characters have the same width.
 pub(crate) fn letter() -> Letter {
     let ascent = f64::from(ASCENT);
     let width = get_raster_width(WEIGHT, HEIGHT) as f64;
     Letter { width, ascent, descent: HEIGHT.val() as f64 - ascent }
 }
 
-/// The coverage of each pixel by a text, from 0 to 255, with an empty border of one pixel on each
-/// side.
+/// The coverage of each pixel by a text, from 0 to 255. The text has an empty border of one pixel
+/// on each side.
 struct Coverage {
     size: [usize; 2],
     pixels: Vec<u8>,
 }
 
 impl Coverage {
-    /// Returns the coverage of a text. Characters that the font lacks become question marks.
+    /// Rasterizes a text. Characters that the font lacks become question marks.
     fn of(text: &str) -> Self {
         let advance = get_raster_width(WEIGHT, HEIGHT);
         let size = [text.chars().count() * advance + 2, HEIGHT.val() + 2];
@@ -37,7 +37,7 @@ impl Coverage {
         for (index, character) in text.chars().enumerate() {
             let known = get_raster(character, WEIGHT, HEIGHT);
             let Some(raster) = known.or_else(|| get_raster('?', WEIGHT, HEIGHT)) else { continue };
-            // The empty border is a row above and a column to the left.
+            // The offsets of 1 are the border above and to the left.
             for (y, row) in raster.rows().enumerate() {
                 let start = (y + 1) * size[0] + 1 + index * advance;
                 coverage.pixels[start..start + row.len()].copy_from_slice(row);
@@ -46,12 +46,12 @@ impl Coverage {
         coverage
     }
 
-    /// Returns the coverage of a pixel, in the frame of the text.
+    /// Returns the coverage of the pixel in column `x` and row `y`.
     fn at(&self, x: usize, y: usize) -> u8 {
         self.pixels[y * self.size[0] + x]
     }
 
-    /// Returns the largest coverage of a pixel and its neighbours.
+    /// Returns the largest coverage of a pixel and its eight neighbours.
     fn around(&self, x: usize, y: usize) -> u8 {
         let [width, height] = self.size;
         let rows = y.saturating_sub(1)..(y + 2).min(height);
@@ -60,8 +60,8 @@ impl Coverage {
     }
 }
 
-/// Writes a text with the left end of its base line at a pixel, with a halo of the background colour.
-/// Pixels outside the image are clipped.
+/// Draws a text with the left end of its base line at `at`, in pixels, and with a halo in the
+/// colour of the background, `paper`. Pixels outside the image are clipped.
 pub(crate) fn draw_text(image: &mut Image, at: [f64; 2], text: &str, color: Color, paper: [u8; 3]) {
     let coverage = Coverage::of(text);
     let [left, base] = at.map(|x| (x + 0.5).floor());

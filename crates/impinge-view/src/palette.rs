@@ -1,15 +1,15 @@
-//! Reduction of images to few colours.
+//! Reduces images to few colours.
 
 use std::collections::BTreeMap;
 
 /// Red, green, blue and alpha.
 type Pixel = [u8; 4];
 
-/// The colours of an image, and the colour of each of its pixels.
+/// A list of colours, and the colour that represents each pixel value of an image.
 #[derive(Clone, Debug)]
 pub(crate) struct Palette {
     colors: Vec<Pixel>,
-    /// For each pixel value, the index of its colour.
+    /// The index of the colour for each pixel value.
     index: BTreeMap<Pixel, u8>,
 }
 
@@ -17,7 +17,8 @@ pub(crate) struct Palette {
 pub(crate) const MAX_COLORS: usize = 256;
 
 impl Palette {
-    /// Returns all colours of pixels; `None` if there are more than 256 or some are not opaque.
+    /// Returns the palette of all colours of the pixels; `None` if there are more than 256 colours
+    /// or some pixels are not opaque.
     pub(crate) fn exactly(pixels: &[Pixel]) -> Option<Self> {
         let mut index = BTreeMap::new();
         for pixel in pixels {
@@ -32,11 +33,12 @@ impl Palette {
         Some(Self { colors: index.keys().copied().collect(), index })
     }
 
-    /// Returns at most `count` colours, of 1 to 256, that represent all pixels. Boxes of colours
-    /// are split at the median until there are enough. The next box is the one with the largest
-    /// product of its longest side and the root of its number of pixels.
+    /// Returns a palette of at most `count` colours, 1 to 256, that represent all pixels. Boxes of
+    /// colours are split at the median until there are enough. The next box to split is the one
+    /// with the largest product of its longest side and the square root of its number of pixels.
     pub(crate) fn of(pixels: &[Pixel], count: usize) -> Self {
-        // Sorted, so that the colours do not depend on the positions of the pixels.
+        // Counted in an ordered map, so that the colours do not depend on the positions of the
+        // pixels.
         let mut counts = BTreeMap::new();
         for pixel in pixels {
             *counts.entry(*pixel).or_insert(0_u32) += 1;
@@ -81,7 +83,8 @@ impl Palette {
     }
 }
 
-/// Returns the channel with the largest range of a box, and the range times the root of the number of pixels.
+/// Returns the channel with the largest range in a box, and this range times the square root of the
+/// number of pixels.
 fn extent(pixels: &[(Pixel, u32)]) -> (usize, f64) {
     let range = |channel: usize| {
         let values = pixels.iter().map(|(pixel, _)| pixel[channel]);
@@ -95,11 +98,12 @@ fn extent(pixels: &[(Pixel, u32)]) -> (usize, f64) {
     (channel, f64::from(range) * f64::from(count).sqrt())
 }
 
-/// Splits a box of several colours at the median of a channel, and returns the upper part; neither part is
-/// empty.
+/// Splits a box with at least two colours at the median of a channel, and returns the upper part.
+/// Neither part is empty.
 fn cut(pixels: &mut Vec<(Pixel, u32)>, channel: usize) -> Vec<(Pixel, u32)> {
     pixels.sort_by_key(|(pixel, _)| (pixel[channel], *pixel));
-    // Counts pixels, not colours: large areas get more colours of the palette.
+    // The median is that of the pixels, not of the colours: large areas get more colours of the
+    // palette.
     let half = pixels.iter().map(|(_, count)| count).sum::<u32>() / 2;
     let mut below = 0;
     let median = pixels.iter().position(|(_, count)| {
@@ -109,7 +113,7 @@ fn cut(pixels: &mut Vec<(Pixel, u32)>, channel: usize) -> Vec<(Pixel, u32)> {
     pixels.split_off(median.unwrap_or_default().clamp(1, pixels.len() - 1))
 }
 
-/// Returns the mean of the pixels of a box, which is not empty.
+/// Returns the mean of the pixels of a box that is not empty.
 fn mean(pixels: &[(Pixel, u32)]) -> Pixel {
     let count: u64 = pixels.iter().map(|(_, count)| u64::from(*count)).sum();
     [0, 1, 2, 3].map(|channel| {

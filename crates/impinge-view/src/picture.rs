@@ -1,4 +1,4 @@
-//! The common part of pictures of all formats.
+//! The part that pictures of all formats share.
 
 use crate::camera::Camera;
 use crate::layer::Layer;
@@ -9,9 +9,9 @@ use impinge::math::{Point, Space};
 
 /// A picture: a back end that collects a drawing until its bytes are requested.
 ///
-/// [`SvgPicture`](crate::SvgPicture) and [`PngPicture`](crate::PngPicture) are its two formats. A mesh is
-/// stored by its id at the first call; the content of a later mesh with the same id is ignored. A point
-/// is a disc with the given diameter, at least 5 pixels wide.
+/// [`SvgPicture`](crate::SvgPicture) and [`PngPicture`](crate::PngPicture) are its two formats. A
+/// mesh is stored by its id at the first call. Later meshes with the same id are drawn with the
+/// stored content. A point is a disc with its size as diameter, at least 5 pixels wide.
 ///
 /// ```
 /// use impinge::debug_render::{Color, DebugRender, Drawn};
@@ -35,19 +35,20 @@ impl<F> Picture<F> {
         Self { recording: Recording::default(), camera, format }
     }
 
-    /// The number of omitted lines, triangles, points, texts and meshes: a coordinate is NaN, infinite or
-    /// above 1e13, a size is negative, or a mesh has an index without a vertex.
+    /// Returns the number of omitted lines, triangles, points, texts and meshes. An element is
+    /// omitted if a coordinate is NaN, infinite or above 1e13 in magnitude, if a size is negative,
+    /// or if a mesh has an index without a vertex.
     #[must_use]
     pub fn left_out(&self) -> u64 {
         self.recording.left_out
     }
 
-    /// Clears the drawing, for the next picture; the meshes are kept.
+    /// Removes all drawn elements, so that the next picture can be drawn. Stored meshes are kept.
     pub fn clear(&mut self) {
         self.recording.clear();
     }
 
-    /// Shows the same drawing from another camera.
+    /// Replaces the camera; the drawing stays.
     pub fn set_camera(&mut self, camera: Camera) {
         self.camera = camera;
     }
@@ -59,7 +60,7 @@ impl<F> Picture<F> {
         layers.filter_map(colors).collect()
     }
 
-    /// Returns the camera at the position from which it shows all content.
+    /// Returns the camera at its position for this drawing.
     pub(crate) fn lens(&self) -> Lens {
         Lens::new(&self.camera, &self.recording.points())
     }

@@ -1,4 +1,4 @@
-//! The drawing as triangles on the screen.
+//! Converts a drawing to triangles on the screen, and draws these.
 
 use crate::flatten::{Face, Flat};
 use crate::layer::Layer;
@@ -9,7 +9,7 @@ use crate::shade::shaded;
 use impinge::debug_render::{Color, Drawn};
 use impinge::dim3::math::{Real, Vector};
 
-/// Triangles on the screen of one colour, shaded if they have normals.
+/// Triangles on the screen with one colour, shaded if they have normals.
 #[derive(Clone, Debug)]
 pub(crate) struct Piece {
     triangles: Vec<[OnScreen; 3]>,
@@ -17,26 +17,27 @@ pub(crate) struct Piece {
     normals: Option<[Vector<f64>; 3]>,
     color: Color,
     shows_through: bool,
-    /// The mean depth of its corners.
+    /// The mean depth of the corners, by which transparent pieces are sorted.
     depth: f64,
 }
 
-/// The bias for lines: they are moved towards the viewer by this many pixels, so that their faces
-/// do not hide them.
+/// The bias for lines: they are moved towards the viewer by this many pixels, so that the faces on
+/// which they lie do not hide them.
 pub(crate) const LINE_BIAS: f64 = 2.0;
-/// The bias in pixels for faces of layers other than objects.
+/// The bias for faces of layers other than objects, in pixels.
 const FACE_BIAS: f64 = 1.0;
-/// The bias in pixels for points.
+/// The bias for points, in pixels.
 const DOT_BIAS: f64 = 4.0;
-/// The rim that separates points from the background.
+/// The colour of the rim that separates points from the background.
 const RIM: Color = Color::rgb(255, 255, 255);
-/// The number of corners of a point.
+/// The number of corners of the disc of a point.
 const DOT_CORNERS: u8 = 24;
 
-/// The least radius of points, in pixels.
+/// The minimum radius of points, in pixels.
 pub(crate) const MIN_DOT_RADIUS: f64 = 2.5;
 
-/// Returns faces, then lines, then points. Lengths on the screen are multiplied by `samples`.
+/// Returns the pieces of faces, then of lines, then of points. Widths and biases in pixels are
+/// multiplied by `samples`, the number of samples per pixel along a side.
 pub(crate) fn pieces(flat: &Flat, dots: &[Dot], view: &View, samples: f64) -> Vec<Piece> {
     let faces = flat.faces.iter().filter_map(|face| face_piece(face, view, samples));
     let strokes = flat.strokes.iter().filter_map(|stroke| stroke_piece(stroke, view, samples));
@@ -44,8 +45,8 @@ pub(crate) fn pieces(flat: &Flat, dots: &[Dot], view: &View, samples: f64) -> Ve
     faces.chain(strokes).chain(dots).collect()
 }
 
-/// Draws opaque pieces in their order, transparent ones from far to near, and at last pieces that
-/// are visible through others.
+/// Draws opaque pieces in their order, then transparent pieces from far to near, and at last,
+/// fainter, the hidden parts of pieces that show through.
 pub(crate) fn draw(pieces: &[Piece], raster: &mut Raster) {
     let (opaque, mut transparent): (Vec<_>, Vec<_>) =
         pieces.iter().partition(|piece| piece.color.alpha == u8::MAX);
@@ -96,7 +97,8 @@ fn face_piece(face: &Face, view: &View, samples: f64) -> Option<Piece> {
     Some(Piece { triangles, normals: Some(normals), color: face.color, shows_through, depth })
 }
 
-/// Whether the near plane does not clip a face, so that its corners are those of the triangle.
+/// Returns `true` if the near plane does not clip a face, so that its projected corners are those
+/// of the triangle.
 fn is_whole(face: &Face, view: &View) -> bool {
     face.corners.iter().all(|corner| view.point(corner, 0.0).is_some())
 }
@@ -115,7 +117,8 @@ fn stroke_piece(stroke: &Stroke, view: &View, samples: f64) -> Option<Piece> {
     Some(Piece { triangles, normals: None, color, shows_through, depth })
 }
 
-/// Returns the triangles of a point: those of its rim and of its disc.
+/// Returns the pieces of a point: its rim and its disc. Empty if the point is nearer than the near
+/// plane.
 fn dot_pieces(dot: &Dot, view: &View, samples: f64) -> Vec<Piece> {
     let Some(center) = view.point(&dot.at, DOT_BIAS * samples) else { return Vec::new() };
     let radius = larger(view.pixels(dot.size, &dot.at) * 0.5, MIN_DOT_RADIUS * samples);

@@ -1,4 +1,4 @@
-//! Pictures of surfaces.
+//! Pictures with shaded surfaces, as PNG.
 
 use crate::camera::Camera;
 use crate::flatten::flatten;
@@ -24,13 +24,16 @@ pub struct Png {
 
 /// A picture of surfaces with a depth buffer.
 ///
-/// Faces are shaded on both sides by a soft light from the upper left of the viewer, smoothly where a mesh is
-/// smooth. Edges of meshes and silhouettes of their surfaces are in a darker tone of the faces. Colours with
-/// an alpha below 255 are blended from far to near, by the centres of triangles and lines. Contacts,
-/// proximities and queries are visible through surfaces that hide them, fainter. A pixel is the mean of 2 by
-/// 2 samples. Texts are in front of everything, in Noto Sans Mono, 16 pixels high, with a halo of the
-/// background; they avoid the sides and each other where possible. Texts of points outside the picture are
-/// omitted without being counted, and characters beyond Latin-1 become question marks.
+/// Faces are shaded on both sides by a soft light from the upper left of the viewer, smoothly where
+/// a mesh is smooth. Edges of meshes and silhouettes of their surfaces are in a darker tone of the
+/// faces. Colours with an alpha below 255 are blended from far to near, by the centres of triangles
+/// and lines. Contacts, proximities and queries are also drawn, fainter, where surfaces hide them.
+/// A pixel is the mean of 2 by 2 samples.
+///
+/// Texts are in front of everything, in Noto Sans Mono, 16 pixels high, with a halo in the colour
+/// of the background. They avoid the sides and each other where possible. Texts of points outside
+/// the picture are omitted without being counted, and characters beyond Latin-1 become question
+/// marks.
 ///
 /// ```
 /// use impinge::debug_render::{Color, DebugRender, Drawn};
@@ -46,17 +49,17 @@ pub struct Png {
 /// ```
 pub type PngPicture = Picture<Png>;
 
-/// The number of samples per pixel along each side.
+/// The number of samples per pixel along each axis.
 const SAMPLES: usize = 2;
-/// The pixels of the line of a colour in the legend.
+/// The number of pixel columns of the line that shows a colour in the legend.
 const SWATCH_STEPS: u8 = 16;
-/// The colour of the names of the legend.
+/// The colour of the texts of the legend.
 const INK: Color = Color::rgb(48, 54, 63);
-/// A warm near white.
+/// The default background: a warm near white.
 const BACKGROUND: Color = Color::rgb(250, 249, 246);
 
 impl Picture<Png> {
-    /// Creates a picture with a width and a height in pixels, which are clamped to 1 to 8192.
+    /// Creates a picture of `size`, its width and height in pixels. Both are clamped to 1 to 8192.
     #[must_use]
     pub fn new(camera: Camera, size: [u32; 2]) -> Self {
         let size = size.map(|side| side.clamp(1, MAX_SIDE));
@@ -65,23 +68,24 @@ impl Picture<Png> {
         Self::with_format(camera, format)
     }
 
-    /// Sets another background than near white. Its alpha is ignored.
+    /// Sets the colour of the background; by default it is near white. The alpha is ignored.
     #[must_use]
     pub fn with_background(mut self, background: Color) -> Self {
         self.format.background = background;
         self
     }
 
-    /// Sets a margin in pixels, on all sides; the default is a sixteenth of the shorter side. The margin is
-    /// clamped to 0 to a third of the shorter side; NaN counts as 0.
+    /// Sets the margin on all sides, in pixels; the default is a sixteenth of the shorter side. It
+    /// is clamped to the range from 0 to a third of the shorter side; NaN counts as 0.
     #[must_use]
     pub fn with_margin(mut self, margin: f64) -> Self {
         self.format.margin = Some(margin);
         self
     }
 
-    /// Adds a legend with names and colours of the layers of the drawing, in rows at the lower side. The
-    /// drawing gets the space above them; a picture too low for both has no legend.
+    /// Adds a legend with the names and colours of the layers of the drawing, in rows at the lower
+    /// side. The drawing gets the space above it. If the legend would need more than half of the
+    /// height, it is omitted.
     #[must_use]
     pub fn with_legend(mut self) -> Self {
         self.format.has_legend = true;
@@ -121,7 +125,8 @@ impl Picture<Png> {
         self.to_image().to_png()
     }
 
-    /// Returns the entries of the legend and their height in pixels, if there is one.
+    /// Returns the entries of the legend and its height in pixels; no entries and 0 if there is no
+    /// legend.
     fn legend(&self) -> (Vec<LegendEntry>, f64) {
         let [width, height] = self.format.size.map(f64::from);
         let (entries, own) = legend(&self.layers(), width, letter().width);
@@ -157,8 +162,9 @@ impl Picture<Png> {
 }
 
 impl Png {
-    /// Returns the picture without its margins and a legend of height `legend`, scaled by the samples per
-    /// pixel.
+    /// Returns the window for the drawing: the picture without its margins and without a legend of
+    /// height `legend`. Lengths are multiplied by `samples`, the number of samples per pixel along
+    /// an axis.
     fn window(&self, legend: f64, samples: f64) -> Window {
         let size = self.size.map(f64::from);
         let shorter = -larger(-size[0], -size[1]);

@@ -2,7 +2,7 @@
 
 use crate::lens::{OnScreen, larger};
 
-/// Pixels with depths, row by row from the top.
+/// Pixels with depths, row by row from the top. An infinite depth is that of the background.
 #[derive(Clone, Debug)]
 pub(crate) struct Raster {
     size: [usize; 2],
@@ -10,23 +10,24 @@ pub(crate) struct Raster {
     color: Vec<[u8; 3]>,
 }
 
-/// The pixels of a triangle that change, and the operation.
+/// The operation with which a triangle is drawn, and the pixels that it changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Ink {
-    /// Pixels that are not nearer than the triangle; they get its colour and its depth.
+    /// Changes pixels that are not nearer than the triangle; they get its colour and its depth.
     Solid,
-    /// Pixels that are not nearer than the triangle; its colour is blended, with this alpha.
+    /// Changes pixels that are not nearer than the triangle: its colour is blended with this alpha.
+    /// Depths stay.
     Blend(u8),
-    /// Pixels that hide the triangle; its colour is blended, with this alpha.
+    /// Changes pixels that hide the triangle: its colour is blended with this alpha. Depths stay.
     Ghost(u8),
 }
 
-/// A triangle with clockwise corners on the screen, y downwards.
+/// A triangle whose corners are clockwise on the screen, with y downwards.
 struct Oriented {
     corners: [OnScreen; 3],
     area: f64,
-    /// For each corner, whether pixel centres on the edge to the next corner are inside: top and
-    /// left edges own them.
+    /// For each corner, whether pixel centres exactly on the edge to the next corner are inside the
+    /// triangle. This holds for left and top edges.
     owns_edge: [bool; 3],
 }
 
@@ -36,14 +37,14 @@ impl Raster {
         Self { size, depth: vec![f64::INFINITY; count], color: vec![background; count] }
     }
 
-    /// Returns the depth at a point of the picture; `None` outside.
+    /// Returns the depth of the pixel that contains a point; `None` outside the picture.
     pub(crate) fn depth_at(&self, x: f64, y: f64) -> Option<f64> {
         let [width, height] = self.size;
         let is_inside = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
         is_inside.then(|| self.depth[whole(y, height) * width + whole(x, width)])
     }
 
-    /// Returns the mean colours of squares of pixels with side `side`, row by row.
+    /// Returns the mean colours of squares of `side` by `side` pixels, row by row.
     pub(crate) fn reduced(&self, side: usize) -> Vec<[u8; 3]> {
         let size = self.size.map(|length| length / side);
         let mut pixels = Vec::with_capacity(size[0] * size[1]);
@@ -67,11 +68,12 @@ impl Raster {
         sums.map(|sum| u8::try_from((sum + count / 2) / count).expect("a mean of bytes"))
     }
 
-    /// Fills a triangle. The colour is a function of the barycentric coordinates.
+    /// Fills a triangle. `color_at` gets the barycentric coordinates of a pixel centre and returns
+    /// its colour.
     ///
-    /// Corners are rounded to 1/256 pixel, so that the tests of pixel centres are exact up to 65536
-    /// pixels from the corner of the picture: a pixel on a common edge of two triangles is covered by
-    /// exactly one.
+    /// Corners are rounded to 1/256 pixel. So the tests of pixel centres are exact up to 65536
+    /// pixels from the corner of the picture, and a pixel on a common edge of two triangles is
+    /// covered by exactly one of them.
     pub(crate) fn fill(
         &mut self,
         corners: &[OnScreen; 3],
@@ -113,7 +115,7 @@ impl Raster {
 }
 
 impl Oriented {
-    /// Returns `None` for a triangle without area or with coordinates that are not finite.
+    /// Orients a triangle; `None` if its area is zero or its coordinates are not finite.
     fn new(corners: &[OnScreen; 3]) -> Option<Self> {
         let snap = |x: f64| (x * 256.0 + 0.5).floor() / 256.0;
         let [a, b, c] = corners.map(|p| OnScreen { x: snap(p.x), y: snap(p.y), depth: p.depth });
@@ -141,8 +143,8 @@ impl Oriented {
         [whole(top, height), whole(bottom + 1.0, height)]
     }
 
-    /// Returns a range of pixels in row `y` that contains all pixels inside the triangle, with one
-    /// extra pixel on each side.
+    /// Returns a range of pixel columns in row `y` that contains all pixels inside the triangle,
+    /// and about one more on each side.
     fn columns(&self, y: usize, width: usize) -> [usize; 2] {
         let y = y as f64 + 0.5;
         let (mut left, mut right) = (0.0, width as f64);
@@ -158,7 +160,8 @@ impl Oriented {
         [whole(left, width), whole(right, width)]
     }
 
-    /// Returns the barycentric coordinates of the centre of a pixel; `None` if it is outside.
+    /// Returns the barycentric coordinates of the centre of a pixel; `None` if the centre is
+    /// outside the triangle.
     fn weights(&self, x: usize, y: usize) -> Option<[f64; 3]> {
         let (x, y) = (x as f64 + 0.5, y as f64 + 0.5);
         let mut areas = [0.0; 3];
@@ -174,15 +177,15 @@ impl Oriented {
         Some(areas.map(|area| area / self.area))
     }
 
-    /// Returns the depth; exactly that of the corners if these are equal.
+    /// Interpolates the depth. If the corners have equal depths, it is exactly this depth.
     fn depth(&self, weights: &[f64; 3]) -> f64 {
         let [a, b, c] = self.corners.map(|corner| corner.depth);
         a + weights[1] * (b - a) + weights[2] * (c - a)
     }
 }
 
-/// Returns the two triangles of a line with a width in pixels, slightly longer than the line so that
-/// corners are closed.
+/// Returns the two triangles of a line with a width in pixels. They are slightly longer than the
+/// line, which closes the corners between connected lines.
 pub(crate) fn ribbon(ends: &[OnScreen; 2], width: f64) -> [[OnScreen; 3]; 2] {
     let [start, end] = *ends;
     let along = [end.x - start.x, end.y - start.y];
@@ -199,7 +202,7 @@ pub(crate) fn ribbon(ends: &[OnScreen; 2], width: f64) -> [[OnScreen; 3]; 2] {
     [[a, b, c], [a, c, d]]
 }
 
-/// Returns the integer part of a number, clamped to 0 and a limit; 0 for NaN.
+/// Returns the integer part of `x`, clamped to 0 and `limit`; 0 for NaN.
 #[expect(clippy::cast_possible_truncation, reason = "clamped to the limit")]
 #[expect(clippy::cast_sign_loss, reason = "clamped to zero")]
 pub(crate) fn whole(x: f64, limit: usize) -> usize {
@@ -221,7 +224,8 @@ mod tests {
     #[test]
     fn triangles_with_a_common_edge_cover_each_pixel_once() {
         // A fan of four triangles around a point with fractional coordinates, in both orientations,
-        // blended with half alpha: a pixel covered twice is darker, one not covered is white.
+        // blended with half alpha. A pixel that is covered twice is darker, a pixel that is not
+        // covered is white.
         let corners =
             [at(2.0, 3.0, 1.0), at(18.0, 3.0, 1.0), at(18.0, 15.0, 1.0), at(2.0, 15.0, 1.0)];
         for center in [at(9.5, 8.5, 1.0), at(10.0, 9.0, 1.0), at(7.3, 11.7, 1.0)] {
@@ -290,7 +294,7 @@ mod tests {
         let mut raster = Raster::new([4, 2], [255; 3]);
         let corners = [at(0.0, 0.0, 0.0), at(2.0, 0.0, 0.0), at(0.0, 2.0, 0.0)];
         raster.fill(&corners, Ink::Solid, |_| [0; 3]);
-        // The diagonal is not a left edge: the centres on it belong to the neighbour.
+        // The diagonal is not a left edge: pixel centres on it belong to the other side.
         assert_eq!(raster.reduced(2), [[191; 3], [255; 3]], "one of four pixels");
     }
 }

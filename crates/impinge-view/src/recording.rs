@@ -7,7 +7,7 @@ use impinge::math::{self, Real, Space};
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-/// The drawing in `f64` and 3D; 2D has `z = 0`.
+/// The elements of a drawing in `f64` and 3D. Elements of a 2D drawing have `z = 0`.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Recording {
     pub(crate) meshes: BTreeMap<u64, KeptMesh>,
@@ -20,7 +20,7 @@ pub(crate) struct Recording {
     pub(crate) left_out: u64,
 }
 
-/// A kept mesh and its position.
+/// The id of a kept mesh, and the pose, colour and layer with which it is drawn.
 #[derive(Clone, Debug)]
 pub(crate) struct PlacedMesh {
     pub(crate) id: u64,
@@ -30,7 +30,7 @@ pub(crate) struct PlacedMesh {
     pub(crate) what: Drawn,
 }
 
-/// A line.
+/// A line segment.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stroke {
     pub(crate) ends: [Point<f64>; 2],
@@ -46,7 +46,7 @@ pub(crate) struct ColoredTriangle {
     pub(crate) what: Drawn,
 }
 
-/// A point, `size` in diameter.
+/// A point, drawn as a disc of diameter `size`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Dot {
     pub(crate) at: Point<f64>,
@@ -64,11 +64,11 @@ pub(crate) struct Label {
     pub(crate) what: Drawn,
 }
 
-/// The largest coordinate of a picture: its square and its cube are far from the limit of `f64`, and
-/// a scene of meters is smaller than the orbit of Neptune.
+/// The largest magnitude of a coordinate. The cube of this number is far below the largest `f64`.
+/// In metres it is more than the diameter of the orbit of Neptune.
 pub(crate) const MAX_COORDINATE: f64 = 1e13;
 
-/// Converts a point to 3D; `None` if it is NaN, infinite or huge.
+/// Converts a point to 3D; `None` if a coordinate is NaN or exceeds [`MAX_COORDINATE`].
 pub(crate) fn embed<N: Real, const D: usize>(point: &math::Point<N, D>) -> Option<Point<f64>> {
     let embedded = Point::from(embed_vector(&point.coords));
     let is_good = embedded.iter().all(|x| x.abs() <= MAX_COORDINATE);
@@ -94,12 +94,12 @@ fn embed_all<N: Real, const D: usize, const K: usize>(
 }
 
 impl Recording {
-    /// Clears the drawing, and keeps the meshes.
+    /// Removes all elements, but keeps the meshes.
     pub(crate) fn clear(&mut self) {
         *self = Self { meshes: std::mem::take(&mut self.meshes), ..Self::default() };
     }
 
-    /// Returns all points that are framed.
+    /// Returns all points that a camera frames by default.
     pub(crate) fn points(&self) -> Vec<Point<f64>> {
         let mut points: Vec<_> = self.strokes.iter().flat_map(|stroke| stroke.ends).collect();
         points.extend(self.triangles.iter().flat_map(|triangle| triangle.corners));
@@ -115,7 +115,7 @@ impl Recording {
         points
     }
 
-    /// Returns the layers of the drawing, in the order of [`Drawn`], each once.
+    /// Returns the layers that the drawing uses, in the order of [`Drawn`] and without duplicates.
     pub(crate) fn layers(&self) -> Vec<Drawn> {
         let strokes = self.strokes.iter().map(|stroke| stroke.what);
         let triangles = self.triangles.iter().map(|triangle| triangle.what);
@@ -127,7 +127,7 @@ impl Recording {
         unique.into_iter().collect()
     }
 
-    /// Returns the first colour of a layer.
+    /// Returns the colour of the first element of a layer; `None` if the layer is empty.
     pub(crate) fn color_of(&self, layer: Drawn) -> Option<Color> {
         let placed = self.placed.iter().map(|placed| (placed.what, placed.color));
         let dots = self.dots.iter().map(|dot| (dot.what, dot.color));
@@ -138,7 +138,7 @@ impl Recording {
         all.find(|(what, _)| *what == layer).map(|(_, color)| color)
     }
 
-    /// Keeps a mesh unless one with its id is kept, and returns the kept one.
+    /// Stores a mesh unless one with the same id is stored, and returns the stored mesh.
     fn keep<N: Real, const D: usize>(&mut self, mesh: &ShapeMesh<N, D>) -> &KeptMesh {
         match self.meshes.entry(mesh.id) {
             Entry::Occupied(kept) => kept.into_mut(),

@@ -2,18 +2,18 @@
 
 use impinge::dim3::math::Vector;
 
-/// The direction to the light in the camera's frame: from the upper left, in front. A unit vector
-/// within 1e-3.
+/// The direction to the light in the camera's frame: from the upper left, in front. Its length is 1
+/// to within 1e-3.
 const LIGHT: [f64; 3] = [-0.465, 0.675, 0.573];
-/// The factors of red, green and blue on the dark side: slightly blue.
+/// The factors of red, green and blue on the side away from the light, which is slightly blue.
 const SHADE: [f64; 3] = [0.48, 0.52, 0.60];
-/// The factors under perpendicular light: slightly warm.
+/// The factors of red, green and blue under perpendicular light, which is slightly warm.
 const LIT: [f64; 3] = [1.10, 1.08, 1.05];
-/// The colour of ink: edges have the mean of it and of the colour of their face.
+/// The colour with which the colour of a face is mixed for its edges.
 const INK: [u8; 3] = [26, 32, 44];
 
-/// Returns a colour on a surface with a unit normal in the camera's frame. The zero vector counts as
-/// halfway between light and shade.
+/// Returns a colour as it appears on a surface with this unit normal in the camera's frame. A zero
+/// normal counts as halfway between light and shade.
 pub(crate) fn shaded(rgb: [u8; 3], normal: &Vector<f64>) -> [u8; 3] {
     let [x, y, z] = LIGHT;
     let light = 0.5 + 0.5 * (normal.x * x + normal.y * y + normal.z * z);
@@ -24,12 +24,12 @@ pub(crate) fn shaded(rgb: [u8; 3], normal: &Vector<f64>) -> [u8; 3] {
     [channel(0), channel(1), channel(2)]
 }
 
-/// Returns the colour of the edges of faces of a colour.
+/// Returns the colour of the edges of a face with this colour.
 pub(crate) fn edge_tone(rgb: [u8; 3]) -> [u8; 3] {
     mixed(rgb, INK, 0.55)
 }
 
-/// Interpolates two colours; `part` is from 0 to 1.
+/// Interpolates linearly between two colours; `part` is 0 at `from` and 1 at `to`.
 pub(crate) fn mixed(from: [u8; 3], to: [u8; 3], part: f64) -> [u8; 3] {
     let channel = |index: usize| {
         let (from, to) = (f64::from(from[index]), f64::from(to[index]));
@@ -38,7 +38,7 @@ pub(crate) fn mixed(from: [u8; 3], to: [u8; 3], part: f64) -> [u8; 3] {
     [channel(0), channel(1), channel(2)]
 }
 
-/// Rounds to an integer from 0 to 255; 0 for NaN.
+/// Rounds to an integer and clamps it to 0 to 255; 0 for NaN.
 #[expect(clippy::cast_possible_truncation, reason = "clamped")]
 #[expect(clippy::cast_sign_loss, reason = "clamped")]
 fn byte(x: f64) -> u8 {

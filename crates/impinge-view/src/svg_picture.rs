@@ -1,4 +1,4 @@
-//! Pictures of lines.
+//! Pictures of lines, as SVG.
 
 use crate::camera::Camera;
 use crate::flatten::{Flat, edge_color, flatten};
@@ -18,18 +18,18 @@ pub struct Svg {
     width: u32,
     title: String,
     description: String,
-    /// Whether surfaces are filled, as in 2D, or hide lines, as in 3D.
+    /// Whether surfaces are filled, as in 2D. Otherwise they hide lines, as in 3D.
     fills: bool,
     has_legend: bool,
 }
 
 /// A picture of lines.
 ///
-/// Each layer is a group with a class: `object`, `contact-point`, `query-hit` and so on, in the order of
-/// [`Drawn`]; in a group, nearer elements come later. Lengths on the page are in pixels with two digits.
-/// Colours that are too dark for a dark page are lighter there. Texts avoid the sides of the page and
-/// each other where possible; texts of points outside the page are omitted. The description mentions the
-/// number of [omitted](Picture::left_out) elements.
+/// Each layer is a group with a class: `object`, `contact-point`, `query-hit` and so on, in the
+/// order of [`Drawn`]. In a group, nearer elements come later. Lengths on the page are in pixels
+/// with two decimals. Colours that are too dark for a dark page are lighter there. Texts avoid the
+/// sides of the page and each other where possible; texts of points outside the page are omitted.
+/// The description mentions the number of [omitted](Picture::left_out) elements.
 ///
 /// ```
 /// use impinge::debug_render::{Color, DebugRender, Drawn};
@@ -44,24 +44,25 @@ pub struct Svg {
 /// ```
 pub type SvgPicture = Picture<Svg>;
 
-/// The approximate size of characters: the font depends on the reader.
+/// The approximate size of characters in pixels; the actual font depends on the reader.
 pub(crate) const LETTER: Letter = Letter { width: 8.0, ascent: 10.0, descent: 3.0 };
 /// The margin on all sides, in pixels.
 const MARGIN: f64 = 16.0;
-/// The largest ratio of the height of the drawing to its width.
+/// The maximum ratio of the height of the drawing to its width.
 const TALLEST: f64 = 1.5;
 
 impl Picture<Svg> {
-    /// Creates a picture of a 2D scene, to scale, y upwards. Shapes and triangles are filled with a tint.
-    /// The width in pixels is clamped to 64 to 8192; the height follows from the content.
+    /// Creates a picture of a 2D scene, to scale, with y upwards. Shapes and triangles are filled
+    /// with a tint. The width in pixels is clamped to 64 to 8192; the height follows from the
+    /// content.
     #[must_use]
     pub fn plane(width: u32) -> Self {
         Self::of(Camera::plane(), width, true)
     }
 
-    /// Creates a picture of a 3D scene from lines. Lines are fainter and dotted where opaque meshes and
-    /// triangles hide them. Silhouettes of surfaces are drawn too. Width and height as in
-    /// [`Self::plane`].
+    /// Creates a picture of a 3D scene that consists of lines, including the silhouettes of
+    /// surfaces. Lines are fainter and dotted where opaque meshes and triangles hide them. The
+    /// width in pixels is clamped to 64 to 8192; the height follows from the content.
     #[must_use]
     pub fn space(camera: Camera, width: u32) -> Self {
         Self::of(camera, width, false)
@@ -90,8 +91,8 @@ impl Picture<Svg> {
         self
     }
 
-    /// Returns the text of an SVG file. For 3D scenes it costs a search along each line, half a pixel at
-    /// a time.
+    /// Returns the text of an SVG file. For 3D scenes it samples each line at every half pixel to
+    /// find the hidden parts.
     #[must_use]
     pub fn to_svg(&self) -> String {
         let lens = self.lens();
@@ -167,7 +168,8 @@ impl Picture<Svg> {
 }
 
 impl Svg {
-    /// Returns the page without margins and legend, for a drawing with a width and a height.
+    /// Returns the window for a drawing with this width and height: the page without its margins
+    /// and legend.
     fn window(&self, [width, height]: [f64; 2]) -> Window {
         let inner = f64::from(self.width) - 2.0 * MARGIN;
         let tallest = inner * TALLEST;
@@ -177,16 +179,16 @@ impl Svg {
     }
 }
 
-/// A scene projected to its page.
+/// A scene projected to the page.
 struct Page {
     flat: Flat,
     view: View,
-    /// The depths of surfaces that hide lines, if there are any.
+    /// The depths of the surfaces that hide lines; `None` if surfaces are filled.
     depths: Option<Raster>,
 }
 
 impl Page {
-    /// Returns the parts of a line and whether they are hidden.
+    /// Splits a line into parts, each with the flag whether it is hidden.
     fn runs(&self, ends: &[OnScreen; 2]) -> Vec<(bool, [OnScreen; 2])> {
         match &self.depths {
             Some(depths) => {
@@ -203,7 +205,8 @@ fn label_layer(layer: Drawn, labels: &[PlacedLabel<'_>], body: &mut Body) {
     }
 }
 
-/// Draws the lines of a layer: hidden ones first, each from far to near. Triangles have sides.
+/// Draws the lines of a layer and the sides of its single triangles. Hidden lines come first, each
+/// group from far to near.
 fn stroke_layer(layer: Drawn, page: &Page, body: &mut Body) {
     let strokes = page.flat.strokes.iter().filter(|stroke| stroke.what == layer);
     let mut lines: Vec<_> = strokes.map(|stroke| (stroke.ends, stroke.color)).collect();

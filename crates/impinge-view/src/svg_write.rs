@@ -1,4 +1,4 @@
-//! The text of an SVG file.
+//! Writes the text of an SVG file.
 
 use crate::layer::Layer;
 use crate::legend::{LegendEntry, NAME_AT, SWATCH, legend};
@@ -8,12 +8,13 @@ use crate::svg_picture::LETTER;
 use impinge::debug_render::Color;
 use std::fmt::Write;
 
-/// The drawing, and its colours.
+/// The elements of a document, and the colours that they use.
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
     size: [f64; 2],
     text: String,
-    /// The distinct colours. The colour with index N has the classes `sN` and `fN`.
+    /// The distinct colours. The colour with index N has the classes `sN` for strokes and `fN` for
+    /// fills.
     colors: Vec<[u8; 3]>,
     layers: Vec<Layer>,
     open: Option<Open>,
@@ -28,7 +29,8 @@ pub(crate) struct Key {
     pub(crate) is_hidden: bool,
 }
 
-/// A path that later lines of the same key extend.
+/// A path that is not closed yet: a following line with the same key extends it. `last` is the text
+/// of its end point.
 #[derive(Clone, Debug)]
 struct Open {
     key: Key,
@@ -48,7 +50,7 @@ impl Body {
         self.layers.push(layer);
     }
 
-    /// Ends the group.
+    /// Ends the group of a layer.
     pub(crate) fn close(&mut self) {
         self.push("</g>\n");
     }
@@ -70,7 +72,7 @@ impl Body {
         self.open = Some(Open { key, last: end });
     }
 
-    /// Fills polygons, as one path so that no gaps are visible between them.
+    /// Writes polygons as one filled path, so that no gaps are visible between them.
     pub(crate) fn fill(&mut self, color: Color, polygons: &[Vec<OnScreen>]) {
         let mut path = String::new();
         for polygon in polygons.iter().filter(|polygon| polygon.len() > 2) {
@@ -92,14 +94,15 @@ impl Body {
         self.push(&format!("<circle {class} cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"/>\n"));
     }
 
-    /// Writes a text from the left end of its base line, with a halo that separates it from the background.
+    /// Writes a text whose base line begins at `at`, with a halo that separates it from the
+    /// background.
     pub(crate) fn label(&mut self, at: [f64; 2], text: &str, color: Color) {
         let class = self.class('f', Key { color, is_hidden: false });
         let ([x, y], text) = (at.map(number), escaped(text));
         self.push(&format!("<text {class} x=\"{x}\" y=\"{y}\">{text}</text>\n"));
     }
 
-    /// Writes names and colours of layers, below the drawing.
+    /// Writes the legend: the names and colours of the layers, below the drawing.
     pub(crate) fn legend(&mut self, layers: &[(Layer, Color)]) {
         let (entries, height) = legend(layers, self.size[0], LETTER.width);
         for LegendEntry { layer, color, at: [left, middle] } in entries {
@@ -122,7 +125,7 @@ impl Body {
         self.text.push_str(text);
     }
 
-    /// Returns the attributes of a colour, for strokes (`s`) or fills (`f`).
+    /// Returns the attributes of an element with this key, stroked (`s`) or filled (`f`).
     fn class(&mut self, kind: char, key: Key) -> String {
         let found = self.colors.iter().position(|color| *color == key.color.rgb);
         let index = found.unwrap_or_else(|| {
@@ -138,7 +141,7 @@ impl Body {
         attributes
     }
 
-    /// Returns the style of the elements in the document with an id, for light and dark pages.
+    /// Returns the style sheet for the document with this id, for light and dark pages.
     fn style(&self, id: &str) -> String {
         let mut light = format!(
             "#{id} .paper{{fill:#fbfaf7}}#{id} .ink{{fill:#30363f}}#{id} text{{stroke:#fbfaf7}}\n"
@@ -168,15 +171,15 @@ fn rule(id: &str, index: usize, [red, green, blue]: [u8; 3]) -> String {
     format!("#{id} .s{index}{{stroke:{color}}}#{id} .f{index}{{fill:{color}}}\n")
 }
 
-/// Returns the colour for a dark page: lighter, if the colour is dark.
+/// Returns the colour to use on a dark page: a lighter one, if the colour is dark.
 fn on_dark(rgb: [u8; 3]) -> [u8; 3] {
     let [red, green, blue] = rgb.map(u32::from);
-    // The weights of the luminance of sRGB, in percent.
+    // The integer weights are those of the luminance of sRGB, in percent.
     let luminance = (21 * red + 72 * green + 7 * blue) / 100;
     if luminance < 150 { mixed(rgb, [238, 242, 250], 0.5) } else { rgb }
 }
 
-/// Returns the whole file.
+/// Returns the text of the whole file.
 pub(crate) fn document(body: Body, title: &str, description: &str) -> String {
     let id = format!("impinge-{:016x}", hash(&[&body.text, &body.legend, title, description]));
     let [width, height] = body.size.map(number);
@@ -206,8 +209,8 @@ pub(crate) fn document(body: Body, title: &str, description: &str) -> String {
     svg
 }
 
-/// Returns the hash FNV-1a (Fowler, Noll, Vo) of some texts. It is the id of a document, so that
-/// the styles of several documents on one page do not mix.
+/// Returns the hash FNV-1a (Fowler, Noll, Vo) of some texts. It is the id of a document, which
+/// keeps the styles of several documents on one page apart.
 fn hash(texts: &[&str]) -> u64 {
     let bytes = texts.iter().flat_map(|text| text.bytes().chain([0]));
     bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
@@ -215,7 +218,7 @@ fn hash(texts: &[&str]) -> u64 {
     })
 }
 
-/// Formats a number with two digits; zero has no sign.
+/// Formats a number with two decimals; zero has no sign.
 fn number(x: f64) -> String {
     let text = format!("{x:.2}");
     if text == "-0.00" { "0.00".into() } else { text }

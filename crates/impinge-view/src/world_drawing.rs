@@ -1,4 +1,4 @@
-//! Drawings of worlds: sizes that suit the objects, and colours for a light background.
+//! Drawings of worlds: sizes follow from the objects, and the colours suit a light background.
 
 use impinge::bounding_volume::Aabb;
 use impinge::debug_render::{Color, DebugDrawing, DebugOptions};
@@ -41,16 +41,18 @@ pub fn world_drawing<N: Space<D>, const D: usize, T>(
     DebugDrawing::new(options).with_object_color(object_color)
 }
 
-/// The lengths by which drawings of a world are scaled; 1 if the world has no bounded object.
+/// The lengths by which the drawing of a world is scaled; each is 1 if the world has no bounded
+/// object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Extent {
-    /// The median of the objects' longest sides, the lower one of two: a box on a floor is typical, not the floor.
+    /// The lower median of the longest sides of the objects. For a box on a floor it is that of the
+    /// box, not of the floor.
     typical: f64,
-    /// The largest coordinate, by magnitude, of the boxes of all bounded objects.
+    /// The largest magnitude of a coordinate of the boxes of all bounded objects.
     whole: f64,
 }
 
-/// Computes the lengths of a world. Unbounded objects, such as half-spaces, are ignored.
+/// Computes the lengths for a world. Unbounded objects, such as half-spaces, are ignored.
 fn extent<N: Space<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) -> Extent {
     let boxes =
         world.collision_objects().map(|object| object.shape().aabb(&N::pose(object.position())));
@@ -69,12 +71,12 @@ fn extent<N: Space<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) -> Ex
 /// The colour of contact normals.
 const NORMAL: Color = Color::rgb(190, 110, 20);
 
-/// The colour of an object.
+/// Returns the colour of an object.
 fn object_color(handle: CollisionObjectHandle) -> Option<Color> {
     Some(COLORS[handle.uid() % COLORS.len()])
 }
 
-/// The colours of objects, in turn.
+/// The colours of objects. Objects get them in turn, by their id.
 const COLORS: [Color; 6] = [
     Color::rgb(124, 146, 176),
     Color::rgb(204, 128, 104),

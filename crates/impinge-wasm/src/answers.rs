@@ -1,5 +1,5 @@
-//! Hashes of the results of all queries for all pairs of kinds, and of a world with one object of
-//! each kind.
+//! Hashes of the results of all queries for all pairs of shape kinds, and of a world with two
+//! objects of each kind.
 
 use std::array::from_fn;
 use std::fmt::Debug;
@@ -23,10 +23,11 @@ use impinge::world::{CollisionGroups, CollisionWorld};
 
 use crate::scene_stage::{Digest, digest_state};
 
-/// The positions of shapes. Their rotations are constants too, since the sines of platforms differ.
+/// The positions of shapes. Their rotations are constants too, since the sines of different
+/// platforms differ.
 const PLACES: [[f64; 3]; 4] = [[0.0; 3], [1.5, 0.25, -0.5], [0.3, -0.2, 0.1], [4.0, 1.0, 2.0]];
 
-/// Returns the hash of the queries in 2D.
+/// Returns the hash of the results in 2D.
 pub(crate) fn in_plane<N: Real>() -> u64 {
     let turns = [[1.0, 0.0], [0.6, 0.8], [1.0, 0.0], [-0.8, 0.6]];
     let poses = from_fn(|index| {
@@ -38,7 +39,7 @@ pub(crate) fn in_plane<N: Real>() -> u64 {
     of_all(&shapes_of_plane(), &poses)
 }
 
-/// Returns the hash of the queries in 3D.
+/// Returns the hash of the results in 3D.
 pub(crate) fn in_space<N: Real>() -> u64 {
     let turns = [[1.0, 0.0, 0.0, 0.0], [0.8, 0.36, 0.48, 0.0], [1.0, 0.0, 0.0, 0.0], [0.5; 4]];
     let poses = from_fn(|index| {
@@ -68,12 +69,13 @@ where
     digest.finish()
 }
 
-/// Adds a result; numbers have as many digits as distinguish them.
+/// Adds a result to the digest. Numbers are formatted with as many digits as are needed to
+/// distinguish them.
 fn note(answer: &impl Debug, digest: &mut Digest) {
     digest.write(format!("{answer:?}").as_bytes());
 }
 
-/// Runs the queries by rays and points.
+/// Runs the ray casts and point queries of one shape.
 fn one<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     shape: &dyn Shape<N, D>,
     pose: &Isometry<N, R, D>,
@@ -91,7 +93,7 @@ fn one<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     }
 }
 
-/// Runs the queries about a pair.
+/// Runs the queries of a pair of shapes.
 fn two<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     [g1, g2]: [&dyn Shape<N, D>; 2],
     [m1, m2]: [&Isometry<N, R, D>; 2],
@@ -107,7 +109,7 @@ fn two<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     note(&time_of_impact(m1, &rest, g1, m2, &velocity, g2), digest);
 }
 
-/// Runs a world: one object of each kind at each position, over a few steps.
+/// Runs a world with two objects of each kind, at four positions in turn, for a few steps.
 fn together<N, R, const D: usize>(
     shapes: &[ShapeHandle<N, D>],
     poses: &[Isometry<N, R, D>; 4],
@@ -135,7 +137,7 @@ fn together<N, R, const D: usize>(
     }
 }
 
-/// Returns the shapes of both dimensions.
+/// Returns the shapes that exist in both dimensions.
 fn shapes<N: Space<D>, const D: usize>(corners: &[Point<N, D>; 3]) -> Vec<ShapeHandle<N, D>> {
     let [a, b, c] = *corners;
     let half = Vector::<N, D>::from_fn(|axis, _| N::lit([1.0, 0.5, 2.0][axis]));
@@ -178,7 +180,7 @@ fn shapes_of_space<N: Real>() -> Vec<ShapeHandle<N, 3>> {
     let p = |x: f64, y: f64, z: f64| Point::<N, 3>::new(N::lit(x), N::lit(y), N::lit(z));
     let mut all = shapes(&[p(-1.0, -0.5, 0.0), p(1.0, -0.25, 0.5), p(0.25, 1.0, -0.5)]);
     let cube = surfaces::cuboid(&Cuboid::new(Vector::<N, 3>::repeat(N::ONE)));
-    // A hull with more than eight vertices.
+    // A convex hull with more than eight vertices.
     let stone = [p(1.2, 0.0, 0.1), p(0.0, 1.3, 0.2), p(-0.1, 0.3, -1.4)];
     let hull = ConvexHull::from_points(&[&cube.vertices[..], &stone[..]].concat());
     let heights = [0.0, 1.0, 0.5, -1.0, 0.0, 0.25].map(N::lit).to_vec();

@@ -1,8 +1,9 @@
-//! Hashes of scenes and queries, which are the same on every target: the golden ones of the test `determinism`,
-//! one of the results for all pairs of kinds, and those of the recordings in the repository.
+//! Hashes that must be the same on every target: the golden hashes of the test `determinism`, those
+//! of the query results for all pairs of shape kinds, and those of the recordings in the
+//! repository.
 //!
-//! The native program of this package prints them. The WebAssembly module exports functions of numbers, by
-//! which `compare.mjs` reads them in Node.
+//! The native program of this package prints them. The WebAssembly module exports functions with
+//! numeric arguments and results, by which `compare.mjs` reads the hashes in Node.
 
 #[macro_use]
 #[path = "../../impinge/tests/it/support/scene_stage/runs.rs"]
@@ -21,11 +22,11 @@ use impinge_scenes::{
 use runs::Run;
 use scene_stage::Play;
 
-/// A named hash.
+/// A named computation of a hash.
 pub struct Check {
-    /// For scenes the name in the golden file.
+    /// The name; for scenes it is the one in the golden file.
     pub name: String,
-    /// Computes it.
+    /// Computes the hash.
     pub hash: Box<dyn Fn() -> u64 + Send + Sync>,
 }
 
@@ -35,7 +36,7 @@ impl core::fmt::Debug for Check {
     }
 }
 
-/// All checks.
+/// Returns all checks, in a fixed order.
 #[must_use]
 pub fn checks() -> &'static [Check] {
     static CHECKS: OnceLock<Vec<Check>> = OnceLock::new();
@@ -72,7 +73,7 @@ where
     checks.push(Check { name: run.key("f64"), hash: Box::new(hash64) });
 }
 
-/// The exports for the host.
+/// The functions that the WebAssembly module exports.
 #[cfg(target_family = "wasm")]
 mod exports {
     #![expect(unsafe_code, reason = "the attribute that keeps a name counts as unsafe")]
@@ -83,13 +84,13 @@ mod exports {
         super::checks().len()
     }
 
-    /// Returns a byte of the name of a check; zero after the last.
+    /// Returns byte `byte` of the name of check `check`; zero beyond the end of the name.
     #[unsafe(no_mangle)]
     extern "C" fn name(check: usize, byte: usize) -> u32 {
         super::checks()[check].name.as_bytes().get(byte).copied().unwrap_or(0).into()
     }
 
-    /// Computes the hash of a check.
+    /// Returns the hash of check `check`.
     #[unsafe(no_mangle)]
     extern "C" fn hash(check: usize) -> u64 {
         (super::checks()[check].hash)()

@@ -1,4 +1,5 @@
-//! The recordings in the repository, replayed: a hash of every step, and no difference from the recording.
+//! Replays the recordings in the repository: hashes the state after every step, and asserts that
+//! the replay does not differ from the recording.
 
 use std::hash::Hasher;
 
@@ -7,7 +8,7 @@ use impinge_record::{Recordable, Registry, Replay};
 
 use crate::scene_stage::{Digest, digest_state};
 
-/// The recording of every shape in 2D, in `f32`.
+/// Returns the hash of the recording of every shape in 2D, in `f32`.
 pub(crate) fn in_plane() -> u64 {
     type Object = CollisionObject<f32, 2, u32>;
     let odd = |one: &Object, two: &Object| (one.data() + two.data()) % 2 == 1;
@@ -15,7 +16,7 @@ pub(crate) fn in_plane() -> u64 {
     replayed(bytes, &Registry::new().with_filter("odd", odd))
 }
 
-/// The recording of every shape in 3D, in `f64`.
+/// Returns the hash of the recording of every shape in 3D, in `f64`.
 pub(crate) fn in_space() -> u64 {
     type Object = CollisionObject<f64, 3, u32>;
     let odd = |one: &Object, two: &Object| (one.data() + two.data()) % 2 == 1;

@@ -1,6 +1,8 @@
-//! A bullet that does not tunnel. It flies eight times the thickness of a wall in a step: a bullet that is only moved
-//! and tested passes the wall between two steps, one that is cast along its path bounces off. How often it bounces
-//! and where it ends follows by hand from unfolding the room: mirror images side by side, and a straight path.
+//! A bullet that does not tunnel. In one step it flies more than eight times the thickness of a
+//! wall. If it is only moved and tested for contacts, it passes the wall between two steps; if it
+//! is cast along its path, it bounces off. The number of bounces and the end point are checked by
+//! unfolding the room: mirror images of it are laid side by side, and the path becomes a straight
+//! line.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -9,18 +11,19 @@ use impinge::dim2::prelude::*;
 type World = CollisionWorld<f64, &'static str>;
 
 const RADIUS: f64 = 0.125;
-/// Half the size of the room, and of the square in which the center of a bullet can be.
+/// Half the size of the room, and half the size of the square to which the center of a bullet is
+/// limited.
 const ROOM: f64 = 5.0;
 const FREE: f64 = ROOM - RADIUS;
 const STEP: f64 = 1.0 / 64.0;
 const STEPS: u32 = 256;
 
-/// Four walls around the origin, an eighth thick.
+/// Builds four walls around the origin, each an eighth thick.
 fn build() -> World {
     let mut world = World::new(0.02);
     let thin = 1.0 / 16.0;
     for outward in [Vector::x(), -Vector::x(), Vector::y(), -Vector::y()] {
-        // Thin along the direction, and long enough across it to close the corners.
+        // The wall is thin along `outward`, and across it long enough to close the corners.
         let half =
             outward.abs() * thin + (Vector::repeat(1.0) - outward.abs()) * (ROOM + 2.0 * thin);
         let position = Isometry::new(outward * (ROOM + thin), 0.0);
@@ -30,11 +33,12 @@ fn build() -> World {
     world
 }
 
-/// Flies for one step; reflects the velocity at each wall on the way. Returns how many there were.
+/// Moves the bullet by one step and reflects its velocity at each wall on the way. Returns the
+/// number of bounces.
 fn fly(world: &World, center: &mut Vector<f64>, velocity: &mut Vector<f64>) -> u32 {
     let (bullet, all) = (Ball::new(RADIUS), QueryFilter::new());
     let (mut left, mut bounces) = (STEP, 0);
-    // At this speed a step meets two walls at most, in a corner.
+    // At this speed a step meets at most two walls, in a corner.
     while bounces < 4 {
         let options = ImpactOptions::new().with_max_time(left);
         let position = Isometry::new(*center, 0.0);
@@ -42,7 +46,8 @@ fn fly(world: &World, center: &mut Vector<f64>, velocity: &mut Vector<f64>) -> u
             break;
         };
         *center += *velocity * hit.toi;
-        // What touches and moves apart is no impact, so that the next cast leaves the wall.
+        // A shape that touches a wall and moves away from it has no impact, so the next cast leaves
+        // the wall.
         *velocity -= *hit.normal * (2.0 * velocity.dot(&hit.normal));
         left -= hit.toi;
         bounces += 1;
@@ -51,7 +56,7 @@ fn fly(world: &World, center: &mut Vector<f64>, velocity: &mut Vector<f64>) -> u
     bounces
 }
 
-/// How many of the steps end in contact, for a bullet that is moved without looking.
+/// Returns the number of steps after which a bullet is in contact, if it is moved without casts.
 fn contacts_when_only_moved(world: &mut World, velocity: Vector<f64>) -> u32 {
     let bullet = ShapeHandle::new(Ball::new(RADIUS));
     let groups = CollisionGroups::new();
@@ -67,7 +72,8 @@ fn contacts_when_only_moved(world: &mut World, velocity: Vector<f64>) -> u32 {
     found
 }
 
-/// Where something is that started at 0 and went so far between −FREE and FREE, and how often it turned.
+/// Returns the end point of a straight path of length `way` from 0, folded into the range from
+/// −FREE to FREE, and the number of reflections.
 fn unfold(way: f64) -> (f64, f64) {
     let rooms = ((way + FREE) / (2.0 * FREE)).floor();
     let along = way - rooms * 2.0 * FREE;
@@ -76,7 +82,7 @@ fn unfold(way: f64) -> (f64, f64) {
 
 fn main() {
     let mut world = build();
-    let thrown = Vector::new(60.0, 35.0); // nearly one and half a unit a step
+    let thrown = Vector::new(60.0, 35.0); // about 1.1 units per step
     let missed = contacts_when_only_moved(&mut world, thrown);
     println!(
         "Only moved: {missed} contacts, and it is {:.0} away.",

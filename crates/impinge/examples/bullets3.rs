@@ -1,6 +1,7 @@
-//! Bullets and their owners: two ships shoot at each other, and each bullet starts inside the ship that fires it. A
-//! pair filter rejects a bullet with its owner, and bullets with bullets. Groups alone would need one group for each
-//! ship. Hits are contact events, and a bullet that hits is removed. The output is the list of hits.
+//! Bullets and their owners. Two ships shoot at each other, and each bullet starts inside the ship
+//! that fires it. A pair filter rejects pairs of a bullet and its owner, and pairs of bullets. With
+//! groups alone each ship would need its own group. Hits are contact events, and a bullet that hits
+//! is removed. The output is the list of hits.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -14,7 +15,7 @@ enum Thing {
 type World = CollisionWorld<f32, Thing>;
 type Object = CollisionObject<f32, Thing>;
 
-/// A bullet meets all ships but its owner's; ships meet ships.
+/// Returns `true` for a bullet and a ship that does not own it, and for two ships.
 fn may_touch(object1: &Object, object2: &Object) -> bool {
     match (object1.data(), object2.data()) {
         (Thing::Bullet { .. }, Thing::Bullet { .. }) => false,
@@ -52,13 +53,13 @@ fn fly(world: &mut World) {
     world.set_positions(&moved);
 }
 
-/// Counts the hits of the last update and removes the bullets; the lines to print.
+/// Counts the hits of the last update and removes the bullets that hit. Returns the lines to print.
 fn strike(world: &mut World) -> Vec<String> {
     let (mut lines, mut spent) = (Vec::new(), Vec::new());
     for event in world.contact_events().to_vec() {
         let ContactEvent::Started(handle1, handle2) = event else { continue };
         for handle in [handle1, handle2] {
-            // Nothing is removed before the loop ends.
+            // The bullets are removed after the loop, so all handles are still valid.
             match world.collision_object_mut(handle).expect("it has just been hit").data_mut() {
                 Thing::Bullet { .. } => spent.push(handle),
                 Thing::Ship { name, hits } => {
@@ -84,7 +85,7 @@ fn main() {
         }
         if step == 5 {
             fire(&mut world, blue, -Vector::x());
-            fire(&mut world, blue, Vector::y()); // upwards, at nobody
+            fire(&mut world, blue, Vector::y()); // upwards, away from both ships
         }
         world.update();
         log.extend(strike(&mut world).into_iter().map(|line| format!("step {step:2}: {line}")));
@@ -92,8 +93,9 @@ fn main() {
     }
     println!("{}", log.join("\n"));
 
-    // The near end of a ship is 1.75 from its middle, so that the middle of a bullet touches it 1.875 before:
-    // 18.125 from where it started, which is 19 steps of 1. Those fired at steps 0, 10 and 20 arrive.
+    // The near end of a ship is 1.75 from its center, so a bullet of radius 0.125 touches it when
+    // its center is 1.875 away. That is 18.125 from its start, which takes 19 steps of length 1.
+    // The bullets fired at steps 0, 10 and 20 arrive before the end.
     let expected = [
         "step 19: the blue ship is hit",
         "step 24: the red ship is hit",

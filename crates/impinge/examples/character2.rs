@@ -1,6 +1,6 @@
-//! A kinematic character walks to the right: up a flight of steps, down from a ledge, and against a wall. Each frame
-//! casts its box up, across and down, and stops it a small distance before whatever it would hit. Contacts show
-//! whether it stands on something. The output is the path of its feet.
+//! A kinematic character walks to the right: up a flight of steps, down from a ledge, and against a
+//! wall. In each frame its box is cast up, across and down, and stops at a small distance from any
+//! obstacle. Contacts tell whether it stands on something. The output is the path of its feet.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -10,19 +10,22 @@ type World = CollisionWorld<f64, &'static str>;
 
 /// Half the width and half the height of the character.
 const HALF: [f64; 2] = [0.25, 0.75];
-/// The distance kept from everything. Casts that stop short of contact never start in contact.
+/// The distance kept from obstacles. A cast that stops at this distance never leaves the character
+/// in contact, so the next cast does not start in contact.
 const SKIN: f64 = 1.0 / 64.0;
-/// The highest step that it walks up, and how far it falls in a frame.
+/// The maximum height of a step that the character climbs, and the height by which it falls in a
+/// frame.
 const STEP: f64 = 0.375;
 const FALL: f64 = 0.125;
 
-/// The floor at height 0, three steps of 0.25 from x = 2 on, a plateau until x = 7, a wall at x = 9.
+/// Builds a floor at height 0, three steps of 0.25 from x = 2 on, a plateau until x = 7, and a wall
+/// at x = 9.
 fn build() -> World {
     let mut world = World::new(0.02);
     let (groups, query) = (CollisionGroups::new(), ContactQuery::new(SKIN));
     let floor = ShapeHandle::new(Plane::new(Vector::y_axis()));
     world.add(Isometry::identity(), floor, groups, query, "floor");
-    // Left and right end and height of each box.
+    // The left end, the right end and the height of each box.
     for [left, right, height] in
         [[2.0, 7.0, 0.25], [3.0, 7.0, 0.5], [4.0, 7.0, 0.75], [9.0, 10.0, 2.0]]
     {
@@ -33,7 +36,8 @@ fn build() -> World {
     world
 }
 
-/// Moves a character along a straight line until it is `SKIN` away from an obstacle.
+/// Returns the position of a character after a straight motion, which stops at the distance `SKIN`
+/// from an obstacle.
 fn sweep(world: &World, character: CollisionObjectHandle, motion: Vector<f64>) -> Isometry<f64> {
     let object = world.collision_object(character).expect("the character is never removed");
     let options = ImpactOptions::new().with_max_time(1.0).with_target_distance(SKIN);
@@ -45,22 +49,24 @@ fn sweep(world: &World, character: CollisionObjectHandle, motion: Vector<f64>) -
     position
 }
 
-/// One frame: up by a step, across, and down by a step and by the fall. On flat floor this comes back to
-/// where it was; before a low step it ends on it; beside a wall it changes nothing.
+/// Moves the character by one frame: up by a step, across, and down by a step and by the fall. On a
+/// flat floor it returns to the height of the floor, before a low step it ends on top of the step,
+/// and beside a wall its position does not change.
 fn walk(world: &mut World, character: CollisionObjectHandle, across: f64) {
     let before = world.collision_object(character).expect("never removed").position().translation.y;
     for motion in [Vector::new(0.0, STEP), Vector::new(across, 0.0)] {
         let position = sweep(world, character, motion);
         world.set_position(character, position);
     }
-    // Under a low ceiling it rose by less than a step.
+    // Under a low ceiling the character rises by less than a step.
     let risen =
         world.collision_object(character).expect("never removed").position().translation.y - before;
     let position = sweep(world, character, Vector::new(0.0, -risen - FALL));
     world.set_position(character, position);
 }
 
-/// Something carries the character: a contact whose normal, away from it, points down.
+/// Returns `true` if something supports the character: a contact whose normal, which points away
+/// from the character, points down.
 fn is_grounded(world: &World, character: CollisionObjectHandle) -> bool {
     world.contacts_with(character).any(|(_, point)| point.contact.normal.y < -0.7)
 }

@@ -1,5 +1,5 @@
-//! Debug drawing by a back end of one's own: a scene in 2D as text. The back end has one method, which puts characters
-//! along a line; the library calls it for shapes, contacts and a ray.
+//! Debug drawing with a custom back end: a 2D scene as text. The back end has one method, which
+//! puts characters along a line. The library calls it for shapes, contacts and a ray.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -7,7 +7,8 @@ use impinge::debug_render::{Color, DebugRender, Drawn};
 use impinge::dim2::debug_render::DebugDrawing;
 use impinge::dim2::prelude::*;
 
-/// A picture of 16 × 10 units, the origin in the middle of its lowest row. A character is 1/4 wide and 1/2 high.
+/// A picture of 16 × 10 units; the origin is in the middle of the lowest row. A character is 1/4
+/// wide and 1/2 high.
 struct Screen([[char; 64]; 20]);
 
 impl DebugRender<f64, 2> for Screen {
@@ -19,7 +20,8 @@ impl DebugRender<f64, 2> for Screen {
             Drawn::QueryHit => 'o',
             _ => return,
         };
-        // In units of characters, from the lower left corner. A point has a length of zero.
+        // The ends in units of characters, from the lower left corner. A point is a line of length
+        // zero.
         let [a, b] = [a, b].map(|end| Point::new(end.x * 4.0 + 32.0, end.y * 2.0));
         let segment = Segment::new(a, b);
         for (y, row) in (0_u8..).zip(self.0.iter_mut().rev()) {
@@ -58,8 +60,8 @@ fn main() {
     let lines: Vec<String> = screen.0.iter().map(|row| row.iter().collect()).collect();
     println!("{}", lines.join("\n"));
 
-    // The ray hits the capsule at x = -3.625. The box touches the ground in two points, the ball and the capsule
-    // touch in one each; a normal is one or two characters high.
+    // The ray hits the capsule at x = -3.625. The box touches the ground in two points, the ball
+    // and the capsule touch in one point each. A normal is one or two characters high.
     let normals = lines.concat().chars().filter(|&character| character == '|').count();
     assert!(lines[9].starts_with("-----------") && lines[9].contains('o'), "the ray and its hit");
     assert!((4..=16).contains(&normals), "contacts of three pairs: {normals}");

@@ -1,6 +1,7 @@
-//! Ten thousand grasps of a mug by a gripper of two fingers, each checked in one call: which leave both fingers clear of the
-//! mug and of the table, and which clear one brings a finger nearest to the mug. The output is how many are clear,
-//! and the nearest with its clearance.
+//! Ten thousand grasps of a mug by a gripper with two fingers, checked in a few calls. For which
+//! grasps are both fingers clear of the mug and of the table, and in which of these is a finger
+//! nearest to the mug? The output is the number of clear grasps, and the nearest one with its
+//! clearance.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -9,16 +10,16 @@ use impinge::dim3::batch::{
 };
 use impinge::dim3::prelude::*;
 
-/// Grasps: so many turns about the axis of the mug at so many heights.
+/// The number of rotations about the axis of the mug, and the number of heights, of the grasps.
 const TURNS: u32 = 500;
 const HEIGHTS: u32 = 20;
 
-/// The radius of the mug, half its height, and how far a finger is from its axis.
+/// The radius of the mug, half its height, and the distance of a finger from its axis.
 const RADIUS: f64 = 0.04;
 const HALF_HEIGHT: f64 = 0.05;
 const OPENING: f64 = 0.06;
 
-/// A handle on one side of the mug, which fingers must not meet.
+/// Returns a mug with a handle on one side, which the fingers must not touch.
 fn mug() -> Compound<f64> {
     let body = ShapeHandle::new(Cylinder::new(HALF_HEIGHT, RADIUS));
     let handle = ShapeHandle::new(Cuboid::new(Vector::new(0.02, 0.03, 0.005)));
@@ -26,7 +27,8 @@ fn mug() -> Compound<f64> {
     Compound::new(vec![(Isometry::identity(), body), (at, handle)])
 }
 
-/// Where a finger is in each grasp; the other one is half a turn away.
+/// Returns the poses of a finger, one for each grasp. `half_turn` is 0 for the first finger and
+/// 0.5, half a turn, for the opposite one.
 fn fingers(half_turn: f64) -> Vec<Isometry<f64>> {
     let pose = |index: u32| {
         let turn = f64::from(index % TURNS) / f64::from(TURNS) + half_turn;
@@ -60,7 +62,7 @@ fn main() -> Result<(), BatchError> {
     println!("{clear} of {} grasps are clear", clearance.len());
     assert!(clear > 5000 && clear < 9900, "fingers meet the handle, or the table");
 
-    // What a single call says of some of them.
+    // Single calls return the same distances, checked for some of the grasps.
     for index in (0..clearance.len()).step_by(997) {
         let shape = Capsule::new(0.015, 0.01);
         let apart = poses.each_ref().map(|poses| {
@@ -74,7 +76,7 @@ fn main() -> Result<(), BatchError> {
     report_nearest(&mug, &poses[0], &clearance)
 }
 
-/// Prints the clear grasp whose first finger is nearest to the mug.
+/// Prints the clear grasp in which the first finger is nearest to the mug.
 fn report_nearest(
     mug: &Side<'_, f64>,
     poses: &[Isometry<f64>],

@@ -1,19 +1,20 @@
-//! A lidar: a robot in a room casts a fan of rays all around itself, in one call, and draws the points that they hit,
-//! with one letter for each object. What is hidden behind an object stays blank. Each ray ends on a surface.
+//! A lidar: a robot in a room casts rays in all directions, in one call, and draws the points that
+//! they hit, with one letter for each object. Areas hidden behind an object stay blank. Every ray
+//! ends on a surface, since the room is closed.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
 use impinge::dim2::prelude::*;
 use impinge::dim2::query::RayBatch;
 
-/// Each object's data is the letter that it is drawn with.
+/// The data of an object is the letter with which it is drawn.
 type World = CollisionWorld<f64, char>;
 
 const RAYS: u32 = 1440;
-/// The room is so many cells wide and high; a cell of the picture is 0.25 wide and 0.5 high.
+/// The width and the height of the picture in cells. A cell is 0.25 wide and 0.5 high.
 const CELLS: [usize; 2] = [65, 17];
 
-/// A room of 16 × 8 with a round column, a box and a slanted plank.
+/// Builds a room of 16 × 8 with a round column, a box and a slanted plank.
 fn build() -> World {
     let mut world = World::new(0.02);
     let (groups, query) = (CollisionGroups::new(), ProximityQuery::default());
@@ -29,14 +30,14 @@ fn build() -> World {
     world
 }
 
-/// Directions all around, of length 1, so that times of impact are distances.
+/// Returns rays in all directions. The directions have length 1, so times of impact are distances.
 fn fan(origin: Point<f64>) -> Vec<Ray<f64>> {
     let turn = std::f64::consts::TAU / f64::from(RAYS);
     let directions = (0..RAYS).map(|n| Rotation::new(f64::from(n) * turn) * Vector::x());
     directions.map(|direction| Ray::new(origin, direction)).collect()
 }
 
-/// The row and column of the cell that holds a point.
+/// Returns the row and the column of the cell that contains a point.
 #[allow(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -74,8 +75,10 @@ fn main() {
     let toi = |degrees: usize| hits[degrees * 4].as_ref().expect("the room is closed").1.toi;
     assert_eq!(toi(0), 3.0, "the column, 4 away and of radius 1");
     assert!((toi(90) - 4.0).abs() < 1e-12 && (toi(180) - 8.0).abs() < 1e-12, "the walls");
-    // The ray at 225° meets the plank's line y = x + 2 nowhere, being parallel to it; the wall ends it.
+    // The ray at 225° is parallel to the plank, which lies on the line y = x + 2, and does not meet
+    // it. It ends at the wall.
     assert!((toi(225) - 4.0 * 2.0_f64.sqrt()).abs() < 1e-12, "past the plank");
-    // Seen from 4 away, a disk of radius 1 covers asin(1/4) = 14.48° to each side: 57 quarters of a degree.
+    // From a distance of 4, a disk of radius 1 covers asin(1/4) = 14.48° on each side: 57 quarters
+    // of a degree.
     assert_eq!(seen[&'c'], 115, "57 rays to each side, and the one in the middle");
 }

@@ -1,6 +1,7 @@
-//! A magnet among scrap: a query finds the three objects of iron nearest to it, and each moves along the line between
-//! the closest points until it touches. Distances are between surfaces, not between centers: a long bar whose end
-//! is near comes before a ball whose center is nearer. The output is the list by distance.
+//! A magnet among scrap. A query finds the three iron objects nearest to it, and each of them moves
+//! along the line between the closest points until it touches the magnet. Distances are between
+//! surfaces, not between centers: a long bar whose end is near comes before a ball whose center is
+//! nearer. The output is the list of objects by distance.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -13,11 +14,11 @@ struct Scrap {
 
 type World = CollisionWorld<f64, Scrap>;
 
-/// How far the magnet reaches, and its radius.
+/// The maximum distance of an object that the magnet attracts, and the radius of the magnet.
 const RANGE: f64 = 4.0;
 const RADIUS: f64 = 1.0;
 
-/// Scrap around the origin, where the magnet is.
+/// Builds scrap around the magnet, which is at the origin.
 fn build() -> World {
     let mut world = World::new(0.02);
     let pieces = [
@@ -46,8 +47,9 @@ fn main() {
         println!("{:.4}  {}", found.distance, found.object.data().name);
     }
     let names: Vec<_> = in_range.iter().map(|found| found.object.data().name).collect();
-    // By hand: the bar ends at 5 − 2.5, the ball at 3.5 − 0.5, the can at 4 − 0.75; the nearest corner of the
-    // die is at (2.5, 2.5, 1.5), √14.75 away. The magnet's radius is taken off each.
+    // By hand, the distances from the center: the bar 5 − 2.5, the ball 3.5 − 0.5, the can 4 −
+    // 0.75; the nearest corner of the die is at (2.5, 2.5, 1.5), √14.75 away. The radius of the
+    // magnet is subtracted from each.
     let by_hand = [1.5, 2.0, 2.25, 14.75_f64.sqrt() - 1.0];
     assert_eq!(
         names,
@@ -62,7 +64,7 @@ fn main() {
         );
     }
 
-    // The three nearest: `nearest_objects` ends its search with the third.
+    // The three nearest objects: `nearest_objects` ends its search when it has found them.
     let nearest = world.nearest_objects(&here, &magnet, 3, RANGE, &iron);
     let drawn = nearest.iter().filter_map(|found| {
         let ClosestPoints::WithinMargin(on_magnet, on_object) = found.points else { return None };
@@ -73,7 +75,7 @@ fn main() {
     let drawn: Vec<_> = drawn.collect();
     world.set_positions(&drawn);
 
-    // Queries see the new positions at once, without an update.
+    // Queries use the new positions immediately, without an update.
     let touching = world.objects_within(&here, &magnet, 1e-12, &iron);
     let names: Vec<_> = touching.iter().map(|found| found.object.data().name).collect();
     println!("The magnet holds: {}.", names.join(", "));
@@ -85,7 +87,7 @@ fn main() {
         4,
         "the die stayed where it was"
     );
-    // What was drawn moved by its distance: the bar along z, to 3.5.
+    // Each attracted object moved by its distance: the bar along z, to 3.5.
     let bar =
         world.collision_objects().find(|object| object.data().name == "bar").expect("it is there");
     assert!(

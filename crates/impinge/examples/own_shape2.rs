@@ -1,6 +1,7 @@
-//! A convex shape of one's own by its support map: the Reuleaux triangle, which is bounded by three arcs around the
-//! corners of an equilateral triangle. It has the same width in every direction, like a ball, so that it turns between
-//! two parallel walls at the same total gap. Distances, point queries and worlds need nothing but the map.
+//! A user-defined convex shape, given by its support map: the Reuleaux triangle. It is bounded by
+//! three arcs around the corners of an equilateral triangle. Like a ball it has the same width in
+//! every direction. So the sum of its distances from two parallel walls is the same at every angle.
+//! Distances, point queries and worlds need only the support map.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -8,7 +9,8 @@ use impinge::dim2::math::Matrix;
 use impinge::dim2::prelude::*;
 use impinge::dim2::shape::{CurvedSupport, Geometry, SupportMap};
 
-/// The points that are at most `width` away from each of three points, which are `width` apart.
+/// The points at a distance of at most `width` from each of the three corners, which are `width`
+/// apart.
 #[derive(Debug)]
 struct Reuleaux {
     width: f64,
@@ -25,8 +27,9 @@ impl Reuleaux {
         }
     }
 
-    /// The corner whose arc faces a direction, if an arc does: the corner lies on the other side, within 30°
-    /// of the direction's opposite. Corners are width / √3 from the middle, and cos 30° is √3 / 2.
+    /// Returns the center of the arc whose normals include a direction; `None` if a corner is the
+    /// support point. The center is the corner within 30° of the opposite direction. Corners are
+    /// width / √3 from the middle, and cos 30° is √3 / 2.
     fn arc(&self, direction: &Vector<f64>) -> Option<&Point<f64>> {
         self.corners.iter().find(|corner| corner.coords.dot(direction) <= -self.width / 2.0)
     }
@@ -44,7 +47,8 @@ impl SupportMap<f64, 2> for Reuleaux {
         higher(higher(a, b), c)
     }
 
-    // Optional: on an arc the support point turns around the corner. With it normals are exact to the last digits.
+    // Optional: on an arc the support point moves on a circle around the corner. With this method
+    // normals are accurate up to rounding.
     fn curved_support(
         &self,
         _: &Point<f64>,
@@ -62,7 +66,7 @@ impl Shape<f64, 2> for Reuleaux {
         Geometry::support_map(self)
     }
 
-    // The box around the shape where it is not turned: its extents are those of four support points.
+    // The bounding box of the unrotated shape, from the support points along the axes.
     fn local_aabb(&self) -> Aabb<f64> {
         let reach = |direction: Vector<f64>| self.core_support(&direction);
         let (x, y) = (Vector::x(), Vector::y());
@@ -83,12 +87,13 @@ fn main() {
         filled += line.matches('#').count();
         println!("{line}");
     }
-    // Its area is (π − √3) / 2 · width²; a cell of the picture is 1/16 wide and 1/8 high.
+    // The area is (π − √3) / 2 · width². A cell of the picture is 1/16 wide and 1/8 high.
     let (area, counted) = (2.0 * (std::f64::consts::PI - 3.0_f64.sqrt()), filled as f64 / 128.0);
     println!("area {area:.3}, of the cells {counted:.3}");
     assert!((area - counted).abs() < 0.1, "the picture shows the shape");
 
-    // A floor at y = −2 and a ceiling at y = 2, each a half-plane: 4 − 2 is left, at whatever angle.
+    // A floor at y = −2 and a ceiling at y = 2, both half-planes. Both gaps together are 4 − 2 at
+    // every angle.
     let floor = Plane::new(Vector::y_axis());
     let ceiling = Plane::new(-Vector::y_axis());
     let (low, high) = (Isometry::translation(0.0, -2.0), Isometry::translation(0.0, 2.0));
@@ -99,7 +104,8 @@ fn main() {
         assert!((below + above - 2.0).abs() < 1e-12, "{below} and {above} at {degrees}°");
     }
 
-    // In a world it is like any other shape: here a corner, 2/√3 below the middle, is sunk in by a tenth.
+    // A world handles it like any other shape. Here the lower corner, 2/√3 below the middle,
+    // penetrates the floor by 0.1.
     let mut world = CollisionWorld::new(0.02);
     let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
     world.add(here, ShapeHandle::new(floor), groups, query, "floor");

@@ -1,6 +1,7 @@
-//! A composite shape of one's own: stairs of a hundred thousand treads that take a few bytes, since a formula says where
-//! each tread is and which ones are near a box. No tree is built. Rays, distances, contacts and worlds treat each
-//! tread as an ordinary box. The output shows how few treads a query in the middle of the stairs visits.
+//! A user-defined composite shape: stairs of a hundred thousand treads that take a few bytes.
+//! Formulas give the position of each tread, and the treads near a box, so no tree is built. Rays,
+//! distances, contacts and worlds treat each tread as an ordinary box. The output shows how few
+//! treads a query in the middle of the stairs visits.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -11,28 +12,30 @@ use impinge::dim3::prelude::*;
 use impinge::dim3::query::witness;
 use impinge::dim3::shape::{CompositeShape, Geometry, Part, PartSearch, PartSolid};
 
-/// Tread n covers x from n to n + 1 times `RUN`; its upper side is n + 1 times `RISE` high.
+/// Tread n extends along x from n · `RUN` to (n + 1) · `RUN`; its upper side is at the height (n +
+/// 1) · `RISE`.
 const RUN: f64 = 0.5;
 const RISE: f64 = 0.25;
 const COUNT: u32 = 100_000;
 
 #[derive(Debug)]
 struct Stairs {
-    /// All treads are this box, 0.125 thick and 2 wide.
+    /// The shape of every tread, 0.125 thick and 2 wide.
     tread: Cuboid<f64>,
-    /// How many treads queries have visited, for the output.
+    /// The number of treads that queries have visited, for the output.
     visited: AtomicU32,
 }
 
-/// How far tread n is from an interval of x, and so at least from a box; infinite beyond the ends.
+/// Returns the gap along x between tread n and an interval, which is a lower bound of its distance
+/// from a box over this interval. Infinite if there is no tread n.
 fn gap(n: i64, [mins, maxs]: [f64; 2]) -> f64 {
     let start = n as f64 * RUN;
     let is_there = (0..i64::from(COUNT)).contains(&n);
     if is_there { (start - maxs).max(mins - start - RUN).max(0.0) } else { f64::INFINITY }
 }
 
-/// Proposes treads from the middle of an interval to both ends of the stairs, near ones first, while they are
-/// within the limit that `visit` returns.
+/// Visits treads from the middle of an interval towards both ends of the stairs, in the order of
+/// their gaps. It ends when the gap exceeds the limit that `visit` returns.
 #[allow(clippy::cast_possible_truncation, reason = "casts of floats saturate")]
 fn outward(x: [f64; 2], mut limit: f64, visit: &mut dyn FnMut(u32, f64) -> f64) {
     let middle = ((x[0] / 2.0 + x[1] / 2.0) / RUN) as i64;
@@ -48,7 +51,7 @@ fn outward(x: [f64; 2], mut limit: f64, visit: &mut dyn FnMut(u32, f64) -> f64) 
     }
 }
 
-/// The extent of a box along the stairs.
+/// Returns the interval of x that a box covers.
 fn along(aabb: &Aabb<f64>) -> [f64; 2] {
     [aabb.mins().x, aabb.maxs().x]
 }
@@ -62,7 +65,7 @@ impl PartSearch<f64, 3> for Stairs {
     fn overlapping(&self, aabb: &Aabb<f64>, visit: &mut dyn FnMut(u32)) {
         outward(along(aabb), 0.0, &mut |n, nearer| {
             visit(n);
-            nearer // those at no distance, all of them
+            nearer // only the treads with a gap of zero, all of them
         });
     }
 
@@ -70,7 +73,8 @@ impl PartSearch<f64, 3> for Stairs {
         outward(along(aabb), limit, visit);
     }
 
-    // A box that moves along x passes a gap at its speed. One that does not, meets those beside it only.
+    // A moving box closes a gap along x at its speed along x. Without speed along x it can only
+    // meet treads with a gap of zero.
     fn cast(
         &self,
         aabb: &Aabb<f64>,
@@ -123,13 +127,14 @@ fn main() {
     let down = Ray::new(Point::new(25_000.25, 20_000.0, 0.0), -Vector::y());
     let hit = stairs.toi_and_normal_with_ray(&here, &down, true).expect("tread 50000 is below");
     let for_ray = visits();
-    // Its upper side is 50001 · 0.25 high.
+    // The upper side of the tread is at 50001 · 0.25.
     assert_eq!((hit.part, hit.toi), (50_000, 20_000.0 - 12_500.25), "by the formula");
 
     let place = Isometry::translation(25_000.25, 12_500.25 + 0.75, 0.0);
     let found = witness(&here, &stairs, &place, &ball, f64::INFINITY).expect("there is no limit");
     let for_distance = visits();
-    // The tread below is 0.25 away; the front edge of the next one is 0.25 beside and 0.5 below the middle.
+    // The ball is 0.25 above its own tread. The front edge of the next tread is 0.25 beside and 0.5
+    // below the center of the ball.
     let by_hand = (0.25_f64 * 0.25 + 0.5 * 0.5).sqrt() - 0.5;
     assert!((found.distance - by_hand).abs() < 1e-9, "{}, by hand {by_hand}", found.distance);
     assert_eq!(found.part1, 50_001, "the next one is nearer");
@@ -137,7 +142,7 @@ fn main() {
     println!("ball: {:.4} from tread {}, {for_distance} visited", found.distance, found.part1);
     assert!(for_ray <= 4 && for_distance <= 16, "of a hundred thousand treads");
 
-    // In a world a ball is in contact with some tread wherever it is along the slope.
+    // In a world a ball on the slope is in contact with a tread at every position.
     let mut world = CollisionWorld::new(0.02);
     let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
     world.add(here, ShapeHandle::new(stairs), groups, query, ());

@@ -1,6 +1,7 @@
-//! A one-way platform: the player jumps through it from below, lands on it from above, and drops through it on
-//! demand. A pair filter rejects the pair while the player passes. The answer of a filter must not change by itself,
-//! so the program registers it again whenever it does. The output is the height of the feet over time.
+//! A one-way platform: the player jumps through it from below, lands on it from above, and drops
+//! through it on demand. A pair filter rejects the pair while the player passes. The world does not
+//! notice when the result of a filter changes. So the program registers the filter again whenever
+//! it does. The output is the height of the feet over time.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -19,20 +20,21 @@ type Object = CollisionObject<f64, Thing>;
 const STEP: f64 = 1.0 / 64.0;
 const GRAVITY: f64 = 10.0;
 
-/// The platform and a player who passes do not interact.
+/// Returns `false` for the platform and a player who passes.
 fn may_touch(object1: &Object, object2: &Object) -> bool {
     let things = [*object1.data(), *object2.data()];
     !(things.contains(&Thing::Platform) && things.contains(&Thing::Player { passes: true }))
 }
 
-/// Sets whether the player passes, and has all pairs filtered again at the next update.
+/// Sets whether the player passes the platform. Registering the filter again makes the next update
+/// filter all pairs.
 fn let_pass(world: &mut World, player: CollisionObjectHandle, passes: bool) {
     let object = world.collision_object_mut(player).expect("the player is never removed");
     *object.data_mut() = Thing::Player { passes };
     world.register_broad_phase_pair_filter("one-way platforms", may_touch);
 }
 
-/// The floor at height 0, a platform from 1.75 to 2, a player of width and height 1.
+/// Builds a floor at height 0, a platform from 1.75 to 2, and a player of width and height 1.
 fn build() -> (World, CollisionObjectHandle) {
     let mut world = World::new(0.02);
     let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
@@ -47,7 +49,8 @@ fn build() -> (World, CollisionObjectHandle) {
     (world, player)
 }
 
-/// How deep the player is in what carries it: the deepest contact whose normal, away from it, points down.
+/// Returns the depth of the player in the object that supports it: that of the deepest contact
+/// whose normal, which points away from the player, points down.
 fn sunk(world: &World, player: CollisionObjectHandle) -> Option<f64> {
     let below = world.contacts_with(player).filter(|(_, point)| point.contact.normal.y < -0.5);
     below.map(|(_, point)| point.contact.depth).reduce(f64::max)
@@ -59,16 +62,16 @@ fn main() {
     for step in 0..192 {
         match step {
             16 => {
-                speed = 8.0; // rises by 8² / 20 = 3.2
+                speed = 8.0; // it rises by 8² / 20 = 3.2
                 let_pass(&mut world, player, true);
             }
-            128 => let_pass(&mut world, player, true), // "down" is pressed
+            128 => let_pass(&mut world, player, true), // the player presses "down"
             _ => {}
         }
         let was_rising = speed > 0.0;
         speed -= GRAVITY * STEP;
         if was_rising && speed <= 0.0 {
-            let_pass(&mut world, player, false); // from the top of the jump on it is solid again
+            let_pass(&mut world, player, false); // at the top it becomes solid again
         }
         feet += speed * STEP;
         world.set_position(player, Isometry::translation(0.0, feet + 0.5));
@@ -80,7 +83,7 @@ fn main() {
         trace.push(feet);
     }
 
-    // Time runs to the right, three steps to a column; a row is a quarter high.
+    // Time runs to the right, three steps per column; a row is a quarter high.
     for row in (0..14).rev() {
         let low = f64::from(row) * 0.25 - 0.125;
         let is_here = |feet: &f64| (low..low + 0.25).contains(feet);

@@ -1,6 +1,6 @@
-//! A robot arm of four links is checked in a few poses: does it hit itself, does it hit the pillar beside it, and if
-//! neither, how near does it come? Links that share a joint always touch there, so these are no pairs of the checker.
-//! The output has one verdict for each pose.
+//! A robot arm with four links is checked in several configurations: does it hit itself, does it
+//! hit the pillar beside it, and if not, what is its distance? Links that share a joint always
+//! touch there, so these pairs are not checked. The output is one line for each configuration.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -13,19 +13,20 @@ use impinge::dim3::math::Pose;
 use impinge::dim3::prelude::*;
 
 const LINKS: usize = 4;
-/// Each link is a capsule: its axis has length 1, from joint to joint.
+/// The radius of a link. A link is a capsule whose axis has length 1, from joint to joint.
 const RADIUS: f64 = 0.125;
-/// The number of the pillar: obstacles come after the bodies.
+/// The index of the pillar; obstacles come after the bodies.
 const PILLAR: u32 = 4;
 
 fn at(x: f64, y: f64) -> Pose<f64, 3> {
     Pose::from_translation(Vector::new(x, y, 0.0))
 }
 
-/// The arm, and a pillar of 0.5 × 4 × 0.5 whose axis is 1 from that of the base.
+/// Builds the arm, and a pillar of 0.5 × 4 × 0.5 whose axis is at a distance of 1 from that of the
+/// base.
 ///
-/// The base turns the arm about the vertical; each joint bends it on about the z axis that the base has turned, to the
-/// left for positive angles.
+/// The base rotates the arm about the vertical axis. Each joint bends the rest of the arm about the
+/// z axis of the base, to the left for positive angles.
 fn build() -> Checker<f64> {
     let base =
         Frame { parent: None, origin: at(0.0, 0.0), joint: Joint::revolute(Vector::y_axis(), 0) };
@@ -49,7 +50,7 @@ fn build() -> Checker<f64> {
 
 fn main() {
     let right = -FRAC_PI_2;
-    // The angle of the base, then those of the joints.
+    // The angle of the base, then the angles of the joints.
     let poses = [
         ("straight up", [0.0; 1 + LINKS]),
         ("over to the right", [0.0, 0.0, right, 0.0, 0.0]),
@@ -69,12 +70,13 @@ fn main() {
     }
 
     let is_near = |index: usize, by_hand: f64| (distance[index] - by_hand).abs() < 1e-12;
-    // The pillar's near face is 0.75 from the axis of the upright links.
+    // The near face of the pillar is 0.75 from the axis of the upright links.
     assert!(is_near(0, 0.75 - RADIUS), "straight up it is beside the pillar");
     assert_eq!((distance[1], pair[1]), (0.0, [1, PILLAR]), "the second link is in it");
     assert!(is_near(2, 0.75 - RADIUS), "to the left it goes away from it");
     assert_eq!((distance[3], pair[3]), (0.0, [1, PILLAR]), "half a turn makes left right");
     assert_eq!((distance[4], pair[4]), (0.0, [0, 3]), "the last meets the first");
-    // At 45° to the face, the nearest edge of the pillar is at (0.75, ±0.25): (0.75 − 0.25) / √2 from the axis.
+    // At 45° the nearest edge of the pillar is at (0.75, ±0.25): its distance from the axis of the
+    // arm is (0.75 − 0.25) / √2.
     assert!(is_near(5, 0.5 / 2.0_f64.sqrt() - RADIUS), "by the edge of the pillar");
 }

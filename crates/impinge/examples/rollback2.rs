@@ -1,6 +1,8 @@
-//! A game of two over a network that is eight frames slow. Each side plays on at once with a guess of what the other does;
-//! when an input arrives that was guessed wrong, it goes back to before that frame and plays the frames since again.
-//! Marks keep what changed, so that nothing is copied. The output is how often that happened, and the same hash on both sides.
+//! A game for two over a network with a delay of eight frames. Each side plays on at once and
+//! predicts the input of the other player. When an input arrives that was predicted wrong, the side
+//! rewinds the world to the state before that frame and plays the frames since then again. Marks of
+//! the world record only changes, so nothing is copied. The output is how often this happened, and
+//! the hash on both sides, which must be equal.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -9,20 +11,20 @@ use std::collections::{BTreeMap, VecDeque};
 use impinge::dim2::prelude::*;
 use impinge::dim2::world::WorldMark;
 
-/// The data is how often an object was touched: it goes back with the world.
+/// The data is the number of times that an object was touched. It is rewound with the world.
 type World = CollisionWorld<f32, u32>;
 
 const FRAMES: usize = 240;
-/// Frames that an input is under way.
+/// The number of frames after which an input arrives.
 const DELAY: usize = 8;
 
-/// The direction in which a player walks in a frame, as the player presses keys.
+/// Returns the direction in which a player walks in a frame, by the keys that the player presses.
 fn input(player: usize, frame: usize) -> Vector<f32> {
     let keys = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
     Vector::from(keys[(frame / [23, 31][player] + 2 * player) % 4])
 }
 
-/// Two players among crates; the first two objects are the players.
+/// Builds a field of boxes with two players; the first two objects are the players.
 fn build() -> (World, [CollisionObjectHandle; 2]) {
     let mut world = World::new(0.02);
     let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
@@ -38,7 +40,7 @@ fn build() -> (World, [CollisionObjectHandle; 2]) {
     (world, players)
 }
 
-/// One frame: the players walk, and what is touched is pushed out of the way.
+/// Plays one frame: the players walk, and the objects that they touch are pushed out of the way.
 fn step(world: &mut World, players: [CollisionObjectHandle; 2], inputs: [Vector<f32>; 2]) {
     for (player, input) in players.into_iter().zip(inputs) {
         move_by(world, player, input * 0.0625);
@@ -69,7 +71,7 @@ fn move_by(world: &mut World, handle: CollisionObjectHandle, way: Vector<f32>) {
     world.set_position(handle, position);
 }
 
-/// All positions, data and contacts in one number (FNV-1a).
+/// Returns a hash of all positions, data and contacts (FNV-1a).
 fn hash(world: &World) -> u64 {
     let objects = world.collision_objects().flat_map(|object| {
         let place = object.position().translation;
@@ -87,11 +89,12 @@ struct Side {
     me: usize,
     world: World,
     players: [CollisionObjectHandle; 2],
-    /// The state before each of the last frames, and what was guessed for it.
+    /// The state before each of the last frames, and the input of the other player that was used
+    /// for the frame.
     frames: VecDeque<(WorldMark, Vector<f32>)>,
-    /// The inputs of the other player, as far as they have arrived.
+    /// The inputs of the other player that have arrived.
     arrived: Vec<Vector<f32>>,
-    /// The next frame.
+    /// The index of the next frame.
     now: usize,
     returns: usize,
     repeated: usize,
@@ -104,7 +107,8 @@ impl Side {
         Self { me, world, players, frames, arrived, now: 0, returns: 0, repeated: 0 }
     }
 
-    /// Plays the next frame. Of an input that is under way it is guessed that it is the last one that arrived.
+    /// Plays the next frame. If the input of the other player has not arrived, the last one that
+    /// arrived is used as prediction.
     fn play(&mut self) {
         let last = self.arrived.last().copied().unwrap_or_else(Vector::zeros);
         let other = self.arrived.get(self.now).copied().unwrap_or(last);
@@ -120,8 +124,8 @@ impl Side {
         self.now += 1;
     }
 
-    /// Takes the input of the next frame that has none, which was played some frames ago. If it was guessed wrong, these
-    /// frames are played again.
+    /// Stores the input of the first frame without one, which was played some frames ago. If the
+    /// prediction for it was wrong, the frames from there on are played again.
     fn receive(&mut self, input: Vector<f32>) {
         let frame = self.arrived.len();
         self.arrived.push(input);
@@ -153,7 +157,7 @@ fn main() {
         }
     }
 
-    // This game has no network: nothing arrives late.
+    // The same game without a network: every input is known in its frame.
     let (mut world, players) = build();
     for frame in 0..FRAMES {
         step(&mut world, players, [0, 1].map(|player| input(player, frame)));

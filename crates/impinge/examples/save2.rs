@@ -1,12 +1,14 @@
-//! Saving and restoring a world: one call each, in every format of serde, here as text and as bytes. The restored world gives
-//! the same bits as the saved one after the same calls, with the same contact ids and events.
+//! Saving and restoring a world, with one call each, in any format of serde; here as text and as
+//! bytes. After the same calls the restored world has the same bits as the saved one, with the same
+//! contact ids and events.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
 use impinge::dim2::prelude::*;
 use impinge::query::ContactId;
 
-/// The data is the spin of an object in radians a step. It is an `f32`, which text keeps, too.
+/// The data is the rotation of an object per step, in radians. It is an `f32`, which the text
+/// format preserves too.
 type World = CollisionWorld<f64, f32>;
 
 fn add(world: &mut World, shape: ShapeHandle<f64>, x: f64, y: f64, spin: f32) {
@@ -14,7 +16,7 @@ fn add(world: &mut World, shape: ShapeHandle<f64>, x: f64, y: f64, spin: f32) {
     world.add(at, shape, CollisionGroups::new(), query, spin);
 }
 
-/// Turns everything by its spin.
+/// Rotates all objects and updates the world.
 fn step(world: &mut World) {
     let turned = world.collision_objects().map(|object| {
         let mut position = *object.position();
@@ -26,14 +28,14 @@ fn step(world: &mut World) {
     world.update();
 }
 
-/// All contacts with their ids, to be compared bit by bit.
+/// Returns all contacts with their ids, for a comparison bit by bit.
 fn contacts(world: &World) -> Vec<(ContactId, Contact<f64>)> {
     let points = world.contact_views().flat_map(|(_, _, manifold)| manifold.contacts());
     points.map(|point| (point.id, point.contact)).collect()
 }
 
 fn main() {
-    // Three cogs in a row, which share a shape, and a ball between two of their teeth.
+    // Three boxes in a row, which share a shape, and a ball between two of them.
     let mut world = World::new(0.02);
     let cog = ShapeHandle::new(Cuboid::new(Vector::new(0.75, 0.5)));
     for (x, spin) in [(0.0, 0.1), (1.2, -0.1), (2.4, 0.1)] {
@@ -64,7 +66,8 @@ fn main() {
     }
     assert!(compared > 200, "there was something to compare: {compared}");
 
-    // Saved games come from anywhere. Data that makes no world is refused, whatever is in it.
+    // Saved games may come from anywhere. Data that does not describe a valid world is rejected
+    // with an error.
     let damages = [("\"0.3\"", "\"-0.3\""), ("\"objects\":[0,1]", "\"objects\":[0,9]")];
     for (old, new) in damages {
         let damaged = text.replacen(old, new, 1);

@@ -1,12 +1,13 @@
-//! Two automatic doors, each with a sensor: an area with a proximity query. A door is open while somebody is in its
-//! area, by a count that is kept from proximity events alone. The last visitor is removed inside an area, which is an
-//! event as well, so that the count returns to zero. The output says when the doors move.
+//! Two automatic doors, each with a sensor: an area with a proximity query. A door is open while
+//! somebody is in its area, by a count that is updated from proximity events only. The last visitor
+//! is removed inside an area; this causes an event too, so the count returns to zero. The output
+//! tells when the doors move.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
 use impinge::dim2::prelude::*;
 
-/// What the program knows about an object.
+/// The data of an object.
 enum Thing {
     Sensor { door: &'static str, inside: u32 },
     Visitor,
@@ -14,16 +15,18 @@ enum Thing {
 
 type World = CollisionWorld<f32, Thing>;
 
-/// Visitors are in group 0. Sensors are in group 1 and look at group 0, so that they never meet each other.
+/// Returns the groups. Visitors are in group 0. Sensors are in group 1 and interact with group 0
+/// only, so that they ignore each other.
 fn groups() -> (CollisionGroups, CollisionGroups) {
     let visitors = CollisionGroups::new().with_membership(&[0]);
     let sensors = CollisionGroups::new().with_membership(&[1]).with_whitelist(&[0]);
     (visitors, sensors)
 }
 
-/// Updates the count of a sensor; returns the line to print if its door moves.
+/// Updates the count of a sensor. Returns the line to print if its door moves.
 fn note(world: &mut World, event: ProximityEvent) -> Option<String> {
-    // Either may be the sensor; of a visitor who is gone only the handle is left.
+    // Either object may be the sensor. A removed visitor has no object any more, only its handle is
+    // in the event.
     for handle in [event.collider1, event.collider2] {
         let Some(object) = world.collision_object_mut(handle) else { continue };
         let Thing::Sensor { door, inside } = object.data_mut() else { continue };
@@ -39,14 +42,14 @@ fn note(world: &mut World, event: ProximityEvent) -> Option<String> {
 fn main() {
     let mut world = World::new(0.02);
     let (visitor_groups, sensor_groups) = groups();
-    // Areas 4 wide around x = 0 and x = 10.
+    // The areas are 4 wide, around x = 0 and x = 10.
     let area = ShapeHandle::new(Cuboid::new(Vector::new(2.0, 2.0)));
     for (door, x) in [("first", 0.0), ("second", 10.0)] {
         let sensor = Thing::Sensor { door, inside: 0 };
         let position = Isometry::translation(x, 0.0);
         world.add(position, area.clone(), sensor_groups, ProximityQuery::default(), sensor);
     }
-    // Two visitors of radius 0.5 walk along the x axis, one unit a step.
+    // Two visitors of radius 0.5 walk along the x axis by one unit per step.
     let body = ShapeHandle::new(Ball::new(0.5));
     let starts = [-5.0, -8.0];
     let visitors = starts.map(|x| {
@@ -65,15 +68,16 @@ fn main() {
             world.remove(&visitors[1..]);
         }
         world.update();
-        // A copy, since counting changes the world.
+        // The events are copied, since counting changes the world.
         for event in world.proximity_events().to_vec() {
             log.extend(note(&mut world, event).map(|line| format!("step {step:2}: {line}")));
         }
     }
     println!("{}", log.join("\n"));
 
-    // A visitor intersects an area while its center is within 2.5 of the area's. The first one is at
-    // step − 5, the second at step − 8, and the second is removed at x = 11.
+    // A visitor intersects an area while their centers are less than 2.5 apart. At each step the
+    // first visitor is at x = step − 5, the second at x = step − 8. The second one is removed at x
+    // = 11.
     let expected = [
         "step  3: the first door opens",
         "step 11: the first door closes",

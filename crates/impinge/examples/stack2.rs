@@ -1,6 +1,7 @@
-//! A stack of boxes at rest, held up by a small solver. Contacts keep their ids from step to step, so that the solver
-//! stores the impulse of each contact by its id and starts the next step from there. With these warm starts four
-//! iterations carry ten boxes; without them the stack sinks ten times as far. The output compares both.
+//! A stack of boxes at rest, held up by a small solver. Contacts keep their ids from step to step,
+//! so the solver stores the impulse of each contact by its id and starts the next step with it.
+//! With these warm starts four iterations carry ten boxes; without them the stack sinks ten times
+//! as far. The output compares both.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -9,7 +10,7 @@ use std::collections::BTreeMap;
 use impinge::dim2::prelude::*;
 use impinge::dim2::query::ContactId;
 
-/// The data is the number of a box, counted from below; the floor has none.
+/// The data is the index of a box, counted from below; `None` for the floor.
 type World = CollisionWorld<f64, Option<usize>>;
 type Impulses = BTreeMap<ContactId, f64>;
 
@@ -17,20 +18,20 @@ const BOXES: usize = 10;
 const STEP: f64 = 1.0 / 64.0;
 const GRAVITY: f64 = 10.0;
 const ITERATIONS: usize = 4;
-/// An overlap that is left alone, so that contacts last.
+/// A depth that is not corrected, so that contacts last.
 const SLOP: f64 = 0.005;
 
-/// A contact as a row of the solver: its impulse pushes the upper box up and the lower one down.
+/// A contact as a row of the solver. Its impulse pushes the upper box up and the lower box down.
 struct Row {
     id: ContactId,
     lower: Option<usize>,
     upper: usize,
-    /// The speed at which the two must part at least; negative while there is a gap to close.
+    /// The minimum speed at which the two must separate; negative while there is a gap to close.
     speed: f64,
     impulse: f64,
 }
 
-/// Boxes of size and mass 1 on each other. Contacts exist from a gap of 0.02 on.
+/// Builds a stack of boxes of size and mass 1. Contacts exist up to a gap of 0.02.
 fn build() -> (World, Vec<CollisionObjectHandle>) {
     let mut world = World::new(0.02);
     let (groups, query) = (CollisionGroups::new(), ContactQuery::new(0.01));
@@ -45,7 +46,7 @@ fn build() -> (World, Vec<CollisionObjectHandle>) {
     (world, boxes)
 }
 
-/// The contacts of the last update, each with the impulse that it had a step ago.
+/// Returns the contacts of the last update, each with its impulse of the previous step.
 fn rows(world: &World, stored: &Impulses) -> Vec<Row> {
     let mut rows = Vec::new();
     for (object1, object2, manifold) in world.contact_views() {
@@ -53,7 +54,8 @@ fn rows(world: &World, stored: &Impulses) -> Vec<Row> {
             object2.data().expect("the floor was added first and is the first of its pairs");
         for point in manifold.contacts() {
             let depth = point.contact.depth;
-            // A gap may be closed in a step; of too deep an overlap a fifth is to be gone after it.
+            // A gap may close within the step. Of a depth beyond `SLOP` a fifth is corrected in the
+            // step.
             let speed = if depth < 0.0 { depth } else { 0.2 * (depth - SLOP).max(0.0) } / STEP;
             let impulse = stored.get(&point.id).copied().unwrap_or(0.0);
             rows.push(Row { id: point.id, lower: *object1.data(), upper, speed, impulse });
@@ -69,7 +71,8 @@ fn push(row: &Row, impulse: f64, speeds: &mut [f64]) {
     }
 }
 
-/// Sequential impulses: each row in turn gets the impulse that it alone would need; none ever pulls.
+/// Solves by sequential impulses: each row in turn gets the impulse that would satisfy it alone.
+/// The total impulse of a row never pulls.
 fn solve(rows: &mut [Row], speeds: &mut [f64]) {
     for row in rows.iter() {
         push(row, row.impulse, speeds);
@@ -85,7 +88,8 @@ fn solve(rows: &mut [Row], speeds: &mut [f64]) {
     }
 }
 
-/// How far the top box has sunk after four seconds, and the impulse of the floor in the last step.
+/// Returns by how much the top box has sunk after four seconds, and the impulse of the floor in the
+/// last step.
 fn run(is_warm: bool) -> (f64, f64) {
     let (mut world, boxes) = build();
     let (mut speeds, mut impulses, mut first_ids) = ([0.0; BOXES], Impulses::new(), Vec::new());

@@ -1,6 +1,7 @@
-//! A crooked stack of boxes at rest, held up by a small engine: bodies that move and turn, friction, and impulses
-//! that contacts keep from step to step by their ids. With these warm starts ten iterations carry ten boxes; without
-//! them the stack falls. The output compares both. Erin Catto, "Iterative Dynamics with Temporal Coherence" (2005).
+//! A crooked stack of boxes at rest, held up by a small engine: rigid bodies, friction, and
+//! impulses that are kept from step to step by the ids of contacts. With these warm starts ten
+//! iterations carry ten boxes; without them the stack falls. The output compares both. Erin Catto,
+//! "Iterative Dynamics with Temporal Coherence" (2005).
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -10,9 +11,9 @@ use impinge::dim3::math::Orientation;
 use impinge::dim3::prelude::*;
 use impinge::dim3::query::ContactId;
 
-/// The data is the index of a body.
+/// The data of an object is the index of its body.
 type World = CollisionWorld<f32, usize>;
-/// The normal impulse of a contact, and its friction in the world frame.
+/// The normal impulse of a contact, and its friction impulse in the world frame.
 type Impulses = BTreeMap<ContactId, (f32, Vector<f32>)>;
 
 const BOXES: usize = 10;
@@ -20,7 +21,7 @@ const STEP: f32 = 1.0 / 60.0;
 const GRAVITY: f32 = 10.0;
 const ITERATIONS: usize = 10;
 const FRICTION: f32 = 0.5;
-/// An overlap that is left alone, so that contacts last.
+/// A depth that is not corrected, so that contacts last.
 const SLOP: f32 = 0.005;
 
 /// A box, or the floor, whose inverse mass and inertia are zero.
@@ -30,28 +31,29 @@ struct Body {
     velocity: Vector<f32>,
     spin: Orientation<f32>,
     inverse_mass: f32,
-    /// About its own axes.
+    /// The inverse moments of inertia about the axes of the body's own frame.
     inverse_inertia: Vector<f32>,
 }
 
-/// One direction in which a contact pushes its second body, and the first one the other way.
+/// A direction of a contact. An impulse pushes the second body along it, and the first body in the
+/// opposite direction.
 #[derive(Clone, Copy)]
 struct Row {
     direction: Vector<f32>,
-    /// The spins that a unit impulse along `direction` gives either body.
+    /// The angular velocities that a unit impulse along `direction` gives to both bodies.
     turns: [Vector<f32>; 2],
     arms: [Vector<f32>; 2],
-    /// The impulse that changes the speed along the row by 1.
+    /// The effective mass: the impulse that changes the speed along `direction` by 1.
     mass: f32,
     impulse: f32,
 }
 
-/// A contact: a row along the normal, two of friction.
+/// A contact: one row along the normal, two rows for friction.
 struct Joint {
     id: ContactId,
     bodies: [usize; 2],
     rows: [Row; 3],
-    /// The speed at which the two must part at least; negative while there is a gap to close.
+    /// The minimum speed at which the two must separate; negative while there is a gap to close.
     parting: f32,
 }
 
@@ -75,7 +77,8 @@ impl Row {
         Self { direction, turns, arms, mass: 1.0 / (softness[0] + softness[1]), impulse }
     }
 
-    /// How fast the second body leaves the first along the row.
+    /// Returns the relative speed along the row, at which the second body moves away from the
+    /// first.
     fn speed(&self, pair: [&Body; 2]) -> f32 {
         let [a, b] = [0, 1].map(|n| pair[n].velocity + pair[n].spin.cross(&self.arms[n]));
         (b - a).dot(&self.direction)
@@ -90,7 +93,7 @@ impl Row {
     }
 }
 
-/// The contacts of the last update, each with the impulses that it had a step ago.
+/// Returns the contacts of the last update, each with its impulses of the previous step.
 fn joints(world: &World, bodies: &[Body], stored: &Impulses) -> Vec<Joint> {
     let mut joints = Vec::new();
     for (object1, object2, manifold) in world.contact_views() {
@@ -107,18 +110,21 @@ fn joints(world: &World, bodies: &[Body], stored: &Impulses) -> Vec<Joint> {
             let sides = [*normal, tangent, normal.cross(&tangent)];
             let old = [push, friction.dot(&sides[1]), friction.dot(&sides[2])];
             let rows = [0, 1, 2].map(|n| Row::new(sides[n], old[n], arms, pair));
-            // A gap may be closed in a step; of too deep an overlap a fifth is to be gone after it.
+            // A gap may close within the step. Of a depth beyond `SLOP` a fifth is corrected in the
+            // step.
             let parting = if depth < 0.0 { depth } else { 0.2 * (depth - SLOP).max(0.0) } / STEP;
             joints.push(Joint { id: point.id, bodies: numbers, rows, parting });
         }
     }
-    // Views come in no particular order: from the ground upwards. Those of a pair stay in the order of their ids.
+    // The order of views is unspecified. Sorted by body they go from the floor upwards; the sort is
+    // stable, so the contacts of a pair keep their order.
     joints.sort_by_key(|joint| joint.bodies);
     joints
 }
 
-/// Each row in turn gets the impulse that it alone would need. Normals never pull; friction is at most `FRICTION`
-/// times as large. What is solved last is met best, so normals come after friction.
+/// Solves a contact: each row in turn gets the impulse that would satisfy it alone. The normal
+/// impulse never pulls, and friction is at most `FRICTION` times the normal impulse. The row that
+/// is solved last has the smallest error, so the normal comes after friction.
 fn solve(joint: &mut Joint, bodies: &mut [Body]) {
     let pair = joint.bodies.map(|n| &bodies[n]);
     let wish = |row: &Row, speed: f32| row.impulse + (speed - row.speed(pair)) * row.mass;
@@ -139,7 +145,7 @@ fn set(joint: &mut Joint, row: usize, impulse: f32, bodies: &mut [Body]) {
     row.impulse = impulse;
 }
 
-/// One step of the engine; returns the impulses for the next.
+/// Runs one step of the engine. Returns the impulses for the next step.
 fn step(world: &mut World, bodies: &mut [Body], stored: &Impulses) -> Impulses {
     world.update();
     for body in bodies.iter_mut().filter(|body| body.inverse_mass > 0.0) {
@@ -149,7 +155,8 @@ fn step(world: &mut World, bodies: &mut [Body], stored: &Impulses) -> Impulses {
     for joint in &joints {
         joint.rows.iter().for_each(|row| row.push(row.impulse, joint.bodies, bodies));
     }
-    // Up the stack and down again: what is solved last is met best.
+    // Alternately up and down the stack, since the contacts that are solved last have the smallest
+    // error.
     for turn in 0..ITERATIONS {
         if turn % 2 == 0 {
             joints.iter_mut().for_each(|joint| solve(joint, bodies));
@@ -167,7 +174,8 @@ fn step(world: &mut World, bodies: &mut [Body], stored: &Impulses) -> Impulses {
     joints.iter().map(kept).collect()
 }
 
-/// Boxes of size and mass 1 on a floor, each off by a little and turned. Contacts exist from a gap of 0.02 on.
+/// Builds boxes of size and mass 1 on a floor, each slightly displaced and rotated. Contacts exist
+/// up to a gap of 0.02.
 fn build() -> (World, Vec<Body>) {
     let mut world = World::new(0.02);
     let (groups, query) = (CollisionGroups::new(), ContactQuery::new(0.01));
@@ -189,7 +197,8 @@ fn build() -> (World, Vec<Body>) {
     (world, bodies)
 }
 
-/// How far the top box is from where it began after five seconds, and how many contacts got new ids on the way.
+/// Returns the distance that the top box has moved after five seconds, and the number of contacts
+/// that got a new id in a later step.
 fn run(is_warm: bool) -> (f32, usize) {
     let (mut world, mut bodies) = build();
     let begin = bodies[BOXES].pose.translation.vector;

@@ -1,6 +1,7 @@
-//! Terrain that deforms: shells blow craters into a height field on which a tank stands. A shell that misses leaves
-//! the tank's contacts as they are, with their ids. One that hits takes the terrain away below it, and the tank falls
-//! until it touches the bottom. The output is the profile before and after.
+//! Terrain that deforms: shells blow craters into a height field on which a tank stands. If a shell
+//! misses, the contacts of the tank keep their ids. If it hits, the terrain below the tank is
+//! removed, and the tank falls until it touches the bottom. The output is the profile before and
+//! after.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -10,16 +11,16 @@ type World = CollisionWorld<f64, &'static str>;
 
 /// Half the width and half the height of the tank.
 const TANK: [f64; 2] = [1.0, 0.5];
-/// The field is 32 wide around the origin; its 65 heights are 0.5 apart.
+/// The field is 32 wide around the origin, with 65 heights at a spacing of 0.5.
 const WIDTH: f64 = 32.0;
 const HEIGHTS: u32 = 65;
 
-/// Where a height of the field is.
+/// Returns the x coordinate of a height of the field.
 fn x_of(index: usize) -> f64 {
     index as f64 * WIDTH / f64::from(HEIGHTS - 1) - WIDTH / 2.0
 }
 
-/// Lowers the heights within 2 of a place by 1.5: a crater with a flat bottom and steep walls.
+/// Lowers the heights up to 2 away from `x` by 1.5: a crater with a flat bottom and steep walls.
 fn explode(world: &mut World, terrain: CollisionObjectHandle, x: f64) {
     world.deform(terrain, |field: &mut HeightField<f64>| {
         let lowered = |(index, height): (usize, &f64)| {
@@ -30,7 +31,7 @@ fn explode(world: &mut World, terrain: CollisionObjectHandle, x: f64) {
     });
 }
 
-/// Lets an object fall until it touches something; how far it fell.
+/// Lets an object fall until it touches something. Returns the height of the fall.
 fn fall(world: &mut World, object: CollisionObjectHandle) -> f64 {
     let tank = world.collision_object(object).expect("the tank is never removed");
     let (down, options) = (-Vector::y(), ImpactOptions::new().with_max_time(10.0));
@@ -42,14 +43,15 @@ fn fall(world: &mut World, object: CollisionObjectHandle) -> f64 {
     impact.toi
 }
 
-/// The ids of the contacts of an object, sorted.
+/// Returns the sorted ids of the contacts of an object.
 fn ids(world: &World, object: CollisionObjectHandle) -> Vec<impinge::dim2::query::ContactId> {
     let mut ids: Vec<_> = world.contacts_with(object).map(|(_, point)| point.id).collect();
     ids.sort();
     ids
 }
 
-/// The solid cells of the world, half a unit wide and high; the terrain is filled by asking for its height.
+/// Prints the solid cells of the world, half a unit wide and high. Cells below the height of the
+/// terrain are solid.
 fn print(world: &World, terrain: CollisionObjectHandle) {
     let field = world.collision_object(terrain).expect("the terrain is never removed");
     let field = field.shape().as_shape::<HeightField<f64>>().expect("the terrain is a field");

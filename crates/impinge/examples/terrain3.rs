@@ -1,6 +1,7 @@
-//! Tracks in snow: a heavy ball rolls over a height field. Each step lowers the heights under the ball to its
-//! underside, and contacts follow: before, the ball is deep in the snow; after, it touches it but for the curvature
-//! between grid points. The output is the snow from above, and the depth of the deepest contact before and after.
+//! Tracks in snow: a heavy ball rolls over a height field. Each step lowers the heights below the
+//! ball to its underside, and the contacts follow. Before this the ball is deep in the snow;
+//! afterwards it touches the snow, up to the curvature between grid points. The output is the snow
+//! from above, and the depth of the deepest contact before and after.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -8,28 +9,29 @@ use impinge::dim3::prelude::*;
 
 type World = CollisionWorld<f64, &'static str>;
 
-/// The field is 16 × 8 around the origin, with points a quarter apart.
+/// The field has a size of 16 × 8 around the origin, with points a quarter apart.
 const EXTENT: [f64; 2] = [16.0, 8.0];
 const CELL: f64 = 0.25;
 const COLUMNS: usize = 65;
 const ROWS: usize = 33;
 const RADIUS: f64 = 1.0;
-/// How deep the ball is pressed into the snow.
+/// The depth by which the ball is pressed into the snow.
 const PRESSED: f64 = 0.25;
 
-/// Where a point of the grid is, without its height: rows run along z, columns along x.
+/// Returns x and z of a grid point. Rows follow each other along z, columns along x.
 fn place(index: usize) -> [f64; 2] {
     let (row, column) = (index / COLUMNS, index % COLUMNS);
     [column as f64 * CELL - EXTENT[0] / 2.0, row as f64 * CELL - EXTENT[1] / 2.0]
 }
 
-/// How high the underside of the ball is over a place; `None` beside it.
+/// Returns the height of the underside of the ball at a position; `None` if the ball does not cover
+/// it.
 fn underside(center: &Vector<f64>, [x, z]: [f64; 2]) -> Option<f64> {
     let across_squared = (x - center.x).powi(2) + (z - center.z).powi(2);
     (across_squared < RADIUS * RADIUS).then(|| center.y - (RADIUS * RADIUS - across_squared).sqrt())
 }
 
-/// Lowers all heights that are in the ball to its underside; how many that were.
+/// Lowers all heights inside the ball to its underside. Returns the number of lowered heights.
 fn press(world: &mut World, snow: CollisionObjectHandle, center: &Vector<f64>) -> u32 {
     world.deform(snow, |field: &mut HeightField<f64>| {
         let mut lowered = 0;
@@ -45,7 +47,7 @@ fn press(world: &mut World, snow: CollisionObjectHandle, center: &Vector<f64>) -
     })
 }
 
-/// The depth of the deepest contact.
+/// Returns the depth of the deepest contact; `None` without contacts.
 fn deepest(world: &World) -> Option<f64> {
     let depths =
         world.contact_views().map(|(_, _, manifold)| manifold.deepest_contact().contact.depth);
@@ -61,9 +63,9 @@ fn main() {
     let ball = ShapeHandle::new(Ball::new(RADIUS));
     let ball = world.add(Isometry::translation(0.0, 10.0, 0.0), ball, groups, query, "ball");
 
-    // Triangles between points of the ball's surface are chords of the ball: they are at most the sagitta
-    // e² / 8r of their longest edge e in it, and a little more where the surface is steep. The lowest
-    // point of the ball touches the snow where it is at a grid point.
+    // The edges of the snow's triangles are chords of the ball. Their depth in it is at most the
+    // sagitta e² / 8r of the longest edge e, and a little more where the surface is steep. If the
+    // lowest point of the ball is over a grid point, it touches the snow there.
     let sagitta = 2.0 * CELL * CELL / (8.0 * RADIUS);
     let (mut fresh, mut settled) = (0.0_f64, 0.0_f64);
     for step in 0..=48_u8 {
@@ -99,7 +101,8 @@ fn main() {
     assert!(settled < 2.0 * sagitta, "{settled} after, {sagitta} by the formula");
     let lowest = field.heights().iter().copied().fold(0.0, f64::min);
     assert_eq!(lowest, -PRESSED, "the track is as deep as the ball was pressed");
-    // A ball of radius 1, in by a quarter, cuts a disk of radius √(1 − 0.75²) = 0.66: two points to each side.
+    // A ball of radius 1, pressed in by a quarter, cuts the plane in a disk of radius √(1 − 0.75²)
+    // = 0.66: two grid points to each side.
     let across = (0..ROWS).filter(|row| field.height(*row, 20) < 0.0).count();
     assert_eq!(across, 5, "the width of the track at x = −3");
 }

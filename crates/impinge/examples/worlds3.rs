@@ -1,6 +1,7 @@
-//! Many worlds at once: a game server runs one match in each, on one thread each. Worlds share nothing but their
-//! shapes. A match gives the same bits whether it runs alone or beside others, so that a match can be
-//! replayed from its seed. Each line of the output is one match: its contacts, and a hash of their depths.
+//! Many worlds at once: a game server runs each match in a world of its own, on its own thread.
+//! Worlds share only their shapes. A match has the same bits whether it runs alone or beside
+//! others, so it can be replayed from its seed. Each line of the output is one match: the number of
+//! its contacts, and a hash of their depths.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -18,21 +19,22 @@ const MATCHES: u64 = 8;
 /// Half the size of the hall.
 const HALL: f32 = 4.0;
 
-/// What is left of a match.
+/// The result of a match: its numbers of started and stopped contacts, and a hash.
 #[derive(Debug, PartialEq)]
 struct Summary {
     started: usize,
     stopped: usize,
-    /// Pairs in contact at the end.
+    /// The number of pairs in contact at the end.
     touching: usize,
     hash: u64,
 }
 
-/// A small generator of numbers: the same on every machine. See Marsaglia, "Xorshift RNGs", 2003.
+/// A small generator of random numbers that gives the same sequence on every machine. See
+/// Marsaglia, "Xorshift RNGs", 2003.
 struct Dice(u64);
 
 impl Dice {
-    /// A number between −1 and 1, of 24 bits.
+    /// Returns a number from −1 to 1 with 24 bits.
     fn roll(&mut self) -> f32 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
@@ -45,9 +47,10 @@ impl Dice {
     }
 }
 
-/// Balls fly through a hall and through each other; a ball that would leave the hall turns around.
+/// Plays a match. Balls fly through a hall and through each other; a ball that would leave the hall
+/// is reflected.
 fn play(ball: &ShapeHandle<f32>, seed: u64) -> Summary {
-    let mut dice = Dice(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15)); // far apart, for seeds that are not
+    let mut dice = Dice(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15)); // spreads similar seeds
     let mut world = World::new(0.05);
     for _ in 0..BALLS {
         let (position, velocity) = (Isometry::from(dice.vector() * HALL), dice.vector() * 0.1);
@@ -59,7 +62,7 @@ fn play(ball: &ShapeHandle<f32>, seed: u64) -> Summary {
             velocity,
         );
     }
-    // FNV-1a over the bits of all depths, in the order in which the world gives them.
+    // The hash FNV-1a over the bits of all depths, in the order in which the world returns them.
     let mut summary = Summary { started: 0, stopped: 0, touching: 0, hash: 0xcbf2_9ce4_8422_2325 };
     for _ in 0..STEPS {
         advance(&mut world);
@@ -101,7 +104,7 @@ fn main() {
     let together: Vec<Summary> = thread::scope(|scope| {
         let ball = &ball;
         let threads = (1..=MATCHES).map(|seed| scope.spawn(move || play(ball, seed)));
-        // All are spawned before the first is waited for.
+        // All threads are spawned before the first is joined.
         let threads: Vec<_> = threads.collect();
         threads.into_iter().map(|thread| thread.join().expect("matches do not fail")).collect()
     });

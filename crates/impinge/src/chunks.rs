@@ -1,25 +1,26 @@
-//! Parallel work on long lists: cut into chunks that run in order, or with the feature `parallel`
-//! on several threads.
+//! Work on long lists in chunks, which run in order or, with the feature `parallel`, on several
+//! threads.
 //!
 //! ```text
 //!   range    | 0..64 | 64..128 | 128..192 | 192..200 |     the last may be shorter
 //!   columns  |   c   |    c    |    c     |    c     |     the slots of the same elements
 //!             \______________/   \__________________/
-//!                 one half            the other            halves of halves go to threads that are free
+//!                 one half          the other half         rayon splits halves further, for idle threads
 //! ```
 //!
-//! The ends of chunks depend only on the number of elements, and no chunk reads what another
-//! writes. So the bits of the results do not depend on the threads.
+//! The boundaries of the chunks depend only on the number of elements, and no chunk reads results
+//! of another chunk. So the bits of the results do not depend on the number of threads.
 
 use core::ops::{ControlFlow, Range};
 
-/// Number of elements that one thread computes at a time: enough to outweigh the overhead of a
+/// The number of elements that one thread computes at a time: enough to outweigh the overhead of a
 /// chunk, few enough to end soon after a cancellation.
 pub(crate) const CHUNK: usize = 64;
 
-/// Output slots of a range of elements, which can be cut along with the range.
+/// Output slots of a range of elements, which can be split together with the range.
 pub(crate) trait Cut: Sized + Send {
-    /// Splits the slots into those of the first `at` elements and those of the others.
+    /// Splits off the slots of the first `at` elements; returns these slots and the remaining
+    /// slots.
     fn cut(self, at: usize) -> (Self, Self);
 }
 
@@ -50,8 +51,8 @@ impl<T: Send> Cut for PerChunk<'_, T> {
     }
 }
 
-/// Calls `work` with each chunk of a range and its slots, until a call breaks. Several threads may
-/// run `work` at a time; then some chunks after the one that breaks may run too.
+/// Calls `work` with each chunk of a range and its slots, until a call returns `Break`. If several
+/// threads run `work`, some later chunks may still run after that call.
 pub(crate) fn each_chunk<C: Cut>(
     range: Range<usize>,
     columns: C,

@@ -1,17 +1,17 @@
-//! Generations of handles: they distinguish the objects that had one index of a table, and tables
-//! from each other.
+//! Generations of handles, which distinguish the successive objects at one index of a table, and
+//! the handles of different tables.
 
 use core::fmt;
 use core::hash::{Hash, Hasher};
 use core::sync::atomic::{AtomicU32, Ordering};
 
-/// The part of a handle besides the index: the number of objects that had the index before (16
-/// bits), and a tag of the table (16 bits). A single comparison of 32 bits rejects both stale and
-/// foreign handles.
+/// The part of a handle besides the index: the number of earlier objects at the index (16 bits),
+/// and a tag of the table (16 bits). A single comparison of 32 bits rejects both stale handles and
+/// handles of other tables.
 ///
-/// The order is by count; the tag decides only between handles of different tables. `Hash`, `Debug`
-/// and the serialized form use the count alone, so that they do not depend on the order in which
-/// tables are created. A tag is used again after 65535 other tables; a cloned table keeps its tag.
+/// Generations are ordered by count; the tag matters only between handles of different tables.
+/// `Hash`, `Debug` and the serialized form use the count alone, so that they do not depend on the
+/// order in which tables are created. Tags repeat after 65535 tables; a cloned table keeps its tag.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(from = "u16", into = "u16"))]
@@ -20,33 +20,33 @@ pub(crate) struct Generation(u32);
 /// The lowest bit of the count.
 const ONE: u32 = 1 << 16;
 
-/// Number of tables created so far; wraps.
+/// The number of tables created so far in this process; wraps.
 static TABLES: AtomicU32 = AtomicU32::new(0);
 
 impl Generation {
-    /// Returns the first generation in a new table.
+    /// Returns the first generation of a new table, with a new tag and the count 0.
     pub(crate) fn of_new_table() -> Self {
         Self(1 + TABLES.fetch_add(1, Ordering::Relaxed) % (ONE - 1))
     }
 
-    /// Returns a generation without a table, which every table rejects.
+    /// Returns a generation with the tag 0, which no table has, so that every table rejects it.
     pub(crate) const fn of_no_table(count: u16) -> Self {
         Self((count as u32) << 16)
     }
 
-    /// Returns the generation of the same table after `count` objects.
+    /// Returns the generation with the tag of this generation and the count `count`.
     #[cfg(feature = "serde")]
     pub(crate) const fn with_count(self, count: u16) -> Self {
         Self((count as u32) << 16 | self.0 & (ONE - 1))
     }
 
-    /// Returns the number of objects that had the index before.
+    /// Returns the number of earlier objects at the index.
     pub(crate) const fn count(self) -> u16 {
         (self.0 >> 16) as u16
     }
 
-    /// Returns the generation of the next object at this index; `None` once the counts are
-    /// exhausted.
+    /// Returns the generation of the next object at this index; `None` if the count would exceed 16
+    /// bits.
     pub(crate) fn next(self) -> Option<Self> {
         self.0.checked_add(ONE).map(Self)
     }

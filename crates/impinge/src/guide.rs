@@ -1,10 +1,10 @@
 //! The user guide: the features of the library and how to use them, chapter by chapter.
 //!
-//! Chapters are in reading order; every block of code is compiled and run as a test.
+//! The chapters are in reading order. Their code blocks are compiled and run as tests.
 //!
 //! 1. [`introduction`]: two objects in a world, and the contact between them.
 //! 2. [`pipeline`]: how a world works, step by step, and its two phases alone.
-//! 3. [`shapes`]: the solids, their sizes, and how objects share them.
+//! 3. [`shapes`]: the shapes, their parameters, and how objects share them.
 //! 4. [`composites`]: compounds, meshes, terrain, deforming shapes.
 //! 5. [`own_shapes`]: shapes that you implement.
 //! 6. [`contacts`]: contact points and manifolds, from step to step.
@@ -12,7 +12,7 @@
 //! 8. [`events`]: contacts and proximities that began or ended.
 //! 9. [`queries`]: rays, casts, points and distances, with or without a world.
 //! 10. [`batches`]: one query for many placed shapes.
-//! 11. `drawing`: lines of what the library computes, with the feature `debug_render`.
+//! 11. `drawing`: debug drawing of shapes, contacts and queries, with the feature `debug_render`.
 //! 12. [`performance`]: the cost of a step, and how to reduce it.
 //! 13. [`guarantees`]: the guarantees and their precision.
 //!
@@ -20,7 +20,7 @@
 //!
 //! This module exists only in the documentation: a program has no `impinge::guide`.
 
-/// A picture with a line of text.
+/// The data URI of an SVG image with one line of text, which refers the reader to the book.
 macro_rules! in_the_book {
     () => {
         "data:image/svg+xml,%3Csvg xmlns='http://www.w3.org/2000/svg' width='440' height='28'%3E%3Crect width='440' \
@@ -29,9 +29,10 @@ macro_rules! in_the_book {
     };
 }
 
-/// Declares a chapter. Its links refer to files of the guide; since the first definition of a link
-/// name is used, these definitions make them refer to modules. Line pictures are embedded; pixel
-/// pictures are not in the package, and a line of text replaces them.
+/// Declares a chapter. Links in the chapter's Markdown refer to files of the guide. The first
+/// definition of a link name takes precedence, so the definitions here redirect them to modules.
+/// SVG pictures are embedded as data URIs. PNG pictures are not in the package, and `in_the_book!`
+/// replaces them.
 macro_rules! chapter {
     ($name:ident, $file:literal $(, $picture:literal)*) => {
         #[doc = "[batches]: self::batches"]

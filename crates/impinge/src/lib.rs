@@ -1,9 +1,9 @@
 //! Collision detection in 2D and 3D: who touches whom, where, and since when.
 //!
-//! You move your objects by your own rules; there are no forces here. At each update a world
-//! computes which pairs began to touch or parted, where their contact points are, how deep and
-//! along which direction. It also answers queries with rays, points, boxes, shapes and moving
-//! shapes; [`query`] has the queries between two single shapes.
+//! Your program moves the objects; the library computes no forces. At each update a world computes
+//! the pairs that began or ceased to touch, and their contact points with depths and normals. It
+//! also answers queries with rays, points, boxes, shapes and moving shapes; [`query`] has the
+//! queries between two single shapes.
 //!
 //! ```
 //! use impinge::dim3::prelude::*;
@@ -26,44 +26,44 @@
 //!
 //! * The guide explains the library chapter by chapter, with programs; it has tables of names for
 //!   users of ncollide, parry and rapier. It is the module [`guide`] of this documentation.
-//! * [`dim2`] and [`dim3`] have the names to use: everything with the dimension filled in, and a
-//!   `prelude` for common programs. The modules beside them are generic over the dimension `D`; use
-//!   those for code that serves both.
-//! * [`world::CollisionWorld`] is all that most programs need. Its parts work alone too:
+//! * [`dim2`] and [`dim3`] have the names for programs in 2D or in 3D: every type with `D` filled
+//!   in, and a `prelude`. The other modules at the root are generic over the dimension `D`, for
+//!   code that supports 2D and 3D.
+//! * [`world::CollisionWorld`] is all that most programs need. Its parts can be used alone:
 //!   [`broad_phase`] on boxes, [`narrow_phase`] on one pair, [`query`] on two placed shapes.
-//! * [`batch`] evaluates one query for very many placed shapes in one call, with the results in
-//!   arrays.
+//! * [`batch`] evaluates one query for many placed shapes in one call, with the results in arrays.
 //! * [`checker`] tests many configurations of a robot at once for collisions.
-//! * [`shape`] has the solids, and the meshes, height fields and compounds made of them. Positions
-//!   are isometries; `dim2::math` and `dim3::math` define them, vectors and points under equal
-//!   names, and `na` re-exports nalgebra, whose types they are.
+//! * [`shape`] has the convex solids, and the composites: meshes, height fields and compounds.
+//!   Positions are isometries. `dim2::math` and `dim3::math` define isometries, vectors and points
+//!   under the same names; they are types of nalgebra, which [`math::na`] re-exports.
 //!
 //! # Guarantees
 //!
 //! * Intersecting, a distance of zero, and a contact with a depth of zero or more are equivalent.
 //!   (Exceptions: half-spaces that overlap without bound and one-sided surfaces with solids behind
 //!   them have no contact; for composites that just touch, the contact may differ by a rounding
-//!   error.) Touching counts, and so does a distance equal to a prediction or margin.
+//!   error.) Touching counts as intersecting, and a distance equal to a prediction or margin is
+//!   within it.
 //! * A depth is positive inside. Normals are unit vectors from the first solid to the second.
 //!   Angles are in radians. Lengths and times have the units of your input.
 //! * No tolerance is absolute: scaling all input by a power of two scales all results exactly.
-//! * Equal calls give equal bits, on every run, on every machine and for any number of threads.
-//!   Pairs, events and results come in order of the handles.
-//! * Constructors and methods of worlds that panic on misuse have a `try_` twin that returns the
-//!   error; in both cases nothing has changed. An index of a part, corner or height that does not
-//!   exist panics as it does for a slice.
+//! * Equal calls return bitwise equal results, on every run, on every machine and for any number of
+//!   threads. Pairs, events and results are ordered by handles.
+//! * Constructors and methods of worlds that panic on misuse have a variant with the prefix `try_`
+//!   that returns the error; in both cases the world is unchanged. An index of a part, corner or
+//!   height that is out of range panics as for a slice.
 //!
 //! # Features
 //!
-//! * `dim2` and `dim3` (both default): 2D and 3D. For one of them write `default-features = false,
-//!   features = ["dim3"]`; a disabled dimension is not compiled.
+//! * `dim2` and `dim3` (both default): 2D and 3D. To compile only one of them, write
+//!   `default-features = false, features = ["dim3"]`; a disabled dimension is not compiled.
 //! * `batch` (default): compiles batches and checkers in the library; without it they are compiled
-//!   in your crate, where it uses them.
-//! * `f64`: the scalar `f64` besides `f32`.
-//! * `parallel`: updates and batches on several threads, with the same bits.
-//! * `debug_render`: drawing worlds, shapes and queries with your own back end.
+//!   in the crates that call them.
+//! * `f64`: the scalar `f64` in addition to `f32`.
+//! * `parallel`: updates and batches on several threads, with bitwise equal results.
+//! * `debug_render`: debug drawing of worlds, shapes and queries with your own back end.
 //! * `serde`: `Serialize` and `Deserialize` for plain values and whole worlds.
-//! * `mint`: conversions to and from other vector libraries, through nalgebra.
+//! * `mint`: conversions to and from the types of the crate mint, through nalgebra.
 //! * `glam`: conversions to and from glam 0.33 for points, vectors, rotations and isometries, by
 //!   `into`.
 #![forbid(unsafe_code)]

@@ -1,9 +1,10 @@
-//! Releasing memory of lists.
+//! Release of the unused memory of lists.
 //!
-//! A list that has been long keeps its memory, so that a step does not allocate. Without limit, a
-//! list that was long once, such as after a bulk insertion, would keep it for ever. So owners of
-//! lists note their lengths, and once in [`PERIOD`] updates release memory that was not needed
-//! since. Short lists keep theirs; the results depend on lengths alone.
+//! A list keeps its capacity when it is cleared, so that a step need not allocate. But a list that
+//! was long only once, such as after a bulk insertion, would keep that capacity for ever. So the
+//! owner of lists records their lengths in each update. Every [`PERIOD`] updates it releases
+//! capacity that was not needed since the last check. Short lists keep their capacity. The
+//! decisions depend on lengths and capacities alone.
 
 /// Implements `Clone` field by field, so that `clone_from` reuses the memory of lists. A missing
 /// field does not compile.
@@ -22,14 +23,14 @@ macro_rules! clone_fields {
 }
 pub(crate) use clone_fields;
 
-/// Updates between two checks of the lists.
+/// The number of updates between two checks of the lists.
 const PERIOD: u32 = 64;
-/// Number of entries up to which a list always keeps its memory.
+/// A temporary list with at most this capacity, in entries, is never shrunk; see [`Look::trim`].
 const KEPT: usize = 4096;
-/// Number of spare bytes up to which a list always keeps its memory.
+/// A list with at most this much unused capacity, in bytes, is never shrunk; see [`Look::fit`].
 const SPARE: usize = 16384;
 
-/// Recent lengths of an owner's lists, and its number of objects.
+/// Statistics of the updates since the last check of an owner's lists.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Recent {
     updates: u32,
@@ -37,22 +38,23 @@ pub(crate) struct Recent {
     count: usize,
 }
 
-/// Statistics of a period, by which lists are shrunk.
+/// The statistics of one period, which decide how lists are shrunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Look {
-    /// The greatest length of a list since the last check.
+    /// The greatest recorded length of any list since the last check.
     pub(crate) longest: usize,
-    /// The number of objects has not increased since the last check.
+    /// Whether the number of objects has not increased since the last check.
     pub(crate) is_stable: bool,
 }
 
 impl Recent {
-    /// Notes the length of a list in this update.
+    /// Records the length of a list in this update.
     pub(crate) fn note(&mut self, length: usize) {
         self.longest = self.longest.max(length);
     }
 
-    /// Ends an update with `count` objects; returns the statistics when a period is over.
+    /// Ends an update with `count` objects. Returns the statistics in the last update of a period,
+    /// else `None`.
     pub(crate) fn end_update(&mut self, count: usize) -> Option<Look> {
         self.updates += 1;
         if self.updates < PERIOD {
@@ -65,14 +67,16 @@ impl Recent {
 }
 
 impl Look {
-    /// Shrinks a temporary list if less than a quarter of it was needed lately.
+    /// Shrinks a list of temporary data if less than a quarter of its capacity was needed in the
+    /// period.
     pub(crate) fn trim<T>(self, list: &mut Vec<T>) {
         if list.capacity() > KEPT && list.capacity() / 4 > self.longest {
             list.shrink_to((2 * self.longest).max(list.len()));
         }
     }
 
-    /// Shrinks a list that has stopped growing to an eighth of spare capacity.
+    /// Shrinks a list that has stopped growing, if more than a quarter of its length is unused
+    /// capacity; leaves an eighth of its length unused.
     pub(crate) fn fit<T>(self, list: &mut Vec<T>) {
         let spare = list.len() / 8;
         let surplus = list.capacity() - list.len();
@@ -86,7 +90,8 @@ impl Look {
 mod tests {
     use super::*;
 
-    /// Returns the checks in a number of updates with a list of this length.
+    /// Returns the statistics of all periods that end in `updates` updates, with a list of length
+    /// `length` and `count` objects.
     fn looks(recent: &mut Recent, updates: u32, length: usize, count: usize) -> Vec<Look> {
         let one = |_| {
             recent.note(length);

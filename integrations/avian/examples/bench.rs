@@ -1,10 +1,10 @@
 //! Compares steps of Avian with its own colliders (parry) and with those of impinge, in equal
-//! scenes. Both step in turn, in one process, on one thread; the figures are medians over the
-//! steps.
+//! scenes. Both apps step alternately, in one process, on one thread; the printed times are medians
+//! over the steps.
 //!
 //! ```sh
 //! cargo run --release --example bench --features parry            # all scenes
-//! cargo run --release --example bench --features parry -- mesh    # those with this word in their names
+//! cargo run --release --example bench --features parry -- mesh    # scenes with this word in the name
 //! ```
 
 use std::time::{Duration, Instant};
@@ -20,7 +20,7 @@ mod scenes3;
 
 const STEPS: usize = 300;
 
-/// The duration of one step, and that of its narrow phase as Avian measures it.
+/// The duration of one step, and of its narrow phase as measured by Avian.
 #[derive(Clone, Copy, Default)]
 struct Step {
     whole: Duration,

@@ -213,7 +213,7 @@ pub(crate) fn grid(cells: u32, side: f32, height: impl Fn(f32, f32) -> f32) -> S
     (vertices, squares.flat_map(|(i, j)| cell(i, j)).collect())
 }
 
-/// Returns a mesh of such a grid.
+/// Returns a mesh with the vertices and triangles of [`grid`].
 pub(crate) fn sheet<B: Backend>(
     cells: u32,
     side: f32,

@@ -68,7 +68,7 @@ where
         Self { scaled: shape.clone(), shape, scale: f32::vec(&Vector::<f32, D>::repeat(1.0)) }
     }
 
-    /// Returns the collider of the result of a constructor of the library: with the shape, or with
+    /// Converts the result of a constructor of the library to a collider, which has the shape or
     /// the error.
     pub(crate) fn of<S: Shape<f32, D>, E: Into<ColliderError>>(shape: Result<S, E>) -> Self {
         Self::made(shape.map(ShapeHandle::new).map_err(Into::into))
@@ -110,8 +110,8 @@ where
         self.scale
     }
 
-    /// Replaces the scale; see [`scaled`]. If the shape cannot be scaled so, logs an error and
-    /// keeps the old scale.
+    /// Replaces the scale; see [`scaled`]. If the shape cannot be scaled by these factors, logs an
+    /// error and keeps the old scale.
     pub(crate) fn rescale(&mut self, scale: Vec_<D>, detail: u32) {
         let Ok(shape) = &self.shape else { return };
         if scale == self.scale {

@@ -163,7 +163,7 @@ fn own_name(id: ContactId) -> [u32; 2] {
 }
 
 /// The hash FNV-1a of Fowler, Noll and Vo, with a final step that mixes the upper bits into the
-/// lower ones.
+/// lower bits.
 struct Fnv(u64);
 
 impl Hasher for Fnv {

@@ -1,5 +1,6 @@
-//! The overhead of the plugin over the update of its world: 10 000 moving entities, beside a world of the library that
-//! is given the same poses. Both step alternately in one process; the best of several runs counts for each step.
+//! Measures the overhead of the plugin over the update of its world: 10 000 moving entities,
+//! compared with a world of the library with the same poses. Both step alternately in one process;
+//! the best of several runs counts for each step.
 //!
 //! ```sh
 //! cargo bench --bench overhead
@@ -22,7 +23,7 @@ use bevy_transform::prelude::*;
 const COUNT: usize = 10_000;
 const STEPS: usize = 60;
 const RUNS: usize = 5;
-/// Half the side of the cube in which they move: about one contact for each.
+/// Half the side of the cube in which the entities move; at this size each has about one contact.
 const HALF: f32 = 24.0;
 
 #[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]

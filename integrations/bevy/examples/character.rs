@@ -10,7 +10,7 @@ use bevy_transform::prelude::*;
 const SPEED: f32 = 4.0;
 const STEP_HEIGHT: f32 = 0.4;
 
-/// The wish of the player, as a direction in the plane of the floor.
+/// The direction in which the player wants to move, in the plane of the floor.
 #[derive(Component)]
 struct Character {
     wish: Vec3,
@@ -28,7 +28,7 @@ fn build(mut commands: Commands) {
     commands.spawn((character, Collider::capsule(0.3, 1.2), Transform::from_xyz(0.0, 0.92, 0.0)));
 }
 
-/// Moves up by a step, across, and down again, as far as there is no obstacle.
+/// Moves up by the step height, then horizontally, then down again; each motion ends at obstacles.
 fn walk(
     mut characters: Query<(Entity, &Character, &Collider, &mut Transform)>,
     collisions: Res<Collisions>,
@@ -37,7 +37,7 @@ fn walk(
     for (entity, character, collider, mut transform) in &mut characters {
         let filter = SpatialFilter::new().exclude(entity);
         let slide = SlideSettings::default();
-        // Up and down the first hit ends the motion: feet do not slide off the edge of a step.
+        // Vertical motions end at the first hit, so that feet do not slide off the edge of a step.
         let straight = SlideSettings { max_hits: 1, ..slide };
         let mut go = |motion: Vec3, settings: &SlideSettings| {
             let at = Isometry3d::from_translation(transform.translation);

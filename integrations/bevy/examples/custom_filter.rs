@@ -26,7 +26,8 @@ impl PairFilter for Teams<'_, '_> {
     }
 }
 
-/// A filter is called once for a pair: the pairs of a player that changes its team are filtered again.
+/// Filters the pairs of players that changed their team again, because a filter is called only once
+/// per pair.
 fn ask_again(changed: Query<Entity, Changed<Team>>, mut collisions: ResMut<Collisions>) {
     for entity in &changed {
         collisions.refilter(entity);

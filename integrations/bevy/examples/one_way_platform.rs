@@ -1,5 +1,5 @@
-//! A one-way platform: a jumping character passes it from below and lands on it. The character's filter excludes the
-//! platforms that its feet are not above.
+//! A one-way platform: a jumping character passes it from below and lands on it. The character's
+//! filter excludes all platforms whose top is not below its feet.
 
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;
@@ -31,7 +31,7 @@ fn fall(
         character.velocity += GRAVITY * time.delta_secs();
         let at = transform.translation.truncate();
         let is_solid = |other: Entity| {
-            // A platform is 0.2 high. Half a skin absorbs rounding.
+            // A platform is 0.2 high. The tolerance of half a skin absorbs rounding errors.
             let top = |at: &GlobalTransform| at.translation().y + 0.1;
             platforms.get(other).map_or(true, |platform| at.y - FEET >= top(platform) + 0.005)
         };

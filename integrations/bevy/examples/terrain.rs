@@ -1,5 +1,5 @@
-//! A rover on a height field: rays find the ground below its wheels, contacts report when a falling stone has
-//! landed.
+//! A rover on a height field: rays find the ground below it, and contacts report when a falling
+//! stone has landed.
 
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;
@@ -14,7 +14,7 @@ struct Rover;
 #[derive(Component)]
 struct Stone;
 
-/// Rows of heights at distances of 1: hills of a length of 8.
+/// Returns rows of heights at distances of 1: hills with a wavelength of 8.
 fn heights(count: u16) -> Vec<f32> {
     let hill = |n: u16| (f32::from(n) * std::f32::consts::TAU / 8.0).sin();
     (0..count)

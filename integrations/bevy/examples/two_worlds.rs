@@ -35,11 +35,11 @@ fn main() {
     let world = app.world_mut();
     let (circle, wall) = (Collider::circle(1.0), Collider::rectangle(0.5, 8.0));
     let at = |x: f32| Transform::from_xyz(x, 0.0, 0.0);
-    // Walls stop the living; the ghost world has none.
+    // Walls stop the living; the world of ghosts has no walls.
     let wall = world.spawn((wall, at(1.0))).id();
     let hero = world.spawn((circle.clone(), at(0.0))).id();
     let ghost = world.spawn((circle.clone().in_world::<Ghosts>(), at(0.0))).id();
-    // A medium is in both.
+    // A medium is in both worlds.
     let medium = (circle.clone(), circle.in_world::<Ghosts>(), at(0.5));
     let medium = world.spawn(medium).id();
     app.update();

@@ -16,7 +16,7 @@ use crate::{
     Collider, ColliderError, CollisionLayers, Collisions, FixedCollider, Sensor, WorldKey,
 };
 
-/// The object of an entity, with the pose and scale that it was given.
+/// The object of an entity, with the pose and scale that were last set.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Body<const D: usize>
 where
@@ -36,7 +36,8 @@ pub(crate) struct Whereabouts {
 }
 
 impl WhereaboutsItem<'_, '_> {
-    /// Returns the pose and scale; those of an entity without a parent are not rounded.
+    /// Returns the pose and scale. For an entity without a parent they are exact copies, otherwise
+    /// they have rounding errors.
     #[inline]
     fn placement<const D: usize>(&self) -> Result<Placement<D>, ColliderError>
     where
@@ -50,7 +51,7 @@ impl WhereaboutsItem<'_, '_> {
     }
 }
 
-/// The relevant components of an entity.
+/// The components of an entity that the plugin reads.
 #[derive(QueryData)]
 pub(crate) struct Everything<const D: usize, W: WorldKey>
 where
@@ -68,8 +69,8 @@ impl<const D: usize, W: WorldKey> Collisions<D, W>
 where
     f32: Glam<D>,
 {
-    /// Moves the object of an entity of which only the transform has changed. Returns `false` if that is not
-    /// sufficient: the entity is new, has another scale, or had or has a problem.
+    /// Moves the object of an entity of which only the transform has changed. Returns `false` if a
+    /// complete refresh is needed: the entity is new, has another scale, or had or has a problem.
     #[inline]
     pub(crate) fn try_move(&mut self, entity: Entity, at: &WhereaboutsItem<'_, '_>) -> bool {
         let Some(body) = self.bodies.get_mut(&entity) else { return false };
@@ -89,7 +90,8 @@ where
         is_moved
     }
 
-    /// Reads an entity again. On an error the object is unchanged, or there is none.
+    /// Updates the object from all components of an entity. On an error the object is unchanged, or
+    /// there is none.
     pub(crate) fn refresh(
         &mut self,
         entity: &EverythingItem<'_, '_, D, W>,
@@ -136,7 +138,8 @@ where
         Ok(())
     }
 
-    /// Sets the properties of an object that differ: setting equal ones would filter and recompute its pairs again.
+    /// Sets the properties of an object that differ. Setting equal properties would filter and
+    /// recompute its pairs again.
     fn set_properties(
         &mut self,
         entity: &EverythingItem<'_, '_, D, W>,

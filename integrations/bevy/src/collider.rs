@@ -24,7 +24,7 @@ pub trait WorldKey: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
 
 impl<T: Copy + Debug + Default + PartialEq + Send + Sync + 'static> WorldKey for T {}
 
-/// The key of the world that is used if none is named.
+/// The key of the world that is used if no other key is given.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DefaultWorld;
 
@@ -58,7 +58,8 @@ where
     world: PhantomData<W>,
 }
 
-/// The object leaves the world with the component: queries no longer find it, its pairs end at the next step.
+/// Removes the object from the world with the component: queries no longer find it, its pairs end
+/// at the next step.
 fn forget<const D: usize, W: WorldKey>(mut world: DeferredWorld<'_>, context: HookContext)
 where
     f32: Glam<D>,

@@ -92,7 +92,8 @@ where
         self.world.is_empty()
     }
 
-    /// Whether an entity is in the world: not before the first step after its insertion, nor while it is disabled.
+    /// Whether an entity is in the world. It is added by the first step after its insertion, and
+    /// removed while disabled.
     #[must_use]
     pub fn contains(&self, entity: Entity) -> bool {
         self.bodies.contains_key(&entity)

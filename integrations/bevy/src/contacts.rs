@@ -23,7 +23,8 @@ where
     pub depth: f32,
 }
 
-/// Two entities in contact along one normal. Entities with a composite shape, such as a mesh, may have several.
+/// Two entities in contact along one normal. A pair with a composite shape, such as a mesh, may
+/// have several of these.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactPair<const D: usize>
 where

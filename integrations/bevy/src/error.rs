@@ -9,7 +9,8 @@ use impinge::world::WorldError;
 
 use crate::{DefaultWorld, WorldKey};
 
-/// The reason why the collider of an entity is not in the world, or not with its current components.
+/// The reason why the collider of an entity is not in the world, or is there with outdated
+/// components.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ColliderError {
@@ -23,7 +24,8 @@ pub enum ColliderError {
     Scale(ScaleError),
     /// A component of the transform is NaN or infinite, or its quaternion is not a rotation.
     Pose(WorldError),
-    /// A scaled parent is rotated relative to its child: the product is no scale along the child's axes.
+    /// A scaled parent is rotated relative to its child, so that the transform is a shear in the
+    /// child's frame.
     Sheared,
     /// In 2D: the transform rotates the entity out of the x-y plane.
     OutOfPlane,
@@ -71,8 +73,8 @@ impl From<WorldError> for ColliderError {
     }
 }
 
-/// On an entity whose collider is not in the world with its current components: the reason. The plugin inserts and
-/// removes it.
+/// The reason why the collider of an entity is not in the world, or is there with outdated
+/// components. The plugin inserts and removes this component.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 pub struct ColliderProblem<const D: usize, W: WorldKey = DefaultWorld> {
     /// The reason.
@@ -80,8 +82,8 @@ pub struct ColliderProblem<const D: usize, W: WorldKey = DefaultWorld> {
     pub(crate) world: PhantomData<W>,
 }
 
-/// A message: the collider of an entity is not in the world with its current components. Written once when a problem
-/// begins or changes.
+/// A message: the collider of an entity is not in the world, or is there with outdated components.
+/// Written once when a problem begins or changes.
 #[derive(Message, Clone, Copy, Debug, PartialEq)]
 pub struct ColliderFailed<const D: usize, W: WorldKey = DefaultWorld> {
     /// The entity.

@@ -105,8 +105,8 @@ pub(crate) fn forget_disabled<const D: usize, W: WorldKey>(
     }
 }
 
-/// Marks an entity that loses a component to be read again. Change detection does not detect that, and messages of
-/// removal are dropped where frames are more frequent than steps.
+/// Marks an entity that loses a component as dirty. Change detection does not detect a removal, and
+/// messages of removal are dropped if frames are more frequent than steps.
 pub(crate) fn notice_removal<C: Component, const D: usize, W: WorldKey>(
     removed: On<'_, '_, Remove, C>,
     collisions: Option<ResMut<'_, Collisions<D, W>>>,
@@ -118,8 +118,8 @@ pub(crate) fn notice_removal<C: Component, const D: usize, W: WorldKey>(
     }
 }
 
-/// Marks an entity that lost its parent: its position is then that of its own transform, whether or not its global
-/// transform was recomputed.
+/// Marks an entity that lost its parent as dirty: its pose is then that of its own transform,
+/// whether or not its global transform was recomputed.
 pub(crate) fn notice_orphan<const D: usize, W: WorldKey>(
     removed: On<'_, '_, Remove, ChildOf>,
     collisions: Option<ResMut<'_, Collisions<D, W>>>,

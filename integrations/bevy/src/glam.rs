@@ -34,7 +34,8 @@ pub trait Glam<const D: usize>: Space<D> {
     /// Converts to the library's ray, with a direction of length 1.
     fn ray(ray: &Self::Ray) -> Ray<f32, D>;
 
-    /// Returns pose and scale of an entity without a parent: its values, without rounding.
+    /// Returns pose and scale of an entity without a parent: exact copies of the transform's
+    /// values.
     #[doc(hidden)]
     fn place_root(transform: &Transform) -> Result<Placement<D>, ColliderError>
     where

@@ -1,9 +1,10 @@
-//! Components beside the collider: collision layers, sensors, and fixed colliders.
+//! Components in addition to the collider: collision layers, sensors, and fixed colliders.
 
 use bevy_ecs::prelude::Component;
 use impinge::world::{CollisionGroups, GroupError};
 
-/// Collision layers: two colliders interact if each has a membership that the other filters for.
+/// Collision layers: two colliders interact if the memberships of each overlap the filters of the
+/// other.
 ///
 /// Layers are the bits 0 to 29 of masks. A collider without this component is a member of all layers and interacts
 /// with all. The component may be changed at any time; pairs that are no longer allowed end at the next step.
@@ -27,7 +28,7 @@ pub struct CollisionLayers {
 impl CollisionLayers {
     /// The mask of all layers.
     pub const ALL: u32 = CollisionGroups::ALL;
-    /// A member of no layer that interacts with none.
+    /// Layers of a collider that is a member of no layer and interacts with no layer.
     pub const NONE: Self = Self { memberships: 0, filters: 0 };
 
     /// Creates layers: a member of the first mask that interacts with members of the second.
@@ -53,13 +54,13 @@ impl CollisionLayers {
         Ok(Self { memberships, filters })
     }
 
-    /// The layers of which it is a member.
+    /// The mask of the layers to which the collider belongs.
     #[must_use]
     pub const fn memberships(&self) -> u32 {
         self.memberships
     }
 
-    /// The layers with whose members it interacts.
+    /// The mask of the layers with whose members the collider interacts.
     #[must_use]
     pub const fn filters(&self) -> u32 {
         self.filters
@@ -88,7 +89,7 @@ impl Default for CollisionLayers {
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sensor;
 
-/// A marker: the collider has no pairs with others that have the marker, so that the parts of a level cost
-/// nothing. It may still be moved.
+/// A marker: two colliders with this marker have no pair, so that the static parts of a level cost
+/// nothing. A fixed collider may still be moved.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FixedCollider;

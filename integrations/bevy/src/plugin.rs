@@ -66,9 +66,9 @@ pub enum ImpingeSystems {
 /// assert_eq!(app.world().resource::<Collisions>().contact_pairs().count(), 2);
 /// ```
 pub trait PairFilter: SystemParam {
-    /// Whether the two entities may have a pair. Called after the layers allowed it, once when the boxes of the
-    /// colliders begin to overlap, and again after [`Collisions::refilter`]. The entity whose collider was added first
-    /// is `one`.
+    /// Whether the two entities may have a pair. Called for pairs that the layers allow, once when
+    /// the boxes of the colliders begin to overlap, and again after [`Collisions::refilter`]. `one`
+    /// is the entity whose collider was added first.
     fn allows(param: &mut SystemParamItem<'_, '_, Self>, one: Entity, other: Entity) -> bool;
 }
 
@@ -108,16 +108,17 @@ impl<const D: usize, W, F> ImpingePlugin<D, W, F> {
         Self { schedule: schedule.intern(), ..self }
     }
 
-    /// Sets the margin by which boxes of the broad phase are larger than their colliders: 0.02 by default. About a
-    /// fiftieth of the size of a typical collider is suitable, so 1 or 2 if the unit is a pixel. It changes speed,
-    /// never results.
+    /// Sets the margin by which boxes of the broad phase are larger than their colliders: 0.02 by
+    /// default. About a fiftieth of the size of a typical collider is suitable, so 1 or 2 if the
+    /// unit is a pixel. The margin changes speed, never results.
     #[must_use]
     pub fn with_margin(self, margin: f32) -> Self {
         Self { margin, ..self }
     }
 
-    /// Sets the prediction: contacts exist while colliders are at most twice this length apart; [`CollisionStarted`]
-    /// then comes at that distance. 0 by default: contacts exist while they touch or overlap.
+    /// Sets the prediction: contacts exist while colliders are at most twice this length apart, and
+    /// [`CollisionStarted`] is then sent at that distance. With 0, the default, contacts exist
+    /// while colliders touch or overlap.
     #[must_use]
     pub fn with_prediction(self, prediction: f32) -> Self {
         Self { prediction, ..self }

@@ -39,13 +39,13 @@ impl<'a> SpatialFilter<'a> {
         Self::default()
     }
 
-    /// Considers only entities that may interact with a collider with these layers.
+    /// Considers only entities that may interact with a collider with these `layers`.
     #[must_use]
     pub fn layers(self, layers: CollisionLayers) -> Self {
         Self { layers: Some(layers), ..self }
     }
 
-    /// Excludes an entity, for instance the one that runs the query, in addition to earlier ones.
+    /// Excludes an entity, for instance the one that runs the query. Earlier exclusions remain.
     #[must_use]
     pub fn exclude(mut self, entity: Entity) -> Self {
         self.excluded.push(entity);
@@ -58,7 +58,7 @@ impl<'a> SpatialFilter<'a> {
         Self { skips_sensors: true, ..self }
     }
 
-    /// Considers only entities that satisfy a predicate, which replaces an earlier one.
+    /// Considers only entities that satisfy `predicate`, which replaces an earlier predicate.
     #[must_use]
     pub fn predicate(self, predicate: &'a dyn Fn(Entity) -> bool) -> Self {
         Self { predicate: Some(predicate), ..self }
@@ -75,7 +75,7 @@ impl<'a> SpatialFilter<'a> {
         self.predicate.is_none_or(|predicate| predicate(*object.data()))
     }
 
-    /// Runs a query with the library's filter.
+    /// Runs a query with the equivalent filter of the library.
     pub(crate) fn ask<const D: usize, A>(
         &self,
         question: impl FnOnce(&QueryFilter<'_, f32, D, Entity>) -> A,
@@ -110,11 +110,11 @@ where
 {
     /// The entity.
     pub entity: Entity,
-    /// The distance from the origin of the ray; zero if it starts in the collider.
+    /// The distance from the origin of the ray; zero if the ray starts inside the collider.
     pub distance: f32,
     /// The point that was hit.
     pub point: Vec_<D>,
-    /// The outward unit normal of the collider; zero if the ray starts in it.
+    /// The outward unit normal of the collider; zero if the ray starts inside it.
     pub normal: Vec_<D>,
 }
 
@@ -146,7 +146,7 @@ where
     pub point: Vec_<D>,
     /// The distance; zero inside.
     pub distance: f32,
-    /// Whether the given point lies in the collider or on its surface.
+    /// `true` if the query point lies in the collider or on its surface.
     pub is_inside: bool,
 }
 
@@ -160,7 +160,7 @@ where
     pub entity: Entity,
     /// The distance; zero if they touch or overlap.
     pub distance: f32,
-    /// The closest points, on the shape and on the entity; `None` if they overlap.
+    /// The closest points, first on the query shape, then on the entity; `None` if they overlap.
     pub points: Option<[Vec_<D>; 2]>,
 }
 
@@ -169,8 +169,9 @@ impl<const D: usize, W: WorldKey> Collisions<D, W>
 where
     f32: Glam<D>,
 {
-    /// Returns the first hit of a ray within `max_distance`; among equal ones the entity that was added first.
-    /// Colliders are solid: a ray that starts in one hits it at distance 0. Costs a search of a tree.
+    /// Returns the first hit of a ray within `max_distance`; among hits at one distance that of the
+    /// entity added first. Colliders are solid: a ray that starts inside a collider hits it at
+    /// distance 0. Costs a search of a tree.
     #[must_use]
     pub fn cast_ray(
         &self,
@@ -210,7 +211,7 @@ where
         self.cast_with_skin(shape.shape().ok()?, &pose.into(), motion, 0.0, filter)
     }
 
-    /// [`Self::cast_shape`] in which a distance of `skin` counts as touching.
+    /// Casts like [`Self::cast_shape`], but counts a distance of `skin` as touching.
     pub(crate) fn cast_with_skin(
         &self,
         shape: &ShapeHandle<f32, D>,
@@ -226,7 +227,8 @@ where
         Some(shape_hit(*object.data(), &impact))
     }
 
-    /// Returns all hits of a shape along its path, in order, each entity once, as if nothing stopped it.
+    /// Returns all hits of a shape along its path, nearest first, each entity once. A hit does not
+    /// stop the shape.
     #[must_use]
     pub fn cast_shape_all<V: WorldKey>(
         &self,
@@ -269,7 +271,7 @@ where
         })
     }
 
-    /// Whether any entity touches or overlaps a shape; ends at the first.
+    /// Whether any entity touches or overlaps a shape. The search ends at the first such entity.
     #[must_use]
     pub fn overlaps_any<V: WorldKey>(
         &self,

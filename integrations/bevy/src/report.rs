@@ -17,7 +17,7 @@ use crate::{
     CollidingEntities, CollisionEnded, CollisionStarted, Collisions, PairFilter, WorldKey,
 };
 
-/// The event of a pair in the last step.
+/// The start or end of a pair in the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PairEvent {
     is_start: bool,

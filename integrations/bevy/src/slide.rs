@@ -10,7 +10,8 @@ use crate::{Collider, Collisions, ShapeHit, SpatialFilter, WorldKey};
 pub struct SlideSettings {
     /// The distance kept from all obstacles: about a hundredth of the size of the character. 0.01 by default.
     pub skin: f32,
-    /// The largest number of hit obstacles: with 1 the motion is straight and ends at the first. 6 by default.
+    /// The largest number of obstacles that the motion may hit. With 1 it is straight and ends at
+    /// the first; 6 by default.
     pub max_hits: usize,
 }
 
@@ -36,20 +37,20 @@ where
 {
     /// The possible motion: add it to the translation.
     pub motion: Vec_<D>,
-    /// The part of the motion that was not used, without its component into the obstacles hit last;
-    /// zero if all was used. The velocity for the next step is the sum of `motion` and `rest`,
-    /// divided by the time step.
+    /// The unused part of the motion, without its component into the obstacles hit last; zero if
+    /// all was used. The velocity for the next step is the sum of `motion` and `rest`, divided by
+    /// the time step.
     pub rest: Vec_<D>,
     /// The hits in order, without those at which the motion is almost along the obstacle. The
-    /// fraction of a hit is that of the motion that remained before it.
+    /// `fraction` of a hit is relative to the motion that remained before it.
     pub hits: Vec<ShapeHit<D>>,
 }
 
 /// A motion counts as along a wall if its component into the wall is at most this fraction of its
-/// length: the rounding error of a distance of a skin.
+/// length. That is the rounding error of a distance of the size of the skin.
 const GRAZE: f32 = 1e-3;
 /// A motion along a wall gets a component away from the wall of this fraction of its length.
-/// Otherwise rounding could lead it into the wall, and the next cast would stop at its start.
+/// Otherwise rounding could lead it into the wall, and the next cast would end at its start.
 const LIFT: f32 = 1e-5;
 /// The largest number of hits at which the motion is almost along the wall.
 const MAX_GRAZES: usize = 4;
@@ -58,10 +59,11 @@ impl<const D: usize, W: WorldKey> Collisions<D, W>
 where
     f32: Glam<D>,
 {
-    /// Moves a shape by `motion`, at most until its distance from an obstacle is `skin`. The rest of the motion
-    /// continues along the obstacle, in 3D between two obstacles along their edge. Sensors are no obstacles. A motion
-    /// along a wall is lifted off it by 1e-5 of its length, more than rounding. The shape does not rotate. It is not
-    /// pushed out of obstacles that it overlaps at the start, but moves no deeper.
+    /// Moves a shape by `motion`, at most until its distance from an obstacle is `skin`. The rest
+    /// of the motion continues along the obstacle, in 3D between two obstacles along their edge.
+    /// Sensors are no obstacles. A motion along a wall gets a component away from it of 1e-5 of its
+    /// length, which exceeds rounding errors. The shape does not rotate. It is not pushed out of
+    /// obstacles that it overlaps at the start, but moves no deeper.
     ///
     /// Exclude the character itself by the filter. The entities are at their poses of the last step.
     ///
@@ -141,8 +143,8 @@ fn off<const D: usize>(motion: Vector<f32, D>, walls: &[Vector<f32, D>]) -> Vect
 }
 
 /// Returns the largest part of a motion that leads into none of the walls, whose normals point at
-/// the character. It is the projection on the last wall, else on the edge of the last and another
-/// wall, else zero.
+/// the character. It is the projection on the last wall, else on the edge between the last wall and
+/// another one, else zero.
 fn along<const D: usize>(motion: &Vector<f32, D>, walls: &[Vector<f32, D>]) -> Vector<f32, D> {
     let zero = Vector::zeros();
     let Some((last, others)) = walls.split_last() else { return *motion };

@@ -1,8 +1,8 @@
 //! The objects of a collision manager in a world of proximities: the touching pairs, and the nearest pair.
 //!
-//! Results are cached: [`Crowd::touching`] by the events of updates, the nearest pair with the number of the change
-//! after which it was found. The cost of a query depends on the changes since. A few moves are applied by the query,
-//! more are applied to the world at once ([`EAGER`]).
+//! Results are cached: [`Crowd::touching`] is updated by events, and the nearest pair is stored with the number of
+//! the change after which it was found. The cost of a query depends on the changes since. The query itself processes
+//! a few moves; after more changes the world is updated ([`EAGER`]).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,10 +20,10 @@ pub(super) type World = CollisionWorld<f64, 3, ()>;
 pub(super) type Object = CollisionObject<f64, 3, ()>;
 pub(super) type Solid = ShapeHandle<f64, 3>;
 
-/// After this many changes without a query the world is updated, so that a query has few of them to apply.
+/// The world is updated after this many changes without a query, so that a query has few changes to process.
 const EAGER: u64 = 16;
 
-/// Two objects, the one with the lower handle first, or one of each crowd.
+/// Two objects: of one crowd, the one with the lower handle first, or one of each crowd.
 pub(super) type Pair = (Handle, Handle);
 
 /// Two objects and their distance, negative where they overlap.
@@ -33,11 +33,11 @@ pub(super) struct Nearest {
     pub(super) distance: f64,
 }
 
-/// The nearest pair after a change.
+/// A nearest pair, and when it was found.
 #[derive(Debug)]
 struct Kept {
     nearest: Nearest,
-    /// The number of changes at which the pair was found.
+    /// The number of changes when the pair was found.
     then: u64,
 }
 
@@ -55,7 +55,7 @@ pub(super) struct Crowd {
     /// The pairs that touched at the last update.
     touching: BTreeSet<Pair>,
     kept: Option<Kept>,
-    /// For each index the nearest pair with its object.
+    /// For each index the nearest pair that contains its object.
     beside: BTreeMap<u32, Kept>,
     pub(super) reach: Reach,
 }
@@ -117,22 +117,22 @@ impl Crowd {
         Ok(())
     }
 
-    /// Returns the object of an index, which must exist.
+    /// Returns the object with this index, which must have been used.
     pub(super) fn object(&self, index: u32) -> Option<&Object> {
         self.world.collision_object(self.handle(index))
     }
 
-    /// Returns the object of a handle, if it exists.
+    /// Returns the object with this handle, if it exists.
     pub(super) fn get(&self, handle: Handle) -> Option<&Object> {
         self.world.collision_object(handle)
     }
 
-    /// Whether an object touches the solid.
+    /// Whether any object touches the placed shape.
     pub(super) fn meets_any(&self, position: &Isometry3<f64>, shape: &dyn Shape<f64, 3>) -> bool {
         self.world.overlaps_any(position, shape, &QueryFilter::new())
     }
 
-    /// Returns the objects that touch the solid.
+    /// Returns the objects that touch the placed shape.
     pub(super) fn met_by(
         &self,
         position: &Isometry3<f64>,
@@ -141,7 +141,8 @@ impl Crowd {
         self.world.objects_overlapping(position, shape, &QueryFilter::new())
     }
 
-    /// Returns the nearest object within `limit`, and its distance, zero if they touch; the first of equals.
+    /// Returns the object nearest to the placed shape within `limit`, and its distance, zero if they touch. Among
+    /// equal distances the first object is returned.
     pub(super) fn nearest_to(
         &self,
         position: &Isometry3<f64>,
@@ -151,7 +152,7 @@ impl Crowd {
         self.nearest_of(position, shape, limit, &QueryFilter::new())
     }
 
-    /// Returns the object nearest to that of an index, and caches it.
+    /// Returns the nearest pair that contains the object with this index, and caches it.
     pub(super) fn nearest_beside(&mut self, index: u32) -> Option<Nearest> {
         let found = self.beside_changed(index).or_else(|| self.found_beside(index, f64::INFINITY));
         match found {
@@ -166,8 +167,8 @@ impl Crowd {
         found
     }
 
-    /// Returns the object nearest to that of an index, if the cached one and the object itself have not changed: the
-    /// cached one, or one that has changed.
+    /// Returns the nearest pair that contains the object with this index, if the objects of the cached pair have not
+    /// changed. It is the cached pair, or a pair with a changed object.
     fn beside_changed(&self, index: u32) -> Option<Nearest> {
         let kept = self.beside.get(&index)?;
         let changed = self.changes.since(kept.then)?;
@@ -191,7 +192,7 @@ impl Crowd {
         Some(best)
     }
 
-    /// Returns the object nearest to that of an index within `limit`.
+    /// Returns the nearest pair within `limit` that contains the object with this index.
     fn found_beside(&self, index: u32, limit: f64) -> Option<Nearest> {
         let own = self.object(index)?;
         let others = QueryFilter::new().exclude(own.handle());
@@ -199,7 +200,7 @@ impl Crowd {
         self.signed(Nearest { pair: ordered(own.handle(), other), distance })
     }
 
-    /// Returns the pair with minus its depth instead of the distance zero.
+    /// Replaces the distance zero by minus the depth.
     fn signed(&self, nearest: Nearest) -> Option<Nearest> {
         if nearest.distance > 0.0 { Some(nearest) } else { self.depth_of(nearest.pair) }
     }
@@ -210,7 +211,7 @@ impl Crowd {
         &self.touching
     }
 
-    /// Returns a touching pair, if there is one: the same one as long as it touches.
+    /// Returns a touching pair, if there is one: the same pair as long as it touches.
     pub(super) fn touching_pair(&mut self) -> Option<Pair> {
         self.asked = self.changes.now();
         let first = self.touching.first().copied();
@@ -221,7 +222,7 @@ impl Crowd {
         self.touching.first().copied()
     }
 
-    /// Returns the nearest pair; among touching pairs any, among other equals the first.
+    /// Returns the nearest pair: any touching pair, otherwise the first pair of the smallest distance.
     pub(super) fn nearest_pair(&mut self) -> Option<Nearest> {
         self.asked = self.changes.now();
         let found = self.overlap().or_else(|| {
@@ -240,7 +241,7 @@ impl Crowd {
         (nearest.distance <= 0.0).then_some(nearest)
     }
 
-    /// Returns the cached depth of a pair, if it was the last one and has not changed.
+    /// Returns the pair with its cached depth, if it was the last nearest pair and has not changed.
     fn kept_depth(&self, pair: Pair) -> Option<Nearest> {
         let kept = self.kept.as_ref().filter(|kept| kept.nearest.pair == pair)?;
         let has_changed =
@@ -253,7 +254,8 @@ impl Crowd {
         Some(Nearest { pair, distance: -depth(self.get(pair.0)?, self.get(pair.1)?) })
     }
 
-    /// Returns the nearest pair, if the cached one has not changed: it, or one with a changed object.
+    /// Returns the nearest pair, if the objects of the cached pair have not changed. It is the cached pair, or a
+    /// pair with a changed object.
     fn nearest_changed(&self) -> Option<Nearest> {
         let kept = self.kept.as_ref().filter(|kept| kept.nearest.distance > 0.0)?;
         let changed = self.changes.since(kept.then)?;
@@ -268,8 +270,8 @@ impl Crowd {
         Some(changed.iter().fold(kept.nearest, nearer))
     }
 
-    /// Computes the nearest pair of all: each object searches for nearer ones with higher indices, up to the least
-    /// distance so far.
+    /// Computes the nearest pair without the cache. Each object is compared with objects of higher handles within
+    /// the smallest distance so far.
     fn nearest_of_all(&self) -> Option<Nearest> {
         let mut best = self.kept.as_ref().and_then(|kept| self.measured(kept.nearest.pair));
         for own in self.objects() {
@@ -298,7 +300,7 @@ impl Crowd {
         Some((found.object.handle(), found.distance))
     }
 
-    /// Returns a pair of existing objects with their current distance.
+    /// Returns the pair with its current distance, if both objects exist.
     fn measured(&self, pair: Pair) -> Option<Nearest> {
         let (one, other) = (self.get(pair.0)?, self.get(pair.1)?);
         Some(Nearest { pair, distance: between(one, other) })

@@ -6,20 +6,20 @@ use impinge::bounding_volume::BoundingVolume;
 
 use super::crowd::{Crowd, Nearest, Object, Pair, between, depth, index_of, touch};
 
-/// The cached results about two crowds, after given changes of both.
+/// The cached results about two crowds.
 #[derive(Debug)]
 pub(super) struct Meeting {
-    /// The number of the other manager.
+    /// The unique number of the other manager.
     pub(super) other: u64,
-    /// The number of changes of each crowd at which `touching` was computed.
+    /// The number of changes of each crowd when `touching` was computed.
     then: [u64; 2],
-    /// The pairs that touched after these changes.
+    /// The pairs that touched then.
     pub(super) touching: BTreeSet<Pair>,
-    /// The nearest pair, and the number of changes of each crowd at which it was found.
+    /// The nearest pair, and the number of changes of each crowd when it was found.
     nearest: Option<(Nearest, [u64; 2])>,
 }
 
-/// Two crowds, the own one first.
+/// Two crowds: that of this manager first.
 #[derive(Clone, Copy)]
 pub(super) struct Crowds<'a>(pub(super) &'a Crowd, pub(super) &'a Crowd);
 
@@ -29,7 +29,7 @@ impl Meeting {
         Self { other, then: crowds.now(), touching: crowds.all_touching(), nearest: None }
     }
 
-    /// Updates the touching pairs by the changes since.
+    /// Updates the touching pairs by the changes since `then`.
     pub(super) fn update(&mut self, crowds: Crowds<'_>) {
         let then = core::mem::replace(&mut self.then, crowds.now());
         let Some([changed1, changed2]) = crowds.changed(then) else {
@@ -91,12 +91,13 @@ impl Crowds<'_> {
         [self.0.changes.now(), self.1.changes.now()]
     }
 
-    /// Returns the objects of both that changed after these changes; `None` if that is too long ago.
+    /// Returns the objects of each crowd that changed after its first `then` changes; `None` if the log does not reach
+    /// back that far.
     fn changed(self, then: [u64; 2]) -> Option<[BTreeSet<u32>; 2]> {
         Some([self.0.changes.since(then[0])?, self.1.changes.since(then[1])?])
     }
 
-    /// Searches the larger crowd for each object of the smaller one that is near the box around the larger one.
+    /// Searches the larger crowd for each object of the smaller crowd that is near the box around the larger crowd.
     fn all_touching(self) -> BTreeSet<Pair> {
         let Crowds(own, others) = self;
         let is_smaller = own.len() <= others.len();
@@ -113,7 +114,8 @@ impl Crowds<'_> {
         pairs.map(|pair| if is_smaller { pair } else { (pair.1, pair.0) }).collect()
     }
 
-    /// Returns the nearest pair, if the cached one has not changed: it, or one with a changed object.
+    /// Returns the nearest pair, if the objects of the cached pair have not changed. It is the cached pair, or a pair
+    /// with a changed object.
     fn nearest_changed(self, (mut best, then): (Nearest, [u64; 2])) -> Option<Nearest> {
         let [changed1, changed2] = self.changed(then)?;
         let (one, other) = best.pair;
@@ -130,9 +132,9 @@ impl Crowds<'_> {
         Some(best)
     }
 
-    /// Computes the nearest pair of all; `known` is one that was near. The object of the smaller crowd that is nearest
-    /// to the box around the other one goes first, and objects that are farther from the box than the nearest pair so
-    /// far are skipped.
+    /// Computes the nearest pair without the cache. Its search distance starts with that of `known`, an earlier
+    /// nearest pair. The object of the smaller crowd that is nearest to the box around the larger crowd goes first.
+    /// Objects that are farther from this box than the smallest distance so far are skipped.
     fn nearest_of_all(self, known: Option<Pair>) -> Option<Nearest> {
         let Crowds(own, others) = self;
         let mut best = known.and_then(|pair| {
@@ -165,7 +167,7 @@ impl Nearest {
     }
 }
 
-/// Returns the touching pairs of an object and others.
+/// Returns the touching pairs of an object of `own` and the objects of `others`.
 fn touching_of<'a>(
     object: &'a Object,
     own: &Crowd,
@@ -178,7 +180,7 @@ fn touching_of<'a>(
     met.into_iter().flatten().map(|other| (object.handle(), other.handle()))
 }
 
-/// Returns the nearest of the others, if it is nearer than the best so far.
+/// Returns the object with the nearest of `others`, if their distance is smaller than that of `best`.
 fn nearer(object: &Object, others: &Crowd, best: Option<Nearest>) -> Option<Nearest> {
     let limit = best.map_or(f64::INFINITY, |best| best.distance);
     let (other, distance) = others.nearest_to(object.position(), &**object.shape(), limit)?;

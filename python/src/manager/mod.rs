@@ -24,7 +24,7 @@ use crate::threads::settle;
 
 const KIND: Kind = Kind { is_double: true, is_spatial: true };
 
-/// The indices of two objects and their distance, negative if they overlap.
+/// The indices of two objects and their distance, negative if the objects overlap.
 type Found = (u32, u32, f64);
 
 /// Objects with shapes and transforms, by index; an index is reused after its object is removed.
@@ -86,7 +86,7 @@ impl Manager {
         Ok(self.crowd.nearest_pair().map(found))
     }
 
-    /// Returns the object nearest to another one.
+    /// Returns the object with this index, the object nearest to it, and their distance.
     fn nearest_beside(&mut self, index: u32) -> PyResult<Option<Found>> {
         settle()?;
         Ok(self.crowd.nearest_beside(index).map(found))
@@ -106,7 +106,7 @@ impl Manager {
         Ok(met.map(|object| index_of(object.handle())).collect())
     }
 
-    /// Returns the object nearest to a shape, and its distance; negative where they overlap.
+    /// Returns the object nearest to a shape, and its distance, negative if they overlap.
     fn nearest_to(
         &self,
         shape: &Shape,
@@ -123,20 +123,20 @@ impl Manager {
         }))
     }
 
-    /// Whether an object touches one of another manager.
+    /// Whether an object touches an object of another manager.
     fn is_touching_other(&mut self, other: &Self) -> PyResult<bool> {
         settle()?;
         Ok(self.touching_pair_with(other).is_some())
     }
 
-    /// Returns all touching pairs of an object and one of another manager.
+    /// Returns all touching pairs of an object and an object of another manager.
     fn touching_other(&mut self, other: &Self) -> PyResult<Vec<(u32, u32)>> {
         settle()?;
         let meeting = self.meet(other);
         Ok(self.meeting.insert(meeting).touching.iter().map(indices).collect())
     }
 
-    /// Returns the nearest pair of an object and one of another manager.
+    /// Returns the nearest pair of an object and an object of another manager.
     fn nearest_other(&mut self, other: &Self) -> PyResult<Option<Found>> {
         settle()?;
         let crowds = Crowds(&self.crowd, &other.crowd);
@@ -153,7 +153,7 @@ impl Manager {
 }
 
 impl Manager {
-    /// Returns the updated results about another manager, to be cached.
+    /// Takes the cached results about another manager and updates them; the caller stores them again.
     fn meet(&mut self, other: &Self) -> Meeting {
         let crowds = Crowds(&self.crowd, &other.crowd);
         let known = self.meeting.take().filter(|meeting| meeting.other == other.number);
@@ -166,8 +166,8 @@ impl Manager {
         }
     }
 
-    /// Returns a touching pair of an object and one of another manager: the same one as long as it touches. If
-    /// there is none, the cached results are up to date.
+    /// Returns a touching pair of an object and an object of another manager: the same pair as long as it
+    /// touches. If there is none, the cached results are up to date.
     fn touching_pair_with(&mut self, other: &Self) -> Option<Pair> {
         let crowds = Crowds(&self.crowd, &other.crowd);
         let known = self.meeting.as_ref().filter(|meeting| meeting.other == other.number);

@@ -1,4 +1,4 @@
-//! Bounding balls of objects and a box around all of them: they reject distant objects without a search.
+//! Bounding balls of objects, and a box around all of them: they reject distant objects without a search.
 
 use impinge::bounding_volume::{Aabb, BoundingVolume};
 use impinge::math::{Isometry3, Point, Vector};
@@ -20,8 +20,8 @@ pub(super) struct Reach {
     balls: Vec<Option<Ball>>,
     count: usize,
     around: Option<Aabb<f64, 3>>,
-    /// The number of times that the box was enlarged since it was computed. It is recomputed when that equals the
-    /// number of objects.
+    /// The number of times that the box was enlarged since it was computed. The box is recomputed when this
+    /// exceeds the number of objects.
     grown: usize,
 }
 
@@ -63,7 +63,7 @@ impl Reach {
         self.around.as_ref()
     }
 
-    /// Whether the ball of the object may overlap the box.
+    /// Whether the object with this index may overlap the box.
     pub(super) fn may_meet(&self, index: u32, aabb: &Aabb<f64, 3>) -> bool {
         self.balls[index as usize].is_some_and(|ball| distance_to(&ball, aabb) <= 0.0)
     }
@@ -97,7 +97,7 @@ impl Reach {
     }
 }
 
-/// Returns a lower bound of the distance of the content of the ball from the box.
+/// Returns a lower bound of the distance from the box to the object in the ball.
 fn distance_to(ball: &Ball, aabb: &Aabb<f64, 3>) -> f64 {
     (aabb.distance_to_point(&ball.center) - roomy(ball)).max(0.0)
 }

@@ -1,4 +1,4 @@
-//! The world of a Python world: alone, or inside a recorder while it is recorded.
+//! The world of the library behind a Python world: plain, or inside a recorder.
 
 use core::ops::Deref;
 
@@ -10,8 +10,8 @@ use impinge_record::{RecordError, Recorder, Registry};
 
 use crate::space::Numeric;
 
-/// A world that is read through [`Deref`] and changed by the methods, so that a recorder gets every
-/// change.
+/// A world that is read through [`Deref`] and changed by methods only, so that a recorder receives
+/// every change.
 pub(crate) enum KeptWorld<N: Numeric<D>, const D: usize> {
     Plain(Box<CollisionWorld<N, D, ()>>),
     Recorded(Box<Recorder<N, D, ()>>),
@@ -105,7 +105,8 @@ impl<N: Numeric<D>, const D: usize> KeptWorld<N, D> {
         }
     }
 
-    /// Starts a recording, with an update; a world that is already recorded is unchanged.
+    /// Starts a recording, after an update of the world; a world that is already recorded is
+    /// unchanged.
     pub(crate) fn record(&mut self, margin: N) -> Result<(), RecordError> {
         let Self::Plain(world) = self else { return Ok(()) };
         let world = *std::mem::replace(world, Box::new(CollisionWorld::new(N::ZERO)));

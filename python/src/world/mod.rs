@@ -1,7 +1,7 @@
-//! Worlds: one Python class for every scalar and dimension, with calls about many objects at once.
+//! Worlds: one Python class for all scalars and dimensions, whose calls take many objects at once.
 //!
-//! A handle in Python is a number of 64 bits: the index of the object, and above it the number of earlier uses of that
-//! index. It is never reused for another object of its world.
+//! A handle in Python is an integer of 64 bits: the low half is the index of the object, the high half the number of
+//! earlier objects with that index. It is never reused for another object of its world.
 
 mod kept;
 mod queries;
@@ -28,7 +28,7 @@ use crate::threads::settle;
 /// Columns of Python arrays.
 pub(crate) type Arrays<'py> = PyResult<Vec<Bound<'py, PyAny>>>;
 
-/// A world of some scalar and dimension: its changes and its queries.
+/// A world of any scalar and dimension: its changes and its queries.
 pub(crate) trait AnyWorld: Send + Sync {
     fn add(
         &mut self,
@@ -51,7 +51,7 @@ pub(crate) trait AnyWorld: Send + Sync {
     fn record(&mut self) -> PyResult<()>;
     fn stop_recording(&mut self) -> Option<Vec<u8>>;
     fn is_recorded(&self) -> bool;
-    /// Returns a world with the same objects as bytes, and the number of uses of each index.
+    /// Returns the bytes of a world with the same objects, and the number of uses of each index.
     fn to_bytes(&self) -> PyResult<(Vec<u8>, Vec<u32>)>;
     /// Fills a new world.
     fn fill(&mut self, bytes: &[u8], ages: &[u32]) -> PyResult<()>;
@@ -146,7 +146,7 @@ impl World {
         self.world.update(py)
     }
 
-    /// Returns a world with the same objects as bytes, and the number of uses of each index.
+    /// Returns the bytes of a world with the same objects, and the number of uses of each index.
     fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyBytes>, Vec<u32>)> {
         settle()?;
         let (bytes, ages) = self.world.to_bytes()?;
@@ -211,7 +211,7 @@ impl World {
         self.world.proximities(py)
     }
 
-    /// Runs a query of [`Asking`] with the arrays of `given`.
+    /// Runs the query `question` with the arrays `given`.
     fn ask<'py>(
         &self,
         question: Asking,

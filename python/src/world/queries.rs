@@ -1,4 +1,4 @@
-//! Queries of worlds with many rays, points and shapes; results in columns or rows of handles.
+//! Queries of worlds with many rays, points and shapes. Results are columns, or rows of handles.
 
 use impinge::bounding_volume::{Aabb, Ray};
 use impinge::math::na::convert;
@@ -20,10 +20,10 @@ use crate::supervise::{Call, each};
 use crate::vectors::Vectors;
 use crate::world::Arrays;
 
-/// The handle of no object.
+/// The handle that stands for no object.
 const NO_OBJECT: u64 = u64::MAX;
 
-/// A query: its name is that of a function of this module.
+/// A query and its options; [`WorldQueries::ask`] has the names.
 #[derive(FromPyObject)]
 pub(crate) struct Asking {
     name: String,
@@ -31,17 +31,17 @@ pub(crate) struct Asking {
     limit: f64,
     /// The distance at which a moving shape counts as touching.
     target_distance: f64,
-    /// The largest number of results for each element; without, all.
+    /// The largest number of results for each element; `None` for all results.
     wanted: Option<usize>,
     solid: bool,
-    /// Whether open surfaces are treated as surfaces.
+    /// Whether open surfaces are allowed: they contain the points on them.
     surface: bool,
 }
 
 /// The queries that a world of any scalar and dimension supports.
 pub(crate) trait WorldQueries {
-    /// Runs a query for arrays. With one result for each element it returns handles and the other columns of the
-    /// query. Otherwise it returns rows: starts first.
+    /// Runs a query for arrays. A query with one result for each element returns handles and the other columns.
+    /// Other queries return rows: the start of each element's results comes first.
     fn ask<'py>(
         &self,
         asking: &Asking,
@@ -63,7 +63,7 @@ struct Found<N, const D: usize> {
 }
 
 impl<N: Numeric<D>, const D: usize> Found<N, D> {
-    /// Returns a result without data; without an object, no result.
+    /// Returns a result that has a handle only; the handle [`NO_OBJECT`] stands for no result.
     fn of(handle: u64) -> Self {
         let nowhere = [convert::<f64, N>(f64::NAN); D];
         let (number, points) = (N::INFINITY, [nowhere; 2]);
@@ -71,7 +71,7 @@ impl<N: Numeric<D>, const D: usize> Found<N, D> {
     }
 }
 
-/// The columns of a query besides handles.
+/// The columns of a result in addition to the handles.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Beside {
     Nothing,
@@ -92,8 +92,8 @@ struct Chosen {
     excluded: Vec<CollisionObjectHandle>,
 }
 
-/// A query with its arrays read: returns the results for an element. Filters are not shared by threads, so each
-/// element has its own.
+/// A query whose arrays are read. `find` returns the results for an element. Threads cannot share filters, so
+/// each element gets its own.
 struct Prepared<'a, N: Numeric<D>, const D: usize> {
     len: usize,
     beside: Beside,
@@ -272,7 +272,7 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         self.alone(self.world.objects_in_aabb(&here, filter).filter(holds))
     }
 
-    /// Returns an error for open surfaces among the considered objects, by the lowest handle.
+    /// Returns an error if a considered object has an open surface; it names the object with the lowest handle.
     fn refuse_open(&self, chosen: &Chosen) -> PyResult<()> {
         for (&handle, &standing) in &self.surfaces {
             let object = self.world.collision_object(handle);
@@ -390,7 +390,7 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         }
     }
 
-    /// Returns objects without further data.
+    /// Converts objects to results that have handles only.
     fn alone<'a>(
         &self,
         objects: impl Iterator<Item = &'a CollisionObject<N, D, ()>>,
@@ -409,12 +409,13 @@ impl Asking {
     }
 }
 
-/// Returns the entry of an element in a list, which may have one for all.
+/// Returns the entry of an element; a list of one entry has the same for all elements.
 fn entry<T: Copy>(list: &[T], element: usize) -> T {
     list[if list.len() == 1 { 0 } else { element }]
 }
 
-/// Converts results to columns; in rows with the starts before them, else one for each element.
+/// Converts results to columns: with `in_rows`, the starts and all results; otherwise one result for each
+/// element.
 fn columns<N: Numeric<D>, const D: usize>(
     py: Python<'_>,
     mut found: Vec<Vec<Found<N, D>>>,

@@ -1,7 +1,8 @@
-//! Worlds as bytes: a recording of the calls that make a world with the same objects.
+//! Worlds as bytes: a recording of the calls that create a world with the same objects.
 //!
-//! An index without an object is occupied while the recording is made, and then freed: so the indices are the same, and
-//! also the next one to be used. The number of uses of each index is stored beside the bytes.
+//! Placeholders occupy the indices without an object while the recording is made, and are removed at the end. So all
+//! objects have the same indices, and the next object gets the same index too. The number of uses of each index is
+//! stored beside the bytes.
 
 use impinge::math::Pose;
 use impinge::narrow_phase::GeometricQueryType;
@@ -41,7 +42,7 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         Ok((recorder.finish().bytes, ages))
     }
 
-    /// Returns the indices without an object, in an order that leaves the next one to be used on top.
+    /// Returns the indices without an object. Removing placeholders in this order restores the order of their reuse.
     fn vacant(&self) -> impl Iterator<Item = usize> {
         self.world.vacant_indices().filter(|index| *index < self.slots.len())
     }
@@ -73,7 +74,7 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         Ok(())
     }
 
-    /// Adds a copy of an object, or a placeholder.
+    /// Adds a copy of an object; `None` adds a placeholder.
     fn copy(
         &mut self,
         object: Option<&CollisionObject<N, D, ()>>,
@@ -91,7 +92,7 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
     }
 }
 
-/// The reason why bytes are not those of a world.
+/// The reason why bytes cannot be read as a world.
 #[derive(Debug)]
 pub(super) enum Damage {
     Read(ReadError),

@@ -30,9 +30,9 @@ use crate::world::{AnyWorld, Arrays};
 pub(crate) struct TypedWorld<N: Numeric<D>, const D: usize> {
     pub(crate) world: KeptWorld<N, D>,
     pub(super) margin: N,
-    /// For each index the number of its uses, and the current handle of the library.
+    /// For each index the number of its earlier objects, and the current handle of the library.
     pub(super) slots: Vec<(u32, CollisionObjectHandle)>,
-    /// The objects that are surfaces or polylines, or have some as children.
+    /// The objects that are surfaces or polylines, or have such children.
     pub(super) surfaces: BTreeMap<CollisionObjectHandle, Standing>,
 }
 
@@ -41,7 +41,7 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         Self { world, margin, slots: Vec::new(), surfaces: BTreeMap::new() }
     }
 
-    /// Returns the handles of the library.
+    /// Converts handles to those of the library.
     pub(crate) fn fresh(
         &self,
         handles: &[u64],
@@ -87,7 +87,7 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         u64::from(self.slots[handle.uid()].0) << 32 | handle.uid() as u64
     }
 
-    /// Sets the shapes of objects, all or none.
+    /// Sets the shapes of all objects, or of none if one is rejected.
     fn exchange(
         &mut self,
         handles: &[CollisionObjectHandle],
@@ -112,7 +112,7 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         Ok(())
     }
 
-    /// Records the kind of an object's surface after its shape was set.
+    /// Records the kind of an object's surface after its shape has been set.
     pub(super) fn note_surface(
         &mut self,
         handle: CollisionObjectHandle,
@@ -124,8 +124,7 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         };
     }
 
-    /// Returns the shape of an object with other vertices; `None` if it is neither a mesh nor a
-    /// polyline.
+    /// Returns the shape with other vertices; `None` if it is neither a mesh nor a polyline.
     fn deformed(
         shape: &ShapeHandle<N, D>,
         vertices: &[Point<N, D>],
@@ -158,7 +157,7 @@ impl<N: Numeric<D>, const D: usize> AnyWorld for TypedWorld<N, D> {
             match self.world.add(N::isometry(&pose), shape, groups, query) {
                 Ok(handle) => added.push(handle),
                 Err(refused) => {
-                    // A call that fails leaves no objects.
+                    // A call that fails adds no objects.
                     let removed = self.world.remove(&added);
                     debug_assert!(removed.is_ok(), "they were just added");
                     return Err(error::of_row(&refused, "poses", element));
@@ -227,7 +226,7 @@ impl<N: Numeric<D>, const D: usize> AnyWorld for TypedWorld<N, D> {
     }
 
     fn set_query_types(&mut self, handles: &[u64], query: &QueryOptions) -> PyResult<()> {
-        // All get the same groups: if these are rejected, the first object rejects them.
+        // All objects get the same query type: if it is rejected, it is rejected for the first object.
         for handle in self.fresh(handles, "handles")? {
             let changed = self.world.set_query(handle, query.query_type());
             changed.map_err(|refused| error::of_call(&refused))?;
@@ -336,7 +335,7 @@ impl<N: Numeric<D>, const D: usize> AnyWorld for TypedWorld<N, D> {
     }
 }
 
-/// Checks that an argument has a row for each handle, or one for all.
+/// Checks that an argument has a row for each handle, or a single row for all.
 fn one_or_all(argument: &str, rows: usize, handles: usize) -> PyResult<()> {
     if rows == 1 || rows == handles {
         return Ok(());
@@ -344,7 +343,7 @@ fn one_or_all(argument: &str, rows: usize, handles: usize) -> PyResult<()> {
     Err(PyValueError::new_err(format!("{argument} has {rows} for {handles} handles")))
 }
 
-/// Converts rows of codes and two handles to columns.
+/// Converts rows, each a code and two handles, to columns.
 fn columns(py: Python<'_>, rows: impl Iterator<Item = (u8, u64, u64)>) -> Arrays<'_> {
     let (mut codes, mut first, mut second) = (Vec::new(), Vec::new(), Vec::new());
     for (code, one, other) in rows {
@@ -356,7 +355,7 @@ fn columns(py: Python<'_>, rows: impl Iterator<Item = (u8, u64, u64)>) -> Arrays
     Ok(vec![PyArray1::from_vec(py, codes).into_any(), handles(first), handles(second)])
 }
 
-/// The number of a proximity in Python.
+/// The code of a proximity in Python.
 const fn proximity_code(proximity: Proximity) -> u8 {
     match proximity {
         Proximity::Intersecting => 0,

@@ -1,10 +1,10 @@
-//! Solids and placements as plain numbers, which every contender and the reference get.
+//! Solids and placements as plain numbers: the common input of all contenders and of the reference.
 
 use impinge_reference::geometry::vector::{dot, norm, scale, sub};
 use impinge_reference::precise::{Quad, Solid};
 use impinge_reference::random::Random;
 
-/// The scalar of the contenders.
+/// The scalar type with which the contenders compute.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scalar {
     F32,
@@ -40,8 +40,8 @@ impl Scalar {
         }
     }
 
-    /// Returns the first rounded vector of `draw` whose length is 1 to within a hundredth of the
-    /// scalar's rounding error.
+    /// Returns the first vector of `draw` that, rounded to the scalar, has a squared length within
+    /// epsilon / 64 of 1. Panics after 100,000 draws.
     pub fn unit<const D: usize>(self, mut draw: impl FnMut() -> [f64; D]) -> [f64; D] {
         const TRIES: usize = 100_000;
         for _ in 0..TRIES {
@@ -55,7 +55,7 @@ impl Scalar {
     }
 }
 
-/// The kinds of solids that are compared.
+/// The kinds of solids that are compared; `PLANE` and `SPACE` list those of each dimension.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     Ball,
@@ -117,7 +117,7 @@ impl Kind {
         }
     }
 
-    /// Returns a random solid of this kind, with lengths between 0.1 and 1.6.
+    /// Returns a random solid of this kind; its lengths are mostly between 0.1 and 1.6.
     pub fn draw<const D: usize>(self, random: &mut Random, scalar: Scalar) -> Form<D> {
         let mut size = || scalar.rounded(random.magnitude(0.1, 4));
         let (half_height, radius) = (size(), size());
@@ -140,7 +140,7 @@ impl Kind {
     }
 }
 
-/// Returns two points that are not near each other.
+/// Returns the ends of a segment longer than 0.1.
 fn apart<const D: usize>(random: &mut Random, scalar: Scalar) -> [[f64; D]; 2] {
     loop {
         let limit = random.magnitude(0.1, 4);
@@ -151,7 +151,9 @@ fn apart<const D: usize>(random: &mut Random, scalar: Scalar) -> [[f64; D]; 2] {
     }
 }
 
-/// Returns three points that are not nearly on a line, counter-clockwise in 2D.
+/// Returns the corners of a triangle, counter-clockwise in 2D. It is not degenerate: at the first
+/// corner the cosine of the angle is less than 0.95 in magnitude, and both edges are longer than
+/// 0.05.
 fn wide<const D: usize>(random: &mut Random, scalar: Scalar) -> [[f64; D]; 3] {
     loop {
         let limit = random.magnitude(0.1, 4);
@@ -165,7 +167,7 @@ fn wide<const D: usize>(random: &mut Random, scalar: Scalar) -> [[f64; D]; 3] {
     }
 }
 
-/// Returns points on an ellipsoid: each is a corner of their hull.
+/// Returns points on a random ellipsoid, all of which are vertices of their convex hull.
 fn around<const D: usize>(random: &mut Random, scalar: Scalar) -> Vec<[f64; D]> {
     let axes: [f64; D] = std::array::from_fn(|_| random.magnitude(0.2, 3));
     let count = if D == 2 { 3 + random.below(6) } else { 4 + random.below(9) };
@@ -208,7 +210,8 @@ pub enum Form<const D: usize> {
     Ellipsoid {
         half_axes: [f64; D],
     },
-    /// The hull of two balls, with centres at minus and plus the half height along the second axis.
+    /// The convex hull of two balls with centres at `-half_height` and `half_height` on the second
+    /// axis. `radii` are those of the lower and the upper ball.
     Tapered {
         half_height: f64,
         radii: [f64; 2],
@@ -223,7 +226,7 @@ pub enum Form<const D: usize> {
 }
 
 impl<const D: usize> Form<D> {
-    /// Returns the solid of the reference; `None` for kinds that exist in one dimension only.
+    /// Returns the solid for the reference; `None` for cylinders and cones, which exist in 3D only.
     pub fn solid(&self) -> Option<Solid<D>> {
         Some(match self {
             Self::Ball { radius } => Solid::ball(*radius),
@@ -257,7 +260,7 @@ fn up<const D: usize>(length: f64) -> [f64; D] {
 #[derive(Clone, Copy, Debug)]
 pub struct Placement<const D: usize> {
     pub translation: [f64; D],
-    /// The quaternion `[x, y, z, w]`, or `[cosine, sine, 0, 0]` in 2D.
+    /// The quaternion `[x, y, z, w]` in 3D; `[cosine, sine, 0, 0]` in 2D.
     pub rotation: [f64; 4],
 }
 
@@ -273,21 +276,22 @@ pub struct Sample<const D: usize> {
 pub enum Outcome<const D: usize> {
     /// The contender has no algorithm for the pair.
     Unsupported,
-    /// The contender has an algorithm, but finds no contact at any prediction.
+    /// The contender has an algorithm, but reports no contact within the prediction.
     Nothing {
         /// The distance that the contender returns.
         distance: f64,
     },
-    /// The contender finds a distance and a contact.
+    /// The contender reports a distance and a contact.
     Found {
-        /// The distance, zero or more.
+        /// The distance; zero if the solids overlap.
         distance: f64,
-        /// The signed distance of the contact.
+        /// The signed distance of the contact; negative if the solids overlap.
         signed: f64,
         /// The normal, from the first solid to the second.
         normal: [f64; D],
     },
 }
 
-/// Runs a contender's query for the distance, and for the contact within a prediction.
+/// A contender's queries for one sample: the distance, and the contact within the prediction, which
+/// is the second argument.
 pub type Ask<const D: usize> = fn(&Sample<D>, f64) -> Outcome<D>;

@@ -1,4 +1,8 @@
-//! Errors of results.
+//! Measures the errors of the contenders' results against the reference.
+//!
+//! A unit of rounding is epsilon of the scalar times the size of the scene. The loss of a normal is
+//! the difference between the largest separation of the solids and their separation along this
+//! normal.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -8,42 +12,44 @@ use impinge_reference::precise::{Quad, separation_along};
 use super::form::{Ask, Outcome};
 use super::sample::Known;
 
-/// A normal that separates as well as the best one up to this many units of rounding, but points in
-/// another direction, is no error: several normals are correct.
+/// The largest loss of a tie, in units of rounding. A tie is a normal far from the best one that
+/// separates equally well; where several normals are correct this is no error.
 const AS_GOOD: f64 = 16.0;
-/// The smallest angle to the best normal that counts as another direction, in radians.
+/// The angle to the best normal, in radians, above which a normal counts as another direction.
 const ELSEWHERE: f64 = 0.05;
-/// Results on the wrong side of zero by more than this many units are counted.
+/// A result whose sign is wrong by more than this many units of rounding is counted.
 const WRONG_SIDE: f64 = 64.0;
 
 /// The errors of one contender in the samples of one row.
 #[derive(Clone, Debug, Default)]
 pub struct Errors {
-    /// The number of samples.
+    /// The number of samples that were run.
     pub asked: usize,
     /// The number of samples for which the contender has no algorithm.
     pub unsupported: usize,
-    /// The number of samples without a contact although the distance is less than the prediction,
-    /// or in which the contender panicked.
+    /// The number of samples without a contact within the prediction, and of those in which the
+    /// contender panicked.
     pub missing: usize,
-    /// The number of samples reported as apart that overlap, or the reverse, by more than rounding.
+    /// The number of results with the wrong sign: overlapping solids reported as separated, or the
+    /// reverse, by more than `WRONG_SIDE` units of rounding.
     pub wrong_sign: usize,
-    /// The number of normals that differ from the best one but separate as well.
+    /// The number of ties: normals that differ from the best one but separate equally well.
     pub ties: usize,
-    /// The errors of the distance if the solids are apart, otherwise of the depth, in units of
-    /// rounding of the size of the scene.
+    /// The errors in units of rounding: of the distance if the solids are apart, otherwise of the
+    /// depth.
     pub units: Vec<f64>,
-    /// The errors relative to the distance or depth.
+    /// The errors of the distance or depth, divided by its exact value.
     pub relative: Vec<f64>,
-    /// The angles between the normals and the best ones, in radians, without ties.
+    /// The angles between the normals and the best ones, in radians. Ties are omitted; a normal of
+    /// length zero has an infinite angle.
     pub angle: Vec<f64>,
-    /// The differences between the largest separation and that along the normal, in units of
-    /// rounding of the size of the scene.
+    /// The losses of the normals, in units of rounding.
     pub loss: Vec<f64>,
 }
 
 impl Errors {
-    /// Runs one sample and records the errors of the result.
+    /// Runs one sample with a contender and records the errors of the result. `epsilon` is that of
+    /// the scalar. A panic counts as a result without a contact.
     pub fn ask<const D: usize>(&mut self, ask: Ask<D>, known: &Known<D>, epsilon: f64) {
         let prediction = 2.0 * known.truth.size;
         let outcome = catch_unwind(AssertUnwindSafe(|| ask(&known.sample, prediction)))
@@ -110,7 +116,7 @@ impl Errors {
     }
 }
 
-/// Returns the largest error and the 99.9th percentile; `None` without errors.
+/// Returns the 99.9th percentile and the largest error; `None` without errors.
 pub fn extremes(errors: &[f64]) -> Option<[f64; 2]> {
     let mut sorted = errors.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);

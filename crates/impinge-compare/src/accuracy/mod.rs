@@ -1,12 +1,13 @@
 //! The accuracy of results: `impinge-compare accuracy [samples]`.
 //!
-//! For every pair of kinds, scalar and regime, `samples` random samples are drawn, and the distance,
+//! For every pair of kinds, scalar and regime, `samples` random samples are drawn. The distance,
 //! depth and normal of each contender are compared with the reference of
-//! `impinge_reference::precise`, which has about 25 digits. The numbers of a sample are numbers of
-//! the scalar, and its rotations are unit to within a hundredth of rounding. So the errors are those
-//! of the contenders alone, including the conversion of rotations to matrices, and no error of the
-//! input. Samples for which the reference cannot prove its result well enough are counted and
-//! omitted.
+//! `impinge_reference::precise`, which has about 25 digits.
+//!
+//! All numbers of a sample are representable in the scalar, and its rotations have unit length to
+//! within a hundredth of the rounding error. So the errors are those of the contenders alone,
+//! including the conversion of rotations to matrices; the input has none. Samples for which the
+//! reference cannot prove its result accurately enough are counted and omitted.
 
 mod form;
 mod judge;
@@ -28,7 +29,7 @@ use sample::{Dimension, Known, PLANE, Regime, SPACE, draw};
 /// The contenders, in the order of the tables.
 pub const CONTENDERS: [&str; 2] = ["impinge", "parry"];
 
-/// One pair of kinds in one regime.
+/// The errors of both contenders for one pair of kinds, scalar and regime.
 pub struct Row {
     dimension: usize,
     scalar: Scalar,
@@ -39,9 +40,9 @@ pub struct Row {
     errors: [Errors; 2],
 }
 
-/// Draws the samples, prints a line per pair, and writes the tables.
+/// Draws the samples, prints a line for each row, and writes the tables.
 pub fn run(samples: usize) {
-    // A contender that panics is counted; its message is suppressed.
+    // A panic of a contender is counted as an error; its message is suppressed.
     std::panic::set_hook(Box::new(|_| {}));
     let mut rows = Vec::new();
     let plane32: [Ask<2>; 2] = [ours::plane::<f32>, parry::plane32::ask];
@@ -57,13 +58,14 @@ pub fn run(samples: usize) {
     }
 }
 
-/// A unit of work for a thread.
+/// A unit of work of a thread: all regimes of two kinds with one scalar.
 struct Task {
     scalar: Scalar,
     kinds: [Kind; 2],
 }
 
-/// Computes all pairs of some kinds on several threads; the rows are the same for any number of them.
+/// Computes the rows of all pairs of the given kinds on several threads. The number of threads has
+/// no influence on the rows.
 fn rows_of<const D: usize>(
     dimension: Dimension<D>,
     kinds: &[Kind],
@@ -100,7 +102,7 @@ fn tasks(kinds: &[Kind]) -> Vec<Task> {
     for scalar in Scalar::ALL {
         for (index, &kind1) in kinds.iter().enumerate() {
             for &kind2 in &kinds[index..] {
-                // Two half-spaces have no distance.
+                // A pair of half-spaces is omitted: it has no distance.
                 if kind1 != Kind::HalfSpace {
                     tasks.push(Task { scalar, kinds: [kind1, kind2] });
                 }
@@ -110,7 +112,8 @@ fn tasks(kinds: &[Kind]) -> Vec<Task> {
     tasks
 }
 
-/// Draws the samples of one row, which depend on the row alone.
+/// Draws and runs the samples of one row. The random numbers depend only on the row, not on the
+/// order of the rows.
 fn row<const D: usize>(
     dimension: Dimension<D>,
     task: &Task,
@@ -155,7 +158,7 @@ impl<const D: usize> Known<D> {
         self
     }
 
-    /// Whether a half-space is involved, so that only one normal is correct.
+    /// Returns `true` if a half-space is involved, so that only one normal is correct.
     fn is_of_half_space(&self) -> bool {
         self.sample.forms.iter().any(|form| matches!(form, form::Form::HalfSpace { .. }))
     }

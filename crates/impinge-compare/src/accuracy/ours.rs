@@ -1,4 +1,4 @@
-//! Results of impinge.
+//! The contender impinge: converts samples and runs its queries.
 
 use impinge::math::na::{Quaternion, Translation, Unit, UnitComplex, UnitQuaternion};
 use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Point, Space, Vector};
@@ -71,7 +71,7 @@ fn hull<N: Space<D>, const D: usize>(points: &[[f64; D]]) -> Vec<Point<N, D>> {
     points.iter().map(point).collect()
 }
 
-/// Returns the shapes of both dimensions.
+/// Converts the shapes that exist in both dimensions; returns `None` for the others.
 fn common<N: Space<D>, const D: usize>(form: &Form<D>) -> Option<ShapeHandle<N, D>> {
     let vector = |v: &[f64; D]| Vector::<N, D>::from(v.map(N::lit));
     Some(match form {

@@ -1,4 +1,5 @@
-//! Results of parry: its four crates differ in their names only, and so do the modules here.
+//! The contender parry. Its four crates (2D and 3D, `f32` and `f64`) differ only in their names. So
+//! each module here includes the same source with the names of one crate.
 
 use super::form::{Form, Outcome, Placement, Sample};
 

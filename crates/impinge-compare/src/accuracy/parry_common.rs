@@ -1,12 +1,11 @@
-// Common code of all crates; included by `parry.rs`.
+// Source shared by the modules for parry's four crates; included by `parry.rs`.
 
 use super::{Form, Outcome, Placement, Sample};
 use parry::math::{Pose, Rotation, Vector};
 use parry::query::{contact, distance};
 use parry::shape::SharedShape;
 
-/// Runs a sample; shapes that parry does not have, and pairs that it does not support, are
-/// unsupported.
+/// Runs a sample. Shapes that parry lacks, and pairs that it does not support, give `Unsupported`.
 pub fn ask(sample: &Sample<DIM>, prediction: f64) -> Outcome<DIM> {
     let [shape1, shape2] = [0, 1].map(|i: usize| shape(&sample.forms[i]));
     let (Some(shape1), Some(shape2)) = (shape1, shape2) else { return Outcome::Unsupported };

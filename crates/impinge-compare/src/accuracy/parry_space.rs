@@ -1,4 +1,4 @@
-// Code for 3D; included by `parry.rs`.
+// The conversions for 3D; included by `parry.rs`.
 
 const DIM: usize = 3;
 

@@ -1,4 +1,4 @@
-//! Random pairs at a chosen distance, and their exact results.
+//! Random pairs of solids at an intended distance, with their exact results.
 
 use impinge_reference::geometry::vector::{add, norm, scale};
 use impinge_reference::precise::vector::rounded;
@@ -7,18 +7,18 @@ use impinge_reference::random::Random;
 
 use super::form::{Form, Kind, Placement, Sample, Scalar};
 
-/// The distance of the solids of a sample; `R` is the sum of their bounding radii.
+/// The intended distance between the solids of a sample. `R` is the sum of their bounding radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Regime {
     /// The solids are 1 to 8 R apart.
     Far,
     /// The solids are 1e-4 to 1e-1 R apart.
     Near,
-    /// The distance is zero up to rounding of the position.
+    /// The distance is zero up to the rounding of the position.
     Touching,
     /// The solids overlap by 1e-4 to 1e-1 R.
     Shallow,
-    /// One solid is approximately at the centre of the other.
+    /// One solid is near the centre of the other, or overlaps a half-space by 0.5 R.
     Deep,
 }
 
@@ -35,7 +35,7 @@ impl Regime {
         }
     }
 
-    /// Whether the solids overlap.
+    /// Returns `true` if the solids overlap.
     pub fn is_overlap(self) -> bool {
         matches!(self, Self::Shallow | Self::Deep)
     }
@@ -52,7 +52,8 @@ impl Regime {
         }
     }
 
-    /// Whether the exact distance is in the regime; `reach` is R.
+    /// Returns `true` if the exact distance `truth` is in the regime. `size` is the size of the
+    /// scene, `reach` is R.
     fn holds(self, truth: f64, size: f64, reach: f64, epsilon: f64) -> bool {
         match self {
             Self::Far => truth > 0.5 * reach,
@@ -64,26 +65,26 @@ impl Regime {
     }
 }
 
-/// The functions that differ by dimension.
+/// The functions of the reference that differ by dimension.
 #[derive(Clone, Copy)]
 pub struct Dimension<const D: usize> {
-    /// Returns the solids of the reference for the kinds of this dimension only.
+    /// Converts the kinds that exist in this dimension only to a solid of the reference.
     pub particular: fn(&Form<D>) -> Solid<D>,
-    /// Returns the pose of the reference.
+    /// Converts a placement to a pose of the reference.
     pub pose: fn(&Placement<D>) -> Pose<D>,
-    /// Returns a rotation that is exact to the last digit: of any angle, of quarter turns, or by a
-    /// small angle.
+    /// Returns a rotation of the given kind whose components are numbers of the scalar, and whose
+    /// length is 1 up to a hundredth of the rounding error.
     pub rotation: fn(&mut Random, Scalar, Turn) -> [f64; 4],
 }
 
-/// The kind of a rotation.
+/// The kind of a random rotation.
 #[derive(Clone, Copy, Debug)]
 pub enum Turn {
     /// A rotation by any angle.
     Free,
-    /// A rotation that maps axes to axes.
+    /// A rotation that maps coordinate axes to coordinate axes.
     Aligned,
-    /// A rotation by less than 1e-1 radians, down to 1e-6.
+    /// A rotation by a small angle: its magnitude varies from less than 1e-6 to about 1e-1 radians.
     Slight,
 }
 
@@ -95,11 +96,11 @@ pub struct Known<const D: usize> {
     pub truth: Precise<D>,
 }
 
-/// The largest number of draws of a pair until its regime holds.
+/// The number of draws after which a pair is considered impossible in its regime.
 const TRIES: usize = 12;
 
-/// Draws a pair of these kinds in a regime; `None` if no draw is in the regime, as for the depth of
-/// two segments in 3D.
+/// Draws a pair of these kinds in a regime. `None` if no draw is in the regime: for instance, two
+/// segments in 3D have no depth.
 pub fn draw<const D: usize>(
     dimension: Dimension<D>,
     kinds: [Kind; 2],
@@ -130,7 +131,8 @@ fn attempt<const D: usize>(
     let at1 = scalar.vector(&random.vector(1.0));
     let is_deep =
         regime == Regime::Deep && kinds[0] != Kind::HalfSpace && kinds[1] != Kind::HalfSpace;
-    // Apart or touching, or one in the centre of the other.
+    // Deep: the centre of solid 2 is near that of solid 1. Otherwise the bounding spheres touch,
+    // and a second placement corrects the distance.
     let away = if is_deep { random.range(0.0, 0.3) * radii[0].min(radii[1]) } else { reach };
     let at2 = scalar.vector(&add(&at1, &scale(&random.unit_vector(), away)));
     let placed = |at2: [f64; D]| -> Known<D> {
@@ -153,7 +155,8 @@ fn attempt<const D: usize>(
     regime.holds(truth, known.truth.size, reach, scalar.epsilon()).then_some(known)
 }
 
-/// Most pairs are rotated at random; some have parallel axes, exactly or nearly.
+/// Returns the kinds of the two rotations: mostly free ones, for some pairs parallel axes, exactly
+/// or nearly.
 fn turns(random: &mut Random) -> [Turn; 2] {
     match random.below(10) {
         0 => [Turn::Aligned, Turn::Aligned],
@@ -192,7 +195,8 @@ pub const SPACE: Dimension<3> = Dimension {
     pose: |placement| Pose::from_quaternion(placement.translation, placement.rotation),
     rotation: |random, scalar, turn| match turn {
         Turn::Free => scalar.unit(|| random.quaternion()),
-        // The quaternions of length one whose components are numbers with few bits.
+        // Half of the aligned rotations have all components ±0.5, the others a single component 1:
+        // both have exactly unit length.
         Turn::Aligned if random.chance(0.5) => {
             std::array::from_fn(|_| if random.chance(0.5) { 0.5 } else { -0.5 })
         }
@@ -210,7 +214,8 @@ pub const SPACE: Dimension<3> = Dimension {
     },
 };
 
-/// Returns the unit vector that ends with these small numbers.
+/// Returns the unit vector that ends with these small components; the first component completes its
+/// length to 1.
 fn slight<const FEW: usize, const MANY: usize>(small: [f64; FEW]) -> [f64; MANY] {
     let length = norm(&small);
     let first = (1.0 - length * length).sqrt();

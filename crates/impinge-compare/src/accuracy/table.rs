@@ -1,4 +1,5 @@
-//! Tables: every row as a line of a CSV file, every pair as a line of a page.
+//! Writes the tables: a line of a CSV file for every row, and a line of `accuracy.md` for every
+//! pair.
 
 use std::fmt::Write;
 use std::fs;
@@ -9,7 +10,7 @@ use super::judge::{Errors, extremes};
 use super::sample::Regime;
 use super::{CONTENDERS, Row};
 
-/// One line on the screen.
+/// Prints one row on the screen.
 pub fn print(row: &Row) {
     let worst = |errors: &Errors| {
         let [p999, most] = extremes(&errors.units).unwrap_or([f64::NAN; 2]);
@@ -43,7 +44,7 @@ pub fn write(rows: &[Row], samples: usize) -> io::Result<PathBuf> {
     Ok(folder)
 }
 
-/// The rows of one dimension and scalar.
+/// Returns the rows grouped by dimension and scalar.
 fn parts(rows: &[Row]) -> impl Iterator<Item = &[Row]> {
     rows.chunk_by(|a, b| a.dimension == b.dimension && a.scalar == b.scalar)
 }
@@ -98,7 +99,7 @@ fn page(rows: &[Row], samples: usize) -> String {
     text
 }
 
-/// Returns the line of a pair: all its regimes.
+/// Returns the line of a pair, which summarizes all its regimes.
 fn line(rows: &[Row]) -> String {
     let together = |contender: usize, keep: &dyn Fn(&Row) -> bool| {
         let mut all = Errors::default();
@@ -129,12 +130,12 @@ fn line(rows: &[Row]) -> String {
     )
 }
 
-/// Formats the 99.9th percentile and the largest of some errors.
+/// Formats the 99.9th percentile and the largest of some errors; a dash without errors.
 fn cell(errors: &[f64]) -> String {
     extremes(errors).map_or("–".to_owned(), |[p, most]| format!("{} / {}", short(p), short(most)))
 }
 
-/// Formats with two digits.
+/// Formats a number with about two significant digits.
 fn short(x: f64) -> String {
     match x {
         _ if x == 0.0 => "0".to_owned(),

@@ -1,8 +1,9 @@
-//! The suite of batches: one query about many placed pairs in one call, and one call for each pair. Both are impinge,
-//! in `f64` and 3D, on one thread; the times are nanoseconds for each pair.
+//! The suite of batches: one query about many placed pairs, in one call and in one call for each
+//! pair. Both contenders are impinge, in `f64` and 3D, on one thread. Times are nanoseconds for
+//! each pair.
 //!
-//! The results are compared to the bit. One shape is at the origin, those of the other side around it: about equally
-//! many pairs overlap, are near and are far.
+//! The results must have the same bits. One shape is at the origin, the second one at many
+//! positions around it: about equally many pairs overlap, are near and are far.
 
 mod question;
 
@@ -16,15 +17,15 @@ use crate::measure::in_turn;
 use crate::table::{Row, Table};
 use question::{QUESTIONS, Question};
 
-/// The two sides of a batch.
+/// A pair of shapes with many relative poses.
 pub struct Batch {
-    /// The shape at the origin, and the one of the other side.
+    /// The shape at the origin, and the shape with many poses.
     pub shapes: [ShapeHandle<f64>; 2],
     /// The poses of the second shape.
     pub poses: Vec<Isometry<f64>>,
 }
 
-/// Runs all pairs of shapes in all questions.
+/// Runs all queries for all pairs of shapes.
 pub fn run(arguments: &Arguments) -> Vec<Table> {
     let mut table = Table::new("batch", "ns");
     for (name, batch) in batches(arguments.objects) {
@@ -39,7 +40,8 @@ pub fn run(arguments: &Arguments) -> Vec<Table> {
     vec![table]
 }
 
-/// Returns the pairs by name.
+/// Returns the batches and their names, with `count` poses; a hundredth of `count` if a mesh is
+/// involved.
 fn batches(count: usize) -> Vec<(String, Batch)> {
     let shapes: [(&str, ShapeHandle<f64>, usize); 6] = [
         ("ball", ShapeHandle::new(Ball::new(0.5)), count),
@@ -51,7 +53,7 @@ fn batches(count: usize) -> Vec<(String, Batch)> {
     ];
     let mut batches = Vec::new();
     for (index, (name1, shape1, count1)) in shapes.iter().enumerate() {
-        // Each with itself and with a box.
+        // Each shape is paired with a box and with itself.
         for other in [2, index] {
             let (name2, shape2, count2) = &shapes[other];
             let is_new = batches.iter().all(|(name, _)| name != &format!("{name1}/{name2}"));
@@ -65,18 +67,19 @@ fn batches(count: usize) -> Vec<(String, Batch)> {
     batches
 }
 
-/// Returns a hull with many corners on a ball.
+/// Returns the convex hull of a tessellated ball of radius 0.5.
 fn round_hull(subdivisions: u32) -> ConvexHull<f64> {
     ConvexHull::from_points(&procedural::ball(&Ball::new(0.5), subdivisions).vertices)
 }
 
-/// Returns the surface of a ball, as triangles.
+/// Returns the surface of a tessellated ball of radius 0.5 as a triangle mesh.
 fn surface(subdivisions: u32) -> TriMesh<f64> {
     let surface = procedural::ball(&Ball::new(0.5), subdivisions);
     TriMesh::try_from(surface).expect("a surface of triangles")
 }
 
-/// Returns poses up to two units away from the origin, with all rotations; the same on every run.
+/// Returns random poses whose coordinates are less than 1.25 from the origin on each axis. They are
+/// the same in every run.
 fn places(count: usize) -> Vec<Isometry<f64>> {
     let mut state = 1_u64;
     let mut next = || {
@@ -89,7 +92,7 @@ fn places(count: usize) -> Vec<Isometry<f64>> {
     (0..count).map(&mut place).collect()
 }
 
-/// Times one call and single calls, in turn.
+/// Times the batch call and the single calls in turn.
 fn race(case: &str, batch: &Batch, question: &Question, arguments: &Arguments) -> Vec<Row> {
     let here = OnePose(Isometry::identity());
     let [shape1, shape2] = &batch.shapes;
@@ -114,7 +117,8 @@ fn race(case: &str, batch: &Batch, question: &Question, arguments: &Arguments) -
     ["batch", "one by one"].into_iter().zip(times).map(row).collect()
 }
 
-/// Times all pairs of one set within a distance: nanoseconds for each element.
+/// Times the search for all pairs of one set that are within a distance, in nanoseconds for each
+/// element.
 fn near_pairs(arguments: &Arguments, table: &mut Table) {
     let shape = ShapeHandle::new(Cuboid::new(Vector::new(0.5, 0.4, 0.3)));
     let case = "box: all pairs within a distance";

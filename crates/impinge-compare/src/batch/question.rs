@@ -1,4 +1,5 @@
-//! Queries of a batch, in one call and pair by pair. Each fills a column with a number for each pair.
+//! The queries, each in one call for a batch and pair by pair. Each fills `out` with one number for
+//! each pair.
 
 use impinge::dim3::batch::{
     ClosestColumns, ContactColumns, Control, ImpactColumns, ManifoldRows, PairBatch,
@@ -14,13 +15,13 @@ use impinge::dim3::query::{
 
 use super::Batch;
 
-/// The limit of the distance.
+/// The distance up to which closest points and contacts are computed.
 const LIMIT: f64 = 0.25;
 
-/// The velocity of the second shape.
+/// The velocity of the second shape in impact queries.
 const VELOCITY: [f64; 3] = [-1.0, -0.5, 0.25];
 
-/// A query with its name.
+/// A query, with its name in the table.
 pub struct Question {
     /// The name.
     pub name: &'static str,
@@ -30,7 +31,7 @@ pub struct Question {
     pub one_by_one: fn(&Batch, &mut Vec<f64>),
 }
 
-/// All questions about pairs.
+/// All queries of the suite.
 pub const QUESTIONS: &[Question] = &[
     Question { name: "distance", in_batch: distances, one_by_one: distances_singly },
     Question { name: "closest points", in_batch: closest, one_by_one: closest_singly },
@@ -74,7 +75,7 @@ fn manifolds(pairs: &PairBatch<'_, f64>, out: &mut Vec<f64>) {
     out.extend((0..rows.num_pairs()).map(last));
 }
 
-/// Fills a column with a result for each pose.
+/// Fills `out` with a result for each pose.
 fn each(batch: &Batch, out: &mut Vec<f64>, answer: impl FnMut(&Isometry<f64>) -> f64) {
     out.clear();
     out.extend(batch.poses.iter().map(answer));
@@ -124,7 +125,7 @@ fn manifolds_singly(batch: &Batch, out: &mut Vec<f64>) {
     });
 }
 
-/// Maps NaN to infinity.
+/// Maps NaN, the value of a pair without a result, to infinity.
 fn number(value: f64) -> f64 {
     if value.is_nan() { f64::INFINITY } else { value }
 }

@@ -1,4 +1,4 @@
-//! The interface of the contenders, and the race.
+//! The interface of the contenders, and the race between them.
 
 use std::collections::HashSet;
 
@@ -6,41 +6,42 @@ use super::swarm::{Cell, Change, Swarm};
 use crate::measure::{Times, timed};
 use crate::table::Row;
 
-/// The margin by which all contenders enlarge boxes, so that a box that moves little costs little.
+/// The margin by which all contenders enlarge boxes to fat AABBs, so that small motions need no
+/// update.
 pub const MARGIN: f32 = 0.05;
 
-/// A broad phase that is compared with another.
+/// A broad phase that takes part in the comparison.
 pub trait Contender<const D: usize> {
-    /// The name in the table.
+    /// Returns the name in the table.
     fn name(&self) -> &'static str;
 
-    /// Applies the moved, removed and added boxes, updates, and collects the events; timed.
+    /// Applies the changed boxes, updates, and collects the events; timed.
     fn step(&mut self, change: &Change<D>);
 
     /// Processes the events of the step; not timed.
     fn settle(&mut self, _change: &Change<D>) {}
 
-    /// Returns all pairs, by [`key`]; not timed.
+    /// Returns all current pairs as [`key`]s; not timed.
     fn pairs(&mut self) -> Vec<u64>;
 }
 
-/// The contenders of a case, the first of which is impinge.
+/// The contenders of a case; the first one is impinge.
 pub type Contenders<const D: usize> = Vec<Box<dyn Contender<D>>>;
 
-/// Combines two indices to one key, which does not depend on their order.
+/// Combines two indices to one key that does not depend on their order.
 pub fn key(a: u32, b: u32) -> u64 {
     u64::from(a.min(b)) << 32 | u64::from(a.max(b))
 }
 
-/// A pair that started (`true`) or stopped.
+/// Two indices, and `true` if the pair started, `false` if it stopped.
 pub type Event = (u32, u32, bool);
 
-/// The pairs after a sequence of events.
+/// The set of current pairs, maintained from events.
 #[derive(Clone, Debug, Default)]
 pub struct Held(HashSet<u64>);
 
 impl Held {
-    /// Applies events.
+    /// Adds the started pairs and removes the stopped ones.
     pub fn apply(&mut self, events: impl IntoIterator<Item = Event>) {
         for (a, b, started) in events {
             if started {
@@ -51,7 +52,7 @@ impl Held {
         }
     }
 
-    /// Drops the pairs of removed boxes, for contenders that do not report them.
+    /// Removes the pairs of removed boxes, for contenders that do not report these as stopped.
     pub fn forget<const D: usize>(&mut self, change: &Change<D>) {
         let gone: HashSet<u32> = change.replaced.iter().map(|(n, _)| *n).collect();
         if !gone.is_empty() {
@@ -68,7 +69,7 @@ impl Held {
     }
 }
 
-/// The results of one contender, in milliseconds per step.
+/// The results of one contender, with times in milliseconds per step.
 #[derive(Clone, Debug, Default)]
 struct Lane {
     times: Times,
@@ -76,10 +77,12 @@ struct Lane {
     differ: usize,
 }
 
-/// Steps the contenders alternately, in an alternating order. The first step, in which everything is new,
-/// is not timed, and neither are half as many steps after it as are timed: at first all boxes are in the
-/// middle of their fat AABBs, and later they leave at different times. The pairs are compared before the
-/// times are taken, after every tenth step and after the last.
+/// Steps the contenders alternately, in a rotating order.
+///
+/// The first step, in which everything is new, is not timed. Neither are the warm-up steps after
+/// it, half as many as the timed ones: at first all boxes are in the middle of their fat AABBs, and
+/// later they leave them at different times. The pairs are compared after the warm-up, after every
+/// tenth step and after the last.
 pub fn race<const D: usize>(
     case: &str,
     swarm: &mut Swarm<D>,
@@ -112,12 +115,12 @@ pub fn race<const D: usize>(
     rows.collect()
 }
 
-/// Counts the wrong results of each contender, and keeps the maximum over the compared steps.
+/// Counts the wrong results of each contender, and stores the maximum over the compared steps.
 ///
-/// Every two boxes that overlap must be a pair: a pair that one contender lacks and another has is
+/// Two overlapping boxes must be a pair: a pair that another contender has and this one lacks is
 /// counted. Boxes that are near may be a pair, depending on when they were enlarged last. A fat
 /// AABB extends at most two margins beyond its box. So a pair with a gap of more than four margins
-/// is stale, and is counted too.
+/// is stale, and is counted too, as are duplicate pairs.
 fn compare<const D: usize>(cells: &[Cell<D>], contenders: &mut Contenders<D>, lanes: &mut [Lane]) {
     let gap = |key: &u64| cells[(key >> 32) as usize].gap(&cells[(key & 0xffff_ffff) as usize]);
     let mut overlapping = Vec::new();

@@ -1,5 +1,6 @@
-//! The suite of broad phases: every contender gets the new boxes of moved objects, updates, and lists the
-//! changes; this is timed, in milliseconds per step. All contenders with fat AABBs use a margin of 0.05.
+//! The suite of broad phases. Every contender gets the new boxes of moved objects, updates, and
+//! lists the changes; this is timed, in milliseconds per step. All contenders with fat AABBs use a
+//! margin of 0.05.
 //!
 //! Results are pairs, most of which are near rather than overlapping: their number depends on the
 //! rules by which boxes are enlarged. `compare` defines which results count as different.
@@ -28,7 +29,7 @@ pub use rebuilt::leaves;
 pub use space::{Ncollide, Parry, Rapier};
 use swarm::{Cell, Kind, Plan, Swarm};
 
-/// The default plan: equal sizes, all moving fast, no order.
+/// The default plan: boxes of similar sizes, all of which move fast, with indices in random order.
 pub const FAST: Plan =
     Plan { kind: Kind::Alike, count: 0, stride: 1, pace: 0.05, is_sorted: false, replaced: 0 };
 

@@ -1,4 +1,4 @@
-//! The broad phase of ncollide, whose interface is the model of ours.
+//! The broad phase of ncollide, whose interface is the model of that of impinge.
 
 use super::ncollide::bounding_volume::{AABB, BoundingVolume};
 use super::ncollide::math::Point;
@@ -18,7 +18,7 @@ pub struct Ncollide {
     held: Held,
 }
 
-/// The events of a step.
+/// The events of a step, collected by the callback of ncollide.
 struct Events(Vec<Event>);
 
 impl BroadPhaseInterferenceHandler<u32> for Events {
@@ -36,10 +36,10 @@ impl BroadPhaseInterferenceHandler<u32> for Events {
 }
 
 impl Ncollide {
-    /// Creates a broad phase with the boxes.
+    /// Creates a broad phase that contains the boxes.
     pub fn new(cells: &[Cell<D>]) -> Self {
         let mut phase = DBVTBroadPhase::new(MARGIN);
-        // New boxes are not enlarged, changed ones are.
+        // ncollide enlarges boxes when they change, but not when they are created.
         let create = |(n, cell)| phase.create_proxy(aabb(cell).loosened(MARGIN), n);
         let handles = (0..).zip(cells).map(create).collect();
         Self { phase, handles, events: Events(Vec::new()), held: Held::default() }

@@ -1,6 +1,7 @@
-//! obvhs, used as in its example of a broad phase: boxes are enlarged. If few left their fat AABBs, their
-//! leaves are moved within the tree, otherwise it is rebuilt; then it is searched for the boxes that left.
-//! It has no events. It is 3D only: 2D is one of its slices.
+//! obvhs, used as in its example of a broad phase. Boxes are enlarged. If few boxes left their fat
+//! AABBs, their leaves are moved within the tree, otherwise it is rebuilt. Then it is searched for
+//! the boxes that left. It has no events. It is 3D only: in 2D all boxes have the third coordinate
+//! zero.
 
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
@@ -62,7 +63,7 @@ impl Obvhs {
     }
 }
 
-/// Returns the box of obvhs.
+/// Converts a box, enlarged by `margin`; in 2D the third coordinate is zero.
 pub fn aabb<const D: usize>(cell: &Cell<D>, margin: f32) -> Aabb {
     let corner = |x: [f32; D]| [0, 1, 2].map(|axis| x.get(axis).copied().unwrap_or(0.0));
     let mins = corner(cell.mins().map(|x| x - margin));

@@ -1,4 +1,4 @@
-//! impinge.
+//! The broad phase of impinge.
 
 use impinge::bounding_volume::Aabb;
 use impinge::broad_phase::{BroadPhase, DBVTBroadPhase, ProxyHandle};
@@ -22,7 +22,7 @@ impl<const D: usize> Impinge<D>
 where
     f32: Space<D>,
 {
-    /// Creates a broad phase with the boxes.
+    /// Creates a broad phase that contains the boxes.
     pub fn new(cells: &[Cell<D>]) -> Self {
         let mut phase = DBVTBroadPhase::new(MARGIN);
         let create = |(n, cell)| phase.create_proxy(aabb(cell), n);
@@ -31,7 +31,7 @@ where
     }
 }
 
-/// Returns the box of impinge.
+/// Converts a box to an AABB of impinge.
 pub fn aabb<const D: usize>(cell: &Cell<D>) -> Aabb<f32, D>
 where
     f32: Space<D>,

@@ -1,6 +1,6 @@
-//! The tree of parry alone, used as in rapier: leaves are enlarged, the tree is optimized a little at
-//! each step and refitted, and pairs are listed if one of their boxes left its fat AABB. The pairs that
-//! started and stopped are not derived from that.
+//! The tree of parry alone, used as in rapier. Leaves are enlarged, the tree is optimized
+//! incrementally at each step and refitted, and pairs are listed if one of their boxes left its fat
+//! AABB. It does not derive which pairs started and stopped.
 
 use super::parry::bounding_volume::Aabb;
 use super::parry::math::Vector;
@@ -52,7 +52,8 @@ impl Contender<D> for Parry {
             let status = tree.insert_or_update_partially(aabb(cell, 0.0), *n, MARGIN);
             updated += usize::from(status != BvhLeafUpdateStatus::Unchanged);
         }
-        // rapier skips this if few boxes leave; it then has other ways to keep the quality of the tree.
+        // rapier skips the optimization if few boxes leave their fat AABBs; it then has other ways
+        // to keep the quality of the tree.
         if updated * 16 >= tree.leaf_count() as usize {
             tree.optimize_incremental(workspace);
         }

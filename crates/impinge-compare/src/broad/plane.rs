@@ -1,6 +1,7 @@
-//! 2D: the rivals with one crate per dimension.
+//! The 2D rivals that have one crate per dimension.
 //!
-//! Such crates have the same source for both dimensions, and so have their contenders here.
+//! The two crates of such a rival have the same interface. So the files below are compiled once
+//! here and once in `space`.
 
 use ncollide2d as ncollide;
 use parry2d as parry;

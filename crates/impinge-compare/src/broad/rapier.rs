@@ -1,9 +1,9 @@
-//! The broad phase of rapier, used as in its `CollisionPipeline`: colliders without bodies are moved,
-//! the broad phase gets the list of these, and returns events.
+//! The broad phase of rapier, used as in its `CollisionPipeline`: colliders without bodies are
+//! moved, the broad phase gets the list of moved colliders, and returns events.
 //!
 //! Only a pipeline can clear the change flags of a collider, and running one would cost rapier
 //! time. Therefore all colliders are copies of a template whose flags a pipeline has cleared. Later
-//! steps change their translations alone.
+//! steps change only their translations.
 
 use super::rapier::prelude::*;
 
@@ -21,17 +21,17 @@ pub struct Rapier {
     handles: Vec<ColliderHandle>,
     modified: Vec<ColliderHandle>,
     events: Vec<BroadPhasePairEvent>,
-    /// The index of the box for each collider index (the first part of a handle).
+    /// The index of the box of each collider, by the first part of the collider's handle.
     numbers: Vec<u32>,
     held: Held,
-    /// Whether boxes are passed directly, without a look-up of colliders.
+    /// Whether boxes are passed to the broad phase directly, without a look-up of colliders.
     is_direct: bool,
 }
 
 impl Rapier {
-    /// Creates a broad phase with the boxes.
+    /// Creates a broad phase that contains the boxes.
     pub fn new(cells: &[Cell<D>], is_direct: bool) -> Self {
-        // The margin is 0.04 times the unit of length.
+        // The margin of rapier is 0.04 times `length_unit`.
         let params = IntegrationParameters {
             length_unit: MARGIN / 0.04,
             normalized_prediction_distance: 0.0,
@@ -68,11 +68,11 @@ impl Rapier {
             self.numbers.resize(index + 1, u32::MAX);
         }
         self.numbers[index] = n;
-        // Insertion sets all change flags; the copy has none.
+        // Insertion sets all change flags; the copy that replaces the collider has none.
         self.colliders[handle] = collider;
         self.colliders.take_modified();
-        // New boxes are not passed directly: the update would take the box for that of the collider
-        // whose index they inherit, and remove it.
+        // A new collider is always reported as modified. If its box were passed directly, the
+        // update would assign it to the removed collider whose index it reuses, and remove it.
         self.modified.push(handle);
         handle
     }
@@ -102,8 +102,8 @@ impl Rapier {
     }
 }
 
-/// Returns a collider whose change flags a pipeline has cleared. It accepts collisions of fixed
-/// colliders, which by default have none with each other.
+/// Returns a collider whose change flags a pipeline has cleared. It collides with fixed colliders
+/// too: by default two fixed colliders ignore each other.
 fn template() -> Collider {
     let mut colliders = ColliderSet::new();
     let ball = ColliderBuilder::ball(1.0).active_collision_types(ActiveCollisionTypes::all());

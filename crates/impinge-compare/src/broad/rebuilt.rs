@@ -1,5 +1,5 @@
-//! Trees that are rebuilt at each step and searched for every box: rstar and bvh. They return all pairs
-//! of exact boxes, not enlarged, and have no events.
+//! The trees of rstar and bvh, rebuilt at each step and searched for every box. They return all
+//! pairs of exact boxes, not of enlarged ones, and have no events.
 
 use bvh::aabb::{Aabb, Bounded};
 use bvh::bounding_hierarchy::BHShape;
@@ -54,7 +54,7 @@ impl<const D: usize> RTreeObject for Leaf<D> {
     }
 }
 
-/// A tree of rstar or bvh.
+/// A contender that rebuilds the tree of rstar or of bvh at each step.
 pub struct Rebuilt<const D: usize> {
     name: &'static str,
     find: fn(&mut Vec<Leaf<D>>, &mut Vec<(u32, u32)>),
@@ -63,12 +63,12 @@ pub struct Rebuilt<const D: usize> {
 }
 
 impl<const D: usize> Rebuilt<D> {
-    /// Creates the contender with a tree of rstar.
+    /// Creates the contender that uses rstar.
     pub fn rstar(cells: &[Cell<D>]) -> Self {
         Self { name: "rstar (rebuilt)", find: by_rstar, leaves: leaves(cells), found: Vec::new() }
     }
 
-    /// Creates the contender with a tree of bvh.
+    /// Creates the contender that uses bvh.
     pub fn bvh(cells: &[Cell<D>]) -> Self {
         Self { name: "bvh (rebuilt)", find: by_bvh, leaves: leaves(cells), found: Vec::new() }
     }
@@ -85,7 +85,7 @@ fn by_bvh<const D: usize>(leaves: &mut Vec<Leaf<D>>, found: &mut Vec<(u32, u32)>
     let tree = Bvh::build(leaves);
     for leaf in &*leaves {
         let query = leaf.aabb();
-        // The tree proposes leaves, whose boxes may still be apart.
+        // The traversal also returns leaves whose boxes do not overlap the query.
         let met = tree
             .traverse_iterator(&query, leaves)
             .filter(|other| other.number > leaf.number && other.aabb().intersects_aabb(&query));

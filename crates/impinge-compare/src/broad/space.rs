@@ -1,6 +1,7 @@
-//! 3D: the rivals with one crate per dimension.
+//! The 3D rivals that have one crate per dimension.
 //!
-//! Such crates have the same source for both dimensions, and so have their contenders here.
+//! The two crates of such a rival have the same interface. So the files below are compiled once
+//! here and once in `plane`.
 
 use ncollide3d as ncollide;
 use parry3d as parry;

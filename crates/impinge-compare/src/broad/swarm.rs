@@ -1,4 +1,4 @@
-//! Moving boxes, as data: at each step a list of the moved ones, the same for every contender.
+//! Moving boxes as plain data: at each step a list of changed boxes, the same for every contender.
 
 use impinge_reference::random::Random;
 
@@ -7,22 +7,22 @@ use impinge_reference::random::Random;
 pub struct Cell<const D: usize> {
     /// The centre.
     pub center: [f32; D],
-    /// Half of each edge.
+    /// The half extents.
     pub half: [f32; D],
 }
 
 impl<const D: usize> Cell<D> {
-    /// The least corner.
+    /// Returns the corner with the least coordinates.
     pub fn mins(&self) -> [f32; D] {
         std::array::from_fn(|axis| self.center[axis] - self.half[axis])
     }
 
-    /// The greatest corner.
+    /// Returns the corner with the greatest coordinates.
     pub fn maxs(&self) -> [f32; D] {
         std::array::from_fn(|axis| self.center[axis] + self.half[axis])
     }
 
-    /// The widest gap between two boxes along an axis; negative if they overlap.
+    /// Returns the largest gap between two boxes along an axis; negative if they overlap.
     pub fn gap(&self, other: &Self) -> f32 {
         let ([a, b], [c, d]) = ([self.mins(), self.maxs()], [other.mins(), other.maxs()]);
         let gaps = (0..D).map(|axis| (c[axis] - b[axis]).max(a[axis] - d[axis]));
@@ -30,8 +30,9 @@ impl<const D: usize> Cell<D> {
     }
 }
 
-/// Whether rounding decides if two boxes are within a distance of each other. Contenders compute in
-/// `f32` too, each in its own order: where the numbers round differently, the results may differ.
+/// Returns `true` if two boxes are so near the given distance that rounding decides on which side
+/// they are. Contenders compute in `f32`, each in its own order. So their results may differ for
+/// such boxes.
 pub fn is_borderline<const D: usize>(a: &Cell<D>, b: &Cell<D>, distance: f64) -> bool {
     let apart = (0..D).map(|axis| {
         let between = f64::from(a.center[axis]) - f64::from(b.center[axis]);
@@ -42,13 +43,13 @@ pub fn is_borderline<const D: usize>(a: &Cell<D>, b: &Cell<D>, distance: f64) ->
     (apart - distance).abs() <= 4.0 * f64::from(f32::EPSILON * size)
 }
 
-/// The sizes and positions of the boxes.
+/// The distribution of sizes and positions of the boxes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Boxes of half extents 0.35 to 0.65, with about three neighbours each.
+    /// Boxes with half extents 0.35 to 0.65. Each overlaps three others on average.
     Alike,
-    /// Boxes of half extents 0.35 to 0.65 times 1 + 99·X¹⁰ for a random X (bepuphysics' benchmark),
-    /// with about three neighbours each.
+    /// Boxes with half extents 0.35 to 0.65, scaled by 1 + 99·X¹⁰ for a random X (as in a benchmark
+    /// of bepuphysics). Each overlaps three others on average.
     Mixed,
     /// Boxes of half extents 0.55 on a grid of spacing 1. Each stays within 0.1 of its grid point.
     Pile,
@@ -61,26 +62,26 @@ pub struct Plan {
     pub kind: Kind,
     /// The number of boxes.
     pub count: usize,
-    /// Every `stride`-th box moves.
+    /// Every `stride`-th box moves, the others are fixed.
     pub stride: usize,
-    /// The mean distance of a moving box in a step.
+    /// The mean displacement of a moving box in a step.
     pub pace: f64,
-    /// Whether boxes that are close in space have close indices.
+    /// Whether indices follow the position along a Morton curve, instead of being random.
     pub is_sorted: bool,
-    /// The number of boxes that are removed in a step, each replaced by a new one elsewhere.
+    /// The number of boxes per step that are removed and replaced by a box elsewhere.
     pub replaced: usize,
 }
 
 /// The changes of a step.
 #[derive(Clone, Debug, Default)]
 pub struct Change<const D: usize> {
-    /// The boxes that moved.
+    /// The boxes that moved, with their indices.
     pub moved: Vec<(u32, Cell<D>)>,
-    /// The removed boxes, with the new ones that take their indices.
+    /// The new boxes that replace removed ones, with the indices of both.
     pub replaced: Vec<(u32, Cell<D>)>,
 }
 
-/// Boxes and their velocities; walls reflect them.
+/// Boxes and their velocities; walls around the space reflect them.
 #[derive(Clone, Debug)]
 pub struct Swarm<const D: usize> {
     /// The current boxes.
@@ -94,7 +95,7 @@ pub struct Swarm<const D: usize> {
 }
 
 impl<const D: usize> Swarm<D> {
-    /// Creates the swarm before the first step.
+    /// Creates the swarm in its state before the first step.
     pub fn new(plan: Plan) -> Self {
         let mut random = Random::new(1);
         let halves: Vec<_> = (0..plan.count).map(|_| half(plan.kind, &mut random)).collect();
@@ -115,7 +116,7 @@ impl<const D: usize> Swarm<D> {
         Self { cells, velocities, walls, plan, edge, next: 0, random }
     }
 
-    /// Moves the boxes, and returns the changes.
+    /// Advances by one step, and returns the changes.
     pub fn step(&mut self) -> Change<D> {
         let mut change = Change::default();
         for _ in 0..self.plan.replaced {
@@ -134,7 +135,8 @@ impl<const D: usize> Swarm<D> {
         change
     }
 
-    /// Whether a box was just added: the last one before the next to be removed.
+    /// Returns `true` if a box was replaced in this step: it is then one of the last `replaced`
+    /// boxes before `next`.
     fn is_new(&self, n: usize) -> bool {
         let age = (self.next + self.plan.count - 1 - n) % self.plan.count;
         age < self.plan.replaced
@@ -166,10 +168,11 @@ fn half<const D: usize>(kind: Kind, random: &mut Random) -> [f32; D] {
     [0.0; D].map(|_: f32| (size * random.range(0.35, 0.65)) as f32)
 }
 
-/// Returns the edge of the space in which boxes have three neighbours on average. Two boxes overlap
-/// if their centres are within the sum of their half extents, so the volume is a third of the mean
-/// volume of boxes with these sums as half extents, times their number. The mean is estimated from as
-/// many pairs as there are boxes.
+/// Returns the edge of the cube in which boxes overlap three others on average.
+///
+/// Two boxes overlap if their centres are within the sum of their half extents. So the volume of
+/// the cube is a third of the mean volume of boxes with such sums as half extents, times their
+/// number. The mean is estimated from as many random pairs as there are boxes.
 fn edge<const D: usize>(halves: &[[f32; D]], random: &mut Random) -> f64 {
     let mut any = || halves[random.below(halves.len())].map(f64::from);
     let sum: f64 = (0..halves.len())
@@ -185,7 +188,7 @@ fn anywhere<const D: usize>(edge: f64, random: &mut Random) -> [f32; D] {
     [0.0; D].map(|_: f32| random.range(0.0, edge) as f32)
 }
 
-/// Places the boxes on a grid, in random order.
+/// Places the boxes on the points of a grid, in random order.
 fn stack<const D: usize>(cells: &mut [Cell<D>], random: &mut Random) {
     let side = (cells.len() as f64).powf(1.0 / D as f64).ceil() as usize;
     let mut places: Vec<usize> = (0..cells.len()).collect();
@@ -208,20 +211,21 @@ fn walls<const D: usize>(kind: Kind, center: &[f32; D], edge: f64) -> [[f32; D];
     }
 }
 
-/// Returns a random direction, scaled by 0.2 to 1.8 times the pace.
+/// Returns a random direction, scaled by 0.2 to 1.8 times `pace`.
 fn velocity<const D: usize>(pace: f64, random: &mut Random) -> [f32; D] {
     let speed = pace * random.range(0.2, 1.8);
     loop {
         let v: [f64; D] = [0.0; D].map(|_: f64| random.range(-1.0, 1.0));
         let squared: f64 = v.iter().map(|x| x * x).sum();
-        // At least half of the trials succeed here.
+        // Rejection of points outside the unit ball; in 2D and 3D at least half of the draws are
+        // inside.
         if (0.01..=1.0).contains(&squared) {
             return v.map(|x| (x * speed / squared.sqrt()) as f32);
         }
     }
 }
 
-/// Returns the position of a point of the unit cube along Morton's curve.
+/// Returns the Morton code of a point of the unit cube, with 16 bits per axis.
 fn morton<const D: usize>(point: &[f64; D]) -> u64 {
     let bits = point.map(|x| (x.clamp(0.0, 1.0) * 65535.0) as u64);
     let levels = (0..16).rev();

@@ -15,18 +15,18 @@ use super::world::{self, World, certainly_touching};
 use crate::broad::swarm::{Cell, Change};
 use crate::broad::{Contender, Impinge, Ncollide, Rapier, aabb, leaves, obvhs_aabb};
 
-/// The number of searches of a tree.
+/// The number of box queries by which trees are compared.
 const QUESTIONS: usize = 1000;
 
-/// Returns boxes to search for: some of those in the tree, slightly enlarged.
+/// Returns the query boxes: random boxes of the tree, enlarged by half.
 pub fn questions(cells: &[Cell<3>]) -> Vec<Cell<3>> {
     let mut random = Random::new(9);
     let any = (0..QUESTIONS).map(|_| cells[random.below(cells.len())]);
     any.map(|cell| Cell { half: cell.half.map(|x| x * 1.5), ..cell }).collect()
 }
 
-/// Searches a tree for each box. Its proposals are compared with the boxes themselves, since trees
-/// may propose more.
+/// Runs all box queries with the candidates of `propose`. Trees may return candidates that do not
+/// overlap; those are removed before the comparison.
 pub fn ask<'a>(
     cells: &'a [Cell<3>],
     mut propose: impl FnMut(&Cell<3>, &mut Vec<u32>) + 'a,
@@ -43,12 +43,13 @@ pub fn ask<'a>(
     })
 }
 
-/// Returns the box of parry.
+/// Converts a box to an AABB of parry.
 pub fn parry_aabb(cell: &Cell<3>) -> parry3d::bounding_volume::Aabb {
     parry3d::bounding_volume::Aabb::new(cell.mins().into(), cell.maxs().into())
 }
 
-/// Builds trees of boxes. Some crates have a fast and a good build.
+/// Returns the contenders that build trees of boxes, some with a fast and with a good build. With
+/// more than 200,000 boxes `bvh` and `rstar` are omitted.
 pub fn boxes(cells: &[Cell<3>]) -> Vec<Maker<'_>> {
     let mut makers = vec![
         Maker::new("impinge BoxTree", || ours(cells)),
@@ -112,7 +113,8 @@ fn rstar(cells: &[Cell<3>]) -> Answer<'_> {
     })
 }
 
-/// Builds broad phases, with all pairs found.
+/// Returns the contenders that build broad phases and find all pairs. With more than 200,000 boxes
+/// `ncollide` is omitted.
 pub fn phases(cells: &[Cell<3>]) -> Vec<Maker<'_>> {
     let mut makers = vec![
         Maker::new("impinge", || phase(cells, Impinge::new(cells))),
@@ -124,7 +126,7 @@ pub fn phases(cells: &[Cell<3>]) -> Vec<Maker<'_>> {
     makers
 }
 
-/// Returns the overlapping pairs.
+/// Runs the first step of a broad phase; the results are its overlapping pairs.
 fn phase<'a>(cells: &'a [Cell<3>], mut phase: impl Contender<3> + 'a) -> Answer<'a> {
     phase.step(&Change::default());
     Box::new(move || {
@@ -136,7 +138,8 @@ fn phase<'a>(cells: &'a [Cell<3>], mut phase: impl Contender<3> + 'a) -> Answer<
     })
 }
 
-/// Builds worlds, with all contacts found.
+/// Returns the contenders that build worlds and compute all contacts. With more than 200,000 boxes
+/// `ncollide` is omitted.
 pub fn worlds(cells: &[Cell<3>]) -> Vec<Maker<'_>> {
     let mut makers = vec![
         Maker::new("impinge", || filled(cells, world::Ours::new())),

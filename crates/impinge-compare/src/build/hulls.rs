@@ -1,4 +1,5 @@
-//! Contenders that build convex hulls: of points on a ball, each of which is a corner.
+//! Contenders that build convex hulls of random points on a sphere. All of these points are
+//! vertices of the hull.
 
 use impinge::math::Point;
 use impinge::shape::ConvexHull;
@@ -8,27 +9,28 @@ use parry3d::shape::ConvexPolyhedron;
 
 use super::measure::{Answer, Maker};
 
-/// The number of points of all hulls of a case together.
+/// The number of points of a case, summed over all of its hulls.
 const POINTS: usize = 20_000;
 
-/// Sets of points on the unit ball.
+/// Sets of points on the unit sphere.
 pub struct Clouds(Vec<Vec<[f32; 3]>>);
 
 impl Clouds {
-    /// Creates `count` sets of points.
+    /// Creates sets of `count` points each, `POINTS / count` of them.
     pub fn new(count: usize) -> Self {
         let mut random = Random::new(11);
         let mut point = || random.unit_vector::<3>().map(|x| x as f32);
         Self((0..POINTS / count).map(|_| (0..count).map(|_| point()).collect()).collect())
     }
 
-    /// The number of sets.
+    /// Returns the number of sets.
     pub const fn len(&self) -> usize {
         self.0.len()
     }
 }
 
-/// Builds the hulls of all sets, one after the other. The results are the corners.
+/// Returns the contenders. Each builds the hulls of all sets, one after the other; the results are
+/// the vertices.
 pub fn makers(clouds: &Clouds) -> Vec<Maker<'_>> {
     let (ours, theirs) = (clouds.0.iter().map(|cloud| points(cloud)), clouds.0.iter());
     let (ours, theirs): (Vec<_>, Vec<_>) =
@@ -49,7 +51,7 @@ fn vectors(cloud: &[[f32; 3]]) -> Vec<Vector> {
     cloud.iter().map(|point| Vector::from_array(*point)).collect()
 }
 
-/// The coordinates of the corners of hulls, as bits.
+/// The bits of the coordinates of the vertices of all hulls.
 type Corners = Vec<[u32; 3]>;
 
 fn made(clouds: &[Vec<Point<f32, 3>>]) -> Corners {

@@ -1,18 +1,19 @@
-//! Measures the time of building structures, or the bytes that remain, and compares their results.
+//! Measures the time to build structures, or the bytes that they keep allocated, and compares their
+//! results.
 
 use crate::measure::Times;
 #[cfg(not(feature = "bytes"))]
 use crate::measure::timed;
 use crate::table::Row;
 
-/// The results of a structure, each as a number.
+/// Runs queries on a built structure and returns the results, each encoded as a number.
 pub type Answer<'a> = Box<dyn FnMut() -> Vec<u64> + 'a>;
 
 /// A contender: its name, and its constructor.
 pub struct Maker<'a> {
     /// The name in the table.
     pub name: &'static str,
-    /// Builds the structure; this is measured.
+    /// Builds the structure; this call is measured.
     pub make: Box<dyn Fn() -> Answer<'a> + 'a>,
 }
 
@@ -23,10 +24,10 @@ impl<'a> Maker<'a> {
     }
 }
 
-/// The measured quantity.
+/// The unit of the measured times.
 #[cfg(not(feature = "bytes"))]
 pub const UNIT: &str = "ms";
-/// The measured quantity.
+/// The unit of the counted memory.
 #[cfg(feature = "bytes")]
 pub const UNIT: &str = "bytes_per_object";
 
@@ -45,8 +46,8 @@ fn measured<R>(count: usize, work: impl FnOnce() -> R) -> (f64, R) {
     (bytes / count as f64, result)
 }
 
-/// Runs the constructor of each contender, in turn and several times, and compares the results of the
-/// first round with those of the first contender.
+/// Runs the constructors in turn for several rounds. In the first round the results are compared
+/// with those of the first contender.
 pub fn measure(case: &str, count: usize, makers: &[Maker<'_>]) -> Vec<Row> {
     let rounds = match count {
         _ if UNIT != "ms" => 1,
@@ -57,7 +58,7 @@ pub fn measure(case: &str, count: usize, makers: &[Maker<'_>]) -> Vec<Row> {
     let mut rows: Vec<Row> = makers.iter().map(|maker| row(case, maker)).collect();
     let mut first: Vec<u64> = Vec::new();
     for round in 0..rounds {
-        // The first contender goes first in the first round, when results are compared.
+        // In round 0, in which results are compared, the order begins with the first contender.
         for n in (0..makers.len()).map(|n| (n + round) % makers.len()) {
             let (value, mut answer) = measured(count, || (makers[n].make)());
             rows[n].times.push(value);

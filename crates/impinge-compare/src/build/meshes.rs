@@ -1,5 +1,5 @@
-//! Contenders that build meshes. Some compute more than the positions of triangles: impinge always
-//! computes adjacency, parry optionally, ncollide always.
+//! Contenders that build meshes. Their meshes differ: impinge and ncollide always compute the
+//! adjacency of triangles, parry optionally.
 
 use impinge::math::Point;
 use impinge::shape::{CompositeShape, TriMesh};
@@ -13,16 +13,16 @@ use super::measure::{Answer, Maker};
 use crate::broad::aabb;
 use crate::broad::swarm::Cell;
 
-/// Triangles over a square grid of spacing 1, at random heights from 0 to 2.
+/// A terrain: triangles over a square grid of spacing 1, with random heights from 0 to 2.
 pub struct Terrain {
     vertices: Vec<[f32; 3]>,
-    /// The corners of each triangle.
+    /// The indices of the vertices of each triangle.
     pub triangles: Vec<[u32; 3]>,
     cells: Vec<Cell<3>>,
 }
 
 impl Terrain {
-    /// Creates a terrain with `side` squares along each side, two triangles each.
+    /// Creates a terrain with `side` squares along each side and two triangles for each square.
     pub fn new(side: u32) -> Self {
         let (mut random, row) = (Random::new(4), side + 1);
         let vertices: Vec<_> = (0..row * row)
@@ -49,7 +49,8 @@ fn around(vertices: &[[f32; 3]], corners: &[u32; 3]) -> Cell<3> {
     }
 }
 
-/// Builds meshes, and trees of the boxes of their triangles.
+/// Returns the contenders that build meshes, and those that build trees of the boxes of the
+/// triangles.
 pub fn makers(terrain: &Terrain) -> Vec<Maker<'_>> {
     let fixed = TriMeshFlags::FIX_INTERNAL_EDGES;
     let mut makers = vec![

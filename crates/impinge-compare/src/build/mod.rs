@@ -1,10 +1,10 @@
-//! The suite of construction: trees of boxes, meshes, hulls, broad phases and worlds with everything new. Each
-//! contender builds its own from the same boxes, triangles or points; this is timed, in milliseconds. Then all run
-//! the same queries, and the results are compared.
+//! The suite of construction: trees of boxes, meshes, hulls, broad phases and worlds. Each
+//! contender builds its structure from the same boxes, triangles or points; this is timed, in
+//! milliseconds. Then all run the same queries, and the results are compared.
 //!
-//! With the feature `bytes` memory is counted instead: the bytes that stay allocated after construction, per
-//! object. They include the events of the first step, which a caller that wants pairs keeps: 12 to 24 bytes per
-//! pair. Memory that a contender borrows is not counted.
+//! With the feature `bytes` the suite counts memory instead: the bytes that stay allocated after
+//! construction, per object. They include the events of the first step, which a caller that wants
+//! pairs keeps: 12 to 24 bytes per pair. Memory that a contender borrows is not counted.
 
 mod contenders;
 mod hulls;

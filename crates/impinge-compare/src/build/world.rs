@@ -1,4 +1,4 @@
-//! Worlds of axis-aligned boxes: impinge, rapier and ncollide. Built, moved and read.
+//! Worlds of axis-aligned boxes in impinge, rapier and ncollide: they are built, moved and read.
 
 use impinge::math::Isometry3;
 use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
@@ -14,20 +14,21 @@ pub use crate::world::rapier::space::Colliders as Rapier;
 
 /// A world of boxes.
 pub trait World: Send {
-    /// Adds a box, whose number is that of the call.
+    /// Adds a box. Its index is the number of boxes added before.
     fn add(&mut self, cell: &Cell<3>);
 
     /// Moves some boxes and updates.
     fn step(&mut self, moved: &[(u32, Cell<3>)]);
 
-    /// Reads every contact point: their number, and the sum of their depths.
+    /// Reads every contact point. Returns their number and the sum of their depths.
     fn read(&self) -> (usize, f32);
 
-    /// Returns the pairs with contact points, by [`key`].
+    /// Returns the pairs with contact points, as [`key`]s.
     fn touching(&self) -> Vec<u64>;
 }
 
-/// Returns the touching pairs of a world, sorted, except those for which rounding decides.
+/// Returns the touching pairs of a world, sorted and without duplicates. Pairs for which rounding
+/// decides whether they touch are omitted.
 pub fn certainly_touching(world: &dyn World, cells: &[Cell<3>]) -> Vec<u64> {
     let mut pairs = world.touching();
     let ends = |key: &u64| [key >> 32, key & 0xffff_ffff].map(|n| &cells[n as usize]);
@@ -47,7 +48,7 @@ pub struct Ours {
 }
 
 impl Ours {
-    /// Creates a world without boxes.
+    /// Creates an empty world.
     pub fn new() -> Self {
         Self { world: CollisionWorld::new(MARGIN), handles: Vec::new() }
     }
@@ -84,7 +85,7 @@ impl World for Ours {
     }
 }
 
-/// Colliders without bodies, which cost rapier the least.
+/// The colliders have no bodies, the cheapest setup of rapier.
 impl World for Rapier {
     fn add(&mut self, cell: &Cell<3>) {
         let [x, y, z] = cell.half;
@@ -117,7 +118,7 @@ pub struct Ncollide {
 }
 
 impl Ncollide {
-    /// Creates a world without boxes.
+    /// Creates an empty world.
     pub fn new() -> Self {
         Self { world: ncollide::CollisionWorld::new(MARGIN), handles: Vec::new() }
     }

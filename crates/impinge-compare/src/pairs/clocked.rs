@@ -1,4 +1,4 @@
-//! A narrow phase that times its updates.
+//! A narrow phase that measures the time of its updates.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -14,7 +14,7 @@ use impinge::world::{
 
 use crate::measure::timed;
 
-/// The default narrow phase, with the time of its last update.
+/// The default narrow phase, with a clock for its last update.
 #[derive(Clone)]
 pub struct Clocked<const D: usize>
 where
@@ -24,12 +24,12 @@ where
     time: Clock,
 }
 
-/// The time of a narrow phase, in nanoseconds.
+/// A shared cell with the time of the last update of a narrow phase, in nanoseconds.
 #[derive(Clone, Debug, Default)]
 pub struct Clock(Arc<AtomicU64>);
 
 impl Clock {
-    /// Returns the time of the last update.
+    /// Returns the time of the last update, in nanoseconds.
     pub fn read(&self) -> f64 {
         f64::from_bits(self.0.load(Ordering::Relaxed))
     }
@@ -44,7 +44,8 @@ where
     }
 }
 
-/// Everything but the update is delegated.
+/// The objects of a world with boxes in `f32`. All methods of the narrow phase except `update` only
+/// delegate.
 type Objects<const D: usize, T> = CollisionObjects<f32, D, T>;
 
 impl<const D: usize, T> NarrowPhase<f32, D, T> for Clocked<D>

@@ -1,8 +1,8 @@
 //! Queries of Coal, in `f64`, its only scalar here.
 //!
-//! All pairs of a round are computed in one call, with functors for the two shapes. A contact is one of
-//! `collide` within the security margin; for a mesh all of its contacts are computed. A manifold also
-//! has the polygons of `ComputeContactPatch`.
+//! All pairs of a round are computed in one call, with functors for the two shapes. A contact comes
+//! from `collide` with the prediction as security margin; for a mesh all contacts are computed. A
+//! manifold also has the polygons of `ComputeContactPatch`.
 
 use impinge_compare_c::{CoalPairs, CoalPose, CoalSolid};
 
@@ -11,8 +11,8 @@ use super::placement::Placement;
 use super::question::{Answer, Contender, PREDICTION, Question, Stand, stand};
 use super::regime::{Pair, Poses};
 
-/// Returns a solid of Coal; `None` for shapes that it lacks, that it has in another frame (height
-/// fields), or only as parts of meshes (triangles).
+/// Converts a solid. `None` for shapes that Coal lacks or has only as parts of meshes (triangles),
+/// and for height fields, whose frame differs.
 fn solid(form: &Form<3>) -> Option<CoalSolid> {
     Some(match form {
         Form::Ball(radius) => CoalSolid::ball(*radius),
@@ -34,7 +34,8 @@ fn pose(Placement { translation: [x, y, z], rotation: [i, j, k, w] }: &Placement
     [*x, *y, *z, *i, *j, *k, *w]
 }
 
-/// The pairs of a case; the two sets come first, then the slightly moved ones.
+/// The contender Coal with the pairs of a case. The two unrelated sets come first, then the
+/// slightly moved ones.
 pub struct Coal {
     pairs: CoalPairs,
     found: Vec<f32>,

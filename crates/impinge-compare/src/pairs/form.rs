@@ -1,9 +1,10 @@
-//! The solids of the suite as plain data: each of size about 1, around the origin of its frame.
+//! The solids of the suite as plain data. Each is about 1 in size and lies around the origin of its
+//! frame.
 
 use impinge_reference::geometry::vector::{dot, norm, perpendicular, scale, sub};
 use impinge_reference::random::Random;
 
-/// A solid in its local frame; heights and axes are along the second coordinate.
+/// A solid in its local frame. Heights and axes are along the second coordinate.
 #[derive(Clone, Debug)]
 pub enum Form<const D: usize> {
     Ball(f64),
@@ -21,14 +22,14 @@ pub enum Form<const D: usize> {
     Polyline(Terrain),
 }
 
-/// Hills over a square of cells, or over a row of cells in 2D, around the origin.
+/// A terrain around the origin: hills over a square of cells in 3D, over a row of cells in 2D.
 #[derive(Clone, Copy, Debug)]
 pub struct Terrain {
-    /// The number of cells along each axis.
+    /// The number of cells along each horizontal axis.
     pub cells: u32,
-    /// The side of a cell.
+    /// The side length of a cell.
     pub side: f64,
-    /// The height of the hills and depth of the valleys.
+    /// The greatest height above zero, and the greatest depth below zero.
     pub height: f64,
 }
 
@@ -37,10 +38,11 @@ pub struct Terrain {
 pub struct Solid<const D: usize> {
     pub name: &'static str,
     pub form: Form<D>,
-    /// Directions by which the solid can be laid flat: outward normals of faces, or perpendicular
-    /// to an axis.
+    /// Directions in the local frame in which the solid has a flat side: outward normals of faces,
+    /// or directions perpendicular to an axis.
     pub flats: Vec<[f64; D]>,
-    /// A version of size about 1, for pairs of two grounds; `None` for other solids.
+    /// For a terrain, a smaller version about 1 across, which is used as the second solid of a pair
+    /// of two terrains; otherwise `None`.
     pub patch: Option<Form<D>>,
 }
 
@@ -49,8 +51,8 @@ impl<const D: usize> Solid<D> {
         Self { name, form, flats, patch: None }
     }
 
-    /// Whether the solid is a ground, wider than high: it is not moved, and many solids are paired
-    /// with the same one.
+    /// Returns `true` for a half-space or a terrain. Such a solid is the fixed first solid of all
+    /// pairs of a case.
     pub fn is_ground(&self) -> bool {
         matches!(self.form, Form::HalfSpace) || self.patch.is_some()
     }
@@ -63,17 +65,18 @@ impl<const D: usize> Solid<D> {
 }
 
 impl Terrain {
-    /// The distance from one border to the other.
+    /// Returns the distance from one border to the opposite one.
     pub fn extent(&self) -> f64 {
         f64::from(self.cells) * self.side
     }
 
-    /// Returns the height of a vertex by its indices: waves of several lengths, without trigonometry.
+    /// Returns the height of the vertex with these indices: a sum of waves with several periods,
+    /// without trigonometry.
     pub fn height(&self, [x, z]: [u32; 2]) -> f64 {
         self.height * (wave(x, 11) + wave(z, 13) + wave(x + 2 * z, 17)) / 3.0
     }
 
-    /// Returns the height over a point, up to the curvature within a cell.
+    /// Returns the height of the vertex nearest to a horizontal position.
     pub fn height_at(&self, [x, z]: [f64; 2]) -> f64 {
         let number = |x: f64| ((x + self.extent() / 2.0) / self.side).round() as u32;
         self.height([number(x), number(z)])
@@ -99,28 +102,29 @@ impl Terrain {
         (0..count).flat_map(move |z| (0..count).map(move |x| [x, z]))
     }
 
-    /// Returns two triangles for each cell, counter-clockwise seen from above.
+    /// Returns two triangles for each cell, counter-clockwise when seen from above.
     pub fn triangles(&self) -> Vec<[u32; 3]> {
         let (cells, row) = (self.cells, self.cells + 1);
         let corners = (0..cells).flat_map(|z| (0..cells).map(move |x| z * row + x));
         corners.flat_map(|a| [[a, a + row, a + row + 1], [a, a + row + 1, a + 1]]).collect()
     }
 
-    /// Returns the vertices of a polyline in 2D, from right to left: its front is above.
+    /// Returns the vertices of a polyline in 2D, from right to left, so that its front side is
+    /// above.
     pub fn line(&self) -> Vec<[f64; 2]> {
         let vertex = |x: u32| [self.along(x), self.height([x, 0])];
         (0..=self.cells).rev().map(vertex).collect()
     }
 }
 
-/// A smooth wave of a period, between −1 and 1: alternating parabolas.
+/// Returns a periodic wave at `n`, from −1 to 1, made of alternating parabolas.
 fn wave(n: u32, period: u32) -> f64 {
     let phase = f64::from(n % period) / f64::from(period) * 2.0;
     let (sign, share) = if phase < 1.0 { (1.0, phase) } else { (-1.0, phase - 1.0) };
     sign * 4.0 * share * (1.0 - share)
 }
 
-/// The direction away from a ground.
+/// Returns the unit vector along the second axis.
 pub fn up<const D: usize>() -> [f64; D] {
     axis(1, 1.0)
 }
@@ -129,12 +133,12 @@ fn axis<const D: usize>(which: usize, sign: f64) -> [f64; D] {
     std::array::from_fn(|i| if i == which { sign } else { 0.0 })
 }
 
-/// Returns both directions of the given axes.
+/// Returns both directions of each of these coordinate axes.
 fn axes<const D: usize>(which: &[usize]) -> Vec<[f64; D]> {
     which.iter().flat_map(|&i| [axis(i, 1.0), axis(i, -1.0)]).collect()
 }
 
-/// Returns the solids of 2D, grounds last.
+/// Returns the 2D solids, terrain last.
 pub fn plane() -> Vec<Solid<2>> {
     let octagon = around_origin(8, 0.55, 0.35);
     let triangle = [[-0.5, -0.35], [0.5, -0.3], [0.0, 0.65]];
@@ -150,7 +154,7 @@ pub fn plane() -> Vec<Solid<2>> {
     ]
 }
 
-/// Returns the solids of 3D, grounds last.
+/// Returns the 3D solids, half-space and terrains last.
 pub fn space() -> Vec<Solid<3>> {
     let segment = [[-0.5, -0.1, -0.2], [0.5, 0.1, 0.2]];
     let triangle = [[-0.5, -0.1, -0.35], [0.5, 0.1, -0.3], [0.0, 0.0, 0.65]];
@@ -173,8 +177,8 @@ pub fn space() -> Vec<Solid<3>> {
     ]
 }
 
-/// Returns points on a sphere, so that none is inside the hull of the others, at least `apart` from
-/// each other.
+/// Returns random points on a sphere of `radius`, at distances of more than `apart * radius`. All
+/// of them are vertices of their convex hull.
 fn around_origin<const D: usize>(count: usize, radius: f64, apart: f64) -> Vec<[f64; D]> {
     let mut random = Random::new(count as u64);
     let mut points: Vec<[f64; D]> = Vec::new();
@@ -187,7 +191,8 @@ fn around_origin<const D: usize>(count: usize, radius: f64, apart: f64) -> Vec<[
     points
 }
 
-/// Returns two directions perpendicular to a segment.
+/// Returns two opposite directions perpendicular to a segment, in the plane of the segment and the
+/// second axis.
 fn across_segment<const D: usize>([a, b]: &[[f64; D]; 2]) -> Vec<[f64; D]> {
     let along = scale(&sub(b, a), 1.0 / norm(&sub(b, a)));
     let across = sub(&up(), &scale(&along, dot(&along, &up())));
@@ -195,8 +200,8 @@ fn across_segment<const D: usize>([a, b]: &[[f64; D]; 2]) -> Vec<[f64; D]> {
     vec![across, scale(&across, -1.0)]
 }
 
-/// Returns the outward normals of the hull of a few points: of every D points with all others behind
-/// them.
+/// Returns the outward normals of the convex hull of a few points, by testing every D points: all
+/// others must be behind their line or plane.
 fn face_normals<const D: usize>(points: &[[f64; D]]) -> Vec<[f64; D]> {
     let mut normals = Vec::new();
     for (i, a) in points.iter().enumerate() {
@@ -210,13 +215,14 @@ fn face_normals<const D: usize>(points: &[[f64; D]]) -> Vec<[f64; D]> {
     normals
 }
 
-/// Returns the normal of the line through the first two points, or of the plane through all three.
+/// Returns a unit normal of the line through `a` and `b` in 2D, of the plane through all three
+/// points in 3D.
 fn normal_of<const D: usize>(a: &[f64; D], b: &[f64; D], c: &[f64; D]) -> [f64; D] {
     let normal = perpendicular(&[sub(b, a), sub(c, a)][..D - 1]);
     scale(&normal, 1.0 / norm(&normal))
 }
 
-/// Returns the sides of the plane through `on` without points.
+/// Returns `normal`, its opposite, or nothing: the directions in which no point lies beyond `on`.
 fn outward<const D: usize>(points: &[[f64; D]], on: &[f64; D], normal: &[f64; D]) -> Vec<[f64; D]> {
     let is_behind = |side: &[f64; D]| points.iter().all(|p| dot(&sub(p, on), side) < 1e-9);
     [*normal, scale(normal, -1.0)].into_iter().filter(is_behind).collect()

@@ -1,10 +1,10 @@
-//! Instructions per call, for an instruction counter: the rounds of one contender in one case.
+//! Runs one contender in one case under an instruction counter, such as callgrind.
 
 use super::question::{Contender, Question};
 use super::regime::PAIRS;
 
-/// Runs the contender of this name for `rounds` rounds of a case, and prints the number of calls. The
-/// first round is not counted.
+/// Runs the contender of this name for `rounds` rounds of a case, and prints the number of calls. A
+/// warm-up round before them is not counted.
 pub fn count(
     case: &str,
     question: Question,
@@ -23,7 +23,7 @@ pub fn count(
     }
 }
 
-/// The one function whose instructions are counted.
+/// The function whose instructions the counter collects; it must not be inlined.
 #[inline(never)]
 fn counted(contender: &mut dyn Contender, question: Question) {
     contender.ask(question);

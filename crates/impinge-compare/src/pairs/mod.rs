@@ -1,10 +1,11 @@
-//! The suite of pairs: two solids at a time, at all distances, with all queries. `f32`, one thread; times are
-//! nanoseconds per pair.
+//! The suite of pairs: two solids at a time, at several distances, with all queries. The scalar is
+//! `f32`, on one thread; times are nanoseconds per pair.
 //!
-//! Cases are each two of [`form::plane`] and of [`form::space`] in each [`regime::Regime`], with 256 random placements.
-//! They are found with impinge: the second solid is moved along a direction until the distance is that of the regime.
-//! Impossible regimes are omitted, such as a segment deep in another. For two grounds the second one is a patch of it,
-//! about 1 across.
+//! A case is a pair of solids of [`form::plane`] or of [`form::space`] in a [`regime::Regime`],
+//! with 256 random placements. The placements are found with impinge: the second solid is moved
+//! along a direction until the distance is that of the regime. Impossible cases are omitted, such
+//! as a segment deep inside another. If both solids are terrains, the second one is a patch about 1
+//! across.
 //!
 //! The calls that a time covers:
 //!
@@ -16,37 +17,48 @@
 //! | time of impact | `impact` within 10 | `cast_shapes` | `time_of_impact` |
 //! | manifold | `PairManifoldGenerator` | `contact_manifolds` | a generator of `DefaultContactDispatcher` |
 //!
-//! With the feature `coal` Coal runs in 3D as well, in `f64`: `ComputeDistance` for distances, `ComputeCollision` with
-//! a security margin for contacts and proximity, `ComputeContactPatch` after it for manifolds, all pairs in one call
-//! from C++. Warm searches begin with the last direction. It has no time of impact, and throws for triangles.
+//! With the feature `coal` Coal runs in 3D as well, in `f64`: `ComputeDistance` for distances,
+//! `ComputeCollision` with a security margin for contacts and proximity, `ComputeContactPatch`
+//! after it for manifolds. All pairs are computed in one call from C++. Warm searches begin with
+//! the last direction. Coal has no time of impact, and throws for triangles.
 //!
-//! FCL, the origin of the code of Coal, is omitted: its wheel computes one pair at a time from Python, at a microsecond
-//! for each call.
+//! FCL, the library from which Coal was forked, is omitted: its wheel computes one pair at a time
+//! from Python, at a microsecond for each call.
 //!
-//! Single calls get both placements in the world frame. The manifold of parry gets the second one in the frame of the
-//! first, and computing it is part of the time. "impinge" is the single call; its manifold is stored in its internal
-//! form, and built in the world frame, with all data of a contact, when it is read, which is not timed. "impinge world"
-//! is the batch: a world of all 256 pairs, far from each other, gets the placements of the second solids and is
-//! updated, and the time is a 256th of that. It includes the broad phase, whose boxes are so large that all pairs stay
-//! pairs in all regimes; it does not include reading the manifolds. "impinge narrow phase" is the part of the same
-//! updates that the narrow phase takes. "impinge reusing" is a world in which pairs keep their contacts while they have
-//! moved by less than a twentieth of the prediction (warm solids only), as those of parry do within a degree and a
-//! thousandth; "impinge alone reusing" is a `PairManifoldGenerator` that does so. All others recompute everything.
+//! Single calls get both placements in the world frame. parry's manifold function gets the pose of
+//! solid 2 in the frame of solid 1; computing this pose is part of its time. The contenders of
+//! impinge are:
 //!
-//! Manifolds are *cold* if no stored state is useful: alone, each call begins with a new generator (or an empty list of
-//! manifolds); in a world, all second solids jump between two unrelated sets of placements. *Warm* solids move by at
-//! most a thousandth and rotate by as many radians between calls; *undisturbed* ones get the same placement again.
+//! - "impinge" makes single calls. Its manifold is stored in its internal form. Reading it, which
+//!   builds all data of a contact in the world frame, is not timed.
+//! - "impinge world" is a world that contains all 256 pairs, far from each other. It gets the
+//!   placements of the second solids and is updated; the time is that of the update divided by 256.
+//!   It includes the broad phase, whose boxes are so large that all pairs stay pairs in all
+//!   regimes. It does not include reading the manifolds.
+//! - "impinge narrow phase" is the share of the narrow phase in these updates.
+//! - "impinge reusing" is a world in which a pair keeps its contacts until it has moved by a
+//!   twentieth of the prediction (warm solids only). parry does this too, up to a rotation of a
+//!   degree and a translation of 0.001.
+//! - "impinge alone reusing" is a `PairManifoldGenerator` with the same tolerance. All other
+//!   contenders of impinge recompute everything.
 //!
-//! Results are compared before a time is printed: distances, signed distances of contacts (in manifolds of the deepest
-//! one), times of impact, each within 0.002, and whether solids touch unless they just touch. Rows are omitted if a
-//! contender has no algorithm for a pair, or takes milliseconds for each. A contender with other results for more than
-//! half of the pairs is in the table, but is no rival. If there is a target its row has the target for this machine,
-//! scaled by the time of parry's manifold of two balls. At the end come the cases where impinge takes more than half of
-//! the time of its best rival.
+//! Manifolds are *cold* if no stored state is useful: single calls begin with a new generator (or
+//! an empty list of manifolds); in a world, all second solids jump between two unrelated sets of
+//! placements. *Warm* solids translate by at most 0.001 and rotate by at most 0.001 radians between
+//! calls. *Undisturbed* solids keep their placements.
 //!
-//! `kernels` runs `--steps` rounds of one contender (`--only`, its whole name) in the selected cases, for instruction
-//! counters and profilers. Instructions per call are those collected divided by the printed number of calls (see
-//! `bench/callgrind.md`):
+//! Results are compared before a time is printed: distances, signed distances of contacts (for
+//! manifolds the least one) and times of impact must agree within 0.002; whether solids overlap
+//! must agree, except in the regime in which they just touch. The row of a contender is omitted if
+//! it has no algorithm for a pair, or takes milliseconds for each pair. A contender whose results
+//! differ for more than half of the pairs is in the table, but is no rival. If a case has a target,
+//! its row has the target time scaled to this machine by the time of parry's manifold of two balls.
+//! The cases in which impinge takes more than half of the time of its best rival are listed at the
+//! end.
+//!
+//! `kernels` runs `--steps` rounds of one contender (`--only`, its whole name) in the selected
+//! cases, for instruction counters and profilers. Instructions per call are those collected divided
+//! by the printed number of calls (see `bench/callgrind.md`):
 //!
 //! ```text
 //! valgrind --tool=callgrind --callgrind-out-file=/dev/null --toggle-collect='*kernels*counted*' target/release/impinge-compare kernels --steps 8 --case '3D cuboid, cuboid, stacked: manifold warm' --only 'impinge world'
@@ -77,7 +89,7 @@ use target::{Verdicts, machine_scale, target};
 use crate::Arguments;
 use crate::table::{Row, Table};
 
-/// Races all cases.
+/// Runs all selected cases and prints the comparison with the rivals.
 pub fn run(arguments: &Arguments) -> Vec<Table> {
     let mut table = Table::new("pairs", "ns");
     let mut verdicts = Verdicts::default();
@@ -104,16 +116,16 @@ pub fn count(arguments: &Arguments) {
     });
 }
 
-/// The action for each case of a question.
+/// A callback for each case and question, with the contenders.
 type Visit<'a> = &'a mut dyn FnMut(&str, Question, Regime, &mut Vec<Box<dyn Contender>>);
 
-/// All cases whose name contains the text.
+/// Calls `visit` for all cases whose name contains `text`.
 fn each(text: &str, visit: Visit<'_>) {
     each_of(&form::plane(), text, contest_in_plane, visit);
     each_of(&form::space(), text, contest_in_space, visit);
 }
 
-/// A constructor of the contenders for two solids.
+/// Creates the contenders for a pair in a regime; `None` if the regime is impossible.
 type Contest<const D: usize> = fn(&Pair<D>, Regime) -> Option<Vec<Box<dyn Contender>>>;
 
 fn each_of<const D: usize>(solids: &[Solid<D>], text: &str, contest: Contest<D>, visit: Visit<'_>) {
@@ -169,7 +181,8 @@ fn boxed<C: Contender + 'static>(contender: Option<C>) -> Option<Box<dyn Contend
     contender.map(|contender| Box::new(contender) as Box<dyn Contender>)
 }
 
-/// Returns the placements of a case; prints a message if there are none.
+/// Returns the placements of a case. Prints a message and returns `None` if the regime is
+/// impossible.
 fn poses<const D: usize>(pair: &Pair<D>, regime: Regime, judge: Judge<'_, D>) -> Option<Poses<D>> {
     let poses = regime::poses(pair, regime, judge);
     if poses.is_none() {
@@ -178,7 +191,8 @@ fn poses<const D: usize>(pair: &Pair<D>, regime: Regime, judge: Judge<'_, D>) ->
     poses
 }
 
-/// Returns how much slower this machine is than that of the targets.
+/// Returns the time of parry's manifold of two balls on this machine, divided by its time on the
+/// machine of the targets.
 fn scale_of_this_machine() -> f64 {
     const ROUNDS: usize = 100;
     let mut scale = f64::NAN;

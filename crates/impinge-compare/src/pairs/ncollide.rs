@@ -1,5 +1,6 @@
-//! Results of ncollide: its two crates differ in their names only, and so do the modules here. It
-//! has no intersection test: its proximity is computed with a margin of zero.
+//! The contender ncollide. Its crates for 2D and 3D differ only in their names, so both modules
+//! include the same source. It has no intersection test; its proximity query with a margin of zero
+//! is used instead.
 
 /// ncollide in 2D.
 pub mod plane {

@@ -1,4 +1,4 @@
-// Common code of both crates; included by `ncollide.rs`.
+// Source shared by the modules for both crates of ncollide; included by `ncollide.rs`.
 
 use std::time::{Duration, Instant};
 
@@ -20,23 +20,24 @@ use super::super::question::{
 };
 use super::super::regime::{Pair, Poses};
 
-/// A round of single queries that takes longer is aborted: for two grounds ncollide takes minutes in some
-/// cases.
+/// The time limit of a round of single queries. For two terrains ncollide takes minutes in some
+/// cases; such a round is aborted.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// The number of pairs between two checks of the clock, except the first.
+/// The number of pairs between two checks of the time limit. The first check follows the first
+/// pair.
 const AT_A_LOOK: usize = 16;
 
 /// A solid with its position.
 type Placed<'a> = (&'a Isometry<f32>, &'a dyn Shape<f32>);
 
-/// The state that ncollide keeps for a pair.
+/// The contact algorithm and the manifold that ncollide keeps for a pair.
 struct Kept {
     algorithm: ContactAlgorithm<f32>,
     manifold: ContactManifold<f32>,
 }
 
-/// Its queries, and its manifolds.
+/// The contender: all placements of a case, and the state of the pairs.
 pub struct Ncollide {
     shapes: [ShapeHandle<f32>; 2],
     first: Vec<Isometry<f32>>,
@@ -69,7 +70,8 @@ fn shape(form: &Form<DIM>) -> Option<ShapeHandle<f32>> {
     })
 }
 
-/// Returns an algorithm and an empty manifold, as its own narrow phase makes them.
+/// Returns the algorithm for two shapes with an empty manifold, as the narrow phase of ncollide
+/// creates it. `None` if there is no algorithm.
 fn fresh(shape1: &dyn Shape<f32>, shape2: &dyn Shape<f32>) -> Option<Kept> {
     let algorithm = DefaultContactDispatcher::new().get_contact_algorithm(shape1, shape2)?;
     let manifold = algorithm.init_manifold();
@@ -93,7 +95,8 @@ impl Ncollide {
         })
     }
 
-    /// Computes the results of all pairs, unless that takes so long that it is aborted.
+    /// Computes the results of all pairs. After [`PATIENCE`] the remaining pairs are reported as
+    /// unsupported.
     fn ask_all(&mut self, ask: impl Fn(&Self, usize) -> Answer) {
         let (begun, all) = (Instant::now(), self.first.len());
         let mut next = 1;
@@ -108,7 +111,7 @@ impl Ncollide {
         self.answers.resize(all, Answer::UNSUPPORTED);
     }
 
-    /// Runs a query that depends on the positions of two solids only.
+    /// Runs a query that depends only on the shapes and positions of two solids.
     fn ask_of_places(&mut self, ask: impl Fn(&Placed<'_>, &Placed<'_>) -> Answer) {
         self.ask_all(|own, n| {
             let [shape1, shape2] = &own.shapes;

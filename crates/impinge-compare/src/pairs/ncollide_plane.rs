@@ -1,4 +1,4 @@
-// Code for 2D; included by `ncollide.rs`.
+// The conversions for 2D; included by `ncollide.rs`.
 
 use ncollide::na::UnitComplex;
 use ncollide::shape::{ConvexPolygon, Polyline};

@@ -1,4 +1,4 @@
-// Code for 3D; included by `ncollide.rs`.
+// The conversions for 3D; included by `ncollide.rs`.
 
 use ncollide::na::{DMatrix, Point3, Quaternion, UnitQuaternion};
 use ncollide::shape::{ConvexHull, HeightField, TriMesh, Triangle};
@@ -15,7 +15,8 @@ fn isometry(placement: &Placement<3>) -> Isometry<f32> {
     Isometry::from_parts(Translation::from(vector(&placement.translation)), rotation)
 }
 
-/// Its cylinders and cones do not implement its trait of shapes, so that no query accepts them.
+/// Converts the shapes that exist in 3D only. Cylinders and cones give `None`: in ncollide they do
+/// not implement `Shape`, so that no query accepts them.
 fn particular(form: &Form<3>) -> Option<ShapeHandle<f32>> {
     Some(match form {
         Form::Triangle([a, b, c]) => ShapeHandle::new(Triangle::new(point(a), point(b), point(c))),

@@ -1,4 +1,4 @@
-//! impinge: the queries, the manifolds of a pair alone, and those of a world.
+//! The contenders of impinge: queries and manifolds of single pairs, and the manifolds of a world.
 
 use impinge::math::na::{Quaternion, Translation, Unit, UnitComplex, UnitQuaternion};
 use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Point, Space, Vector};
@@ -21,10 +21,10 @@ use super::regime::{Pair, Poses};
 use super::target::{ALONE, ALONE_REUSING, PART, REUSING_PART};
 use crate::measure::Times;
 
-/// The margin of boxes: all pairs stay pairs, in all regimes.
+/// The margin of boxes, so large that all pairs stay pairs of the broad phase in all regimes.
 const MARGIN: f32 = 2.5;
 
-/// The relative motion within which pairs keep their contacts, where that is enabled.
+/// The relative motion up to which pairs keep their contacts in the "reusing" contenders.
 const TOLERANCE: f32 = PREDICTION / 20.0;
 
 /// The functions that differ by dimension.
@@ -74,7 +74,7 @@ impl Dimension<3> for UnitQuaternion<f32> {
                 let extent = terrain.extent() as f32;
                 let scale = Vector::<f32, 3>::new(extent, 1.0, extent);
                 let field = HeightField::<f32, 3>::new(row, row, heights, scale);
-                // The cells of the rivals have these diagonals.
+                // This option selects the diagonals that the height fields of the rivals have.
                 ShapeHandle::new(field.with_diagonals(Diagonals::Backward))
             }
             other => unreachable!("{other:?} is not of space"),
@@ -111,7 +111,8 @@ where
     }
 }
 
-/// Returns the signed distance, from which the placements for all contenders are made.
+/// Returns a function that computes the signed distance of two placed solids. The placements for
+/// all contenders are found with it.
 pub fn judge<R: Dimension<D>, const D: usize>(
     pair: &Pair<D>,
 ) -> impl Fn(&Placement<D>, &Placement<D>) -> f64 + use<R, D>
@@ -161,10 +162,10 @@ where
     }
 }
 
-/// The queries, and the manifolds of a pair alone.
+/// The contender with single calls: the queries, and manifolds of a generator for each pair.
 pub struct Alone<R: Dimension<D>, const D: usize> {
     data: Data<R, D>,
-    /// An empty generator.
+    /// An empty generator, which is copied where a case begins with new generators.
     fresh: PairManifoldGenerator<f32, D>,
     is_reusing: bool,
     generators: Vec<PairManifoldGenerator<f32, D>>,
@@ -189,7 +190,8 @@ where
         }
     }
 
-    /// Creates the contender in which pairs that have hardly moved keep their contacts.
+    /// Creates the contender in which a pair keeps its contacts until it has moved by
+    /// [`TOLERANCE`].
     pub fn reusing(pair: &Pair<D>, poses: &Poses<D>) -> Self {
         let fresh = PairManifoldGenerator::default().reusing(TOLERANCE);
         Self { fresh, is_reusing: true, ..Self::new(pair, poses) }
@@ -284,7 +286,7 @@ where
     }
 }
 
-/// The manifolds of a world that holds all pairs.
+/// The contender with one world that contains all pairs of a case.
 pub struct World<R: Dimension<D>, const D: usize>
 where
     f32: Space<D, Isometry = Isometry<f32, R, D>>,
@@ -294,7 +296,7 @@ where
     second: Vec<CollisionObjectHandle>,
     is_reusing: bool,
     round: usize,
-    /// The time of the narrow phase in each round.
+    /// The clock of the narrow phase, and its time in each round.
     clock: Clock,
     narrow: Times,
 }
@@ -311,14 +313,15 @@ where
         Self { data, world, second, is_reusing: false, round: 0, clock, narrow }
     }
 
-    /// Creates the contender in which pairs that have hardly moved keep their contacts.
+    /// Creates the contender in which a pair keeps its contacts until it has moved by
+    /// [`TOLERANCE`].
     pub fn reusing(pair: &Pair<D>, poses: &Poses<D>) -> Self {
         Self { is_reusing: true, ..Self::new(pair, poses) }
     }
 }
 
-/// Returns a world with all objects of the first set. First objects have pairs with second ones
-/// only.
+/// Creates a world with all objects of the first set. By their groups, first solids collide with
+/// second solids only. Returns the world and the handles of the second solids.
 fn filled<R: Dimension<D>, const D: usize>(
     data: &Data<R, D>,
     clock: &Clock,

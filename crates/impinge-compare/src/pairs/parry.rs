@@ -1,4 +1,5 @@
-//! Results of parry: its two crates differ in their names only, and so do the modules here.
+//! The contender parry. Its crates for 2D and 3D differ only in their names, so both modules
+//! include the same source.
 
 /// parry in 2D.
 pub mod plane {

@@ -1,4 +1,4 @@
-// Common code of both crates; included by `parry.rs`.
+// Source shared by the modules for both crates of parry; included by `parry.rs`.
 
 use parry::math::{Pose, Rotation, Vector};
 use parry::query::details::ShapeCastOptions;
@@ -15,14 +15,14 @@ use super::super::question::{
 };
 use super::super::regime::{Pair, Poses};
 
-/// The state that parry keeps for a pair.
+/// The manifolds and the workspace that parry keeps for a pair.
 #[derive(Default)]
 struct Kept {
     manifolds: Vec<ContactManifold<(), ()>>,
     workspace: Option<ContactManifoldsWorkspace>,
 }
 
-/// Its queries, and its manifolds.
+/// The contender: all placements of a case, and the state of the pairs.
 pub struct Parry {
     shapes: [SharedShape; 2],
     first: Vec<Pose>,

@@ -1,4 +1,4 @@
-// Code for 2D; included by `parry.rs`.
+// The conversions for 2D; included by `parry.rs`.
 
 const DIM: usize = 2;
 

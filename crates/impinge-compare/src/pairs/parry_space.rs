@@ -1,4 +1,4 @@
-// Code for 3D; included by `parry.rs`.
+// The conversions for 3D; included by `parry.rs`.
 
 const DIM: usize = 3;
 
@@ -27,7 +27,8 @@ fn particular(form: &Form<3>) -> Option<SharedShape> {
             SharedShape::trimesh(cloud(&terrain.vertices()), terrain.triangles()).ok()?
         }
         Form::HeightField(terrain) => {
-            // Its heights are column by column: along z.
+            // The heights of parry's height field are in column-major order; z varies within a
+            // column.
             let row = terrain.cells + 1;
             let at = |n: u32| terrain.height([n / row, n % row]) as f32;
             let heights = (0..row * row).map(at).collect();

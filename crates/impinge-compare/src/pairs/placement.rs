@@ -1,9 +1,9 @@
-//! Placements of solids, as plain numbers that every contender gets.
+//! Placements of solids as plain numbers, the common input of all contenders.
 
 use impinge_reference::geometry::vector::{add, dot, norm, scale, sub};
 use impinge_reference::random::Random;
 
-/// A rotation, then a translation.
+/// A rigid motion: a rotation, then a translation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement<const D: usize> {
     pub translation: [f64; D],
@@ -11,7 +11,7 @@ pub struct Placement<const D: usize> {
     pub rotation: [f64; 4],
 }
 
-/// The identity.
+/// The identity rotation.
 pub const UNTURNED: [f64; 4] = [0.0, 0.0, 0.0, 1.0];
 
 impl<const D: usize> Placement<D> {
@@ -19,14 +19,14 @@ impl<const D: usize> Placement<D> {
         Self { translation, rotation }
     }
 
-    /// Returns the cosine and the sine of a rotation in 2D.
+    /// Returns the cosine and the sine of the angle of a rotation in 2D.
     pub fn complex(&self) -> [f64; 2] {
         let [_, _, z, w] = self.rotation;
         [w * w - z * z, 2.0 * z * w]
     }
 
-    /// Returns the placement after a small translation and a small rotation: neither by more than
-    /// `size`.
+    /// Returns the placement after a random translation of a length up to `size` and a random
+    /// rotation by an angle up to `size`, in radians.
     pub fn perturbed(&self, random: &mut Random, size: f64) -> Self {
         let step: [f64; D] = random.unit_vector();
         let angle = random.range(-size, size) / 2.0;
@@ -40,7 +40,7 @@ impl<const D: usize> Placement<D> {
     }
 }
 
-/// Returns any rotation in 2D or 3D.
+/// Returns a random rotation: about the third axis in 2D, about any axis in 3D.
 pub fn any_rotation<const D: usize>(random: &mut Random) -> [f64; 4] {
     if D == 2 {
         let [z, w] = random.unit_vector();
@@ -49,7 +49,7 @@ pub fn any_rotation<const D: usize>(random: &mut Random) -> [f64; 4] {
     random.quaternion()
 }
 
-/// Returns the shortest rotation that maps one direction to another.
+/// Returns the shortest rotation that maps the direction `from` to `to`.
 pub fn turning<const D: usize>(from: &[f64; D], to: &[f64; D]) -> [f64; 4] {
     let (from, to) = (in_space(from), in_space(to));
     let cosine = dot(&from, &to);
@@ -61,7 +61,7 @@ pub fn turning<const D: usize>(from: &[f64; D], to: &[f64; D]) -> [f64; 4] {
     unit([x, y, z, 1.0 + cosine])
 }
 
-/// Returns a perpendicular direction; for a vector in the x-y plane one out of that plane.
+/// Returns a vector perpendicular to a unit vector. For a vector in the x-y plane it is the z axis.
 fn perpendicular_to(direction: &[f64; 3]) -> [f64; 3] {
     let axis = if direction[2].abs() < 0.9 { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };
     sub(&axis, &scale(direction, dot(direction, &axis)))
@@ -83,7 +83,7 @@ fn cross([a, b, c]: &[f64; 3], [x, y, z]: &[f64; 3]) -> [f64; 3] {
     [b * z - c * y, c * x - a * z, a * y - b * x]
 }
 
-/// Composes rotations: `q`, then `p`.
+/// Composes two rotations: the result rotates by `q` first, then by `p`.
 fn product(p: [f64; 4], q: [f64; 4]) -> [f64; 4] {
     let ([px, py, pz, pw], [qx, qy, qz, qw]) = (p, q);
     let (u, v) = ([px, py, pz], [qx, qy, qz]);

@@ -1,4 +1,4 @@
-//! The race of one question, and its results.
+//! Runs the contenders in one case and compares their results.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -7,14 +7,14 @@ use super::regime::{PAIRS, Regime};
 use crate::measure::{Times, in_turn, timed};
 use crate::table::Row;
 
-/// The approximate limit for all rounds of a question, in nanoseconds.
+/// The approximate time limit of all rounds of the slowest contender, in nanoseconds.
 const LONGEST: f64 = 3e7;
 
-/// The smallest number of timed rounds.
+/// The minimum number of timed rounds.
 const FEWEST: usize = 2;
 
-/// Runs all contenders, and returns a row for each that has a result for every pair. Others are
-/// compared with the first one.
+/// Runs all contenders. Returns a row for each contender that has a result for every pair, with the
+/// number of differences from the first contender.
 pub fn race(
     case: &str,
     question: Question,
@@ -57,7 +57,7 @@ pub fn race(
 }
 
 /// Returns the time of the first round of a contender; `None` if it has no algorithm for the pair,
-/// or panics. It is reset afterwards.
+/// or panics. If it does not panic, the contender is reset afterwards.
 fn tried(contender: &mut dyn Contender, question: Question) -> Option<f64> {
     let attempt = AssertUnwindSafe(|| {
         contender.reset(question);

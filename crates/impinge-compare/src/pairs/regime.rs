@@ -1,4 +1,4 @@
-//! The distance of the two solids of a pair, and placements at this distance.
+//! Regimes of distance, and the random placements of two solids in each regime.
 
 use impinge_reference::geometry::vector::{add, negate, scale};
 use impinge_reference::random::Random;
@@ -12,14 +12,15 @@ pub const PAIRS: usize = 256;
 /// The number of sets of slightly moved solids.
 const MOVED_SETS: usize = 4;
 
-/// The largest translation and rotation of a solid between two warm updates.
+/// The limit of the translation, and of the rotation in radians, of a solid between two warm
+/// updates.
 const MOVE: f64 = 1e-3;
 
-/// The number of draws per pair before a regime counts as impossible, for instance deep for crossing
-/// segments.
+/// The number of draws after which a regime is considered impossible for a pair, for instance deep
+/// overlap of two segments.
 const DRAWS: usize = 20;
 
-/// The regime of the distance.
+/// The distance of the two solids of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Regime {
     Far,
@@ -27,7 +28,7 @@ pub enum Regime {
     Touching,
     Shallow,
     Deep,
-    /// Face to face.
+    /// A flat side of each solid faces the other solid; the overlap is 0.001.
     Stacked,
 }
 
@@ -62,21 +63,23 @@ impl Regime {
 /// The placements of all pairs of a case.
 #[derive(Clone, Debug)]
 pub struct Poses<const D: usize> {
-    /// Whether there is a single first solid, fixed at the origin, for all pairs.
+    /// Whether the first solid is a half-space or a terrain, fixed at the origin and common to all
+    /// pairs.
     pub is_ground: bool,
     pub first: Vec<Placement<D>>,
-    /// Two unrelated sets in the regime.
+    /// Two unrelated sets of placements of the second solids, both in the regime.
     pub second: [Vec<Placement<D>>; 2],
-    /// Copies of the first set, each slightly moved in another way.
+    /// Copies of the first set with small random perturbations, different in each copy.
     pub moved: Vec<Vec<Placement<D>>>,
-    /// Velocities of the second solids of the first set: towards the first, slightly to the side.
+    /// Velocities of the second solids of the first set: towards the first solid, with a small
+    /// random deviation.
     pub velocities: Vec<[f64; D]>,
 }
 
-/// The signed distance of two solids in two placements.
+/// A function that returns the signed distance of the two placed solids.
 pub type Judge<'a, const D: usize> = &'a dyn Fn(&Placement<D>, &Placement<D>) -> f64;
 
-/// The two solids of a case, with their names.
+/// The two solids of a case, and its name.
 #[derive(Clone, Debug)]
 pub struct Pair<const D: usize> {
     pub name: String,
@@ -89,8 +92,8 @@ impl<const D: usize> Pair<D> {
     }
 }
 
-/// Returns all unordered pairs, a ground first; for two grounds the second is a patch. Two half-spaces
-/// are omitted.
+/// Returns all unordered pairs of solids, except two half-spaces. A half-space or terrain is the
+/// first solid. If both are, the second one is a patch of terrain.
 pub fn pairs<const D: usize>(solids: &[Solid<D>]) -> Vec<Pair<D>> {
     let two = (0..solids.len()).flat_map(|i| (i..solids.len()).map(move |j| [i, j]));
     two.filter_map(|[i, j]| pair(&solids[i], &solids[j])).collect()
@@ -111,7 +114,7 @@ fn patch_of<const D: usize>(solid: &Solid<D>) -> Option<Solid<D>> {
     Some(Solid { form, patch: None, ..solid.clone() })
 }
 
-/// Returns placements in the regime; `None` if there are none.
+/// Returns random placements in the regime; `None` if the regime is impossible for a pair.
 pub fn poses<const D: usize>(
     pair: &Pair<D>,
     regime: Regime,
@@ -146,8 +149,9 @@ fn moved<const D: usize>(set: &[Placement<D>], random: &mut Random) -> Vec<Vec<P
     (0..MOVED_SETS).map(|_| moved()).collect()
 }
 
-/// Returns the position of a pair: on a ground in a grid of its own, else as far from all others as its
-/// fat AABBs require.
+/// Returns the position of the first solid of pair `index` on a grid. If all pairs share a
+/// half-space or terrain, it is the position over which the second solid lies. Otherwise the
+/// spacing keeps the fat AABBs of different pairs apart.
 fn cell<const D: usize>(is_ground: bool, index: usize) -> [f64; D] {
     const APART: f64 = 12.0;
     const APART_ON_GROUND: f64 = 4.0;
@@ -178,13 +182,14 @@ impl<const D: usize> Search<'_, D> {
         }
     }
 
-    /// Returns a rotation that turns a flat side of one of the solids to a direction.
+    /// Returns a rotation that maps a random flat side of solid `which` to the direction `to`.
     fn laid(&mut self, which: usize, to: &[f64; D]) -> [f64; 4] {
         let flat = self.random.pick(&self.pair.solids[which].flats);
         turning(flat, to)
     }
 
-    /// Returns a placement of the second solid in the regime, and the direction to it.
+    /// Returns a random placement of the second solid in the regime, and the direction in which it
+    /// was moved.
     fn second(&mut self, first: &Placement<D>) -> Option<(Placement<D>, [f64; D])> {
         (0..DRAWS).find_map(|_| self.draw(first))
     }
@@ -202,15 +207,15 @@ impl<const D: usize> Search<'_, D> {
         Some((placed(share), direction))
     }
 
-    /// Returns the start of a search upwards: not exactly over the centre of the first solid.
+    /// Returns the start of a search upwards, with a random offset from the position of the pair.
     fn beside(&mut self) -> [f64; D] {
         let aside: [f64; D] = self.random.vector(0.25);
         let at = add(&self.cell, &aside);
         std::array::from_fn(|i| if i == 1 { self.floor(&at) } else { at[i] })
     }
 
-    /// Returns the height at which a search upwards begins: inside a ground, slightly below its
-    /// surface.
+    /// Returns the height at which a search upwards begins: below the surface of a half-space or
+    /// terrain, otherwise that of the centre of the first solid.
     fn floor(&self, at: &[f64; D]) -> f64 {
         match &self.pair.solids[0].form {
             Form::Mesh(terrain) | Form::HeightField(terrain) | Form::Polyline(terrain) => {
@@ -221,8 +226,9 @@ impl<const D: usize> Search<'_, D> {
         }
     }
 
-    /// Returns the fraction of the direction at which the distance is that of the regime, by bisection:
-    /// at its end the solids are apart. `None` if the distance jumps over it.
+    /// Returns the parameter `t` along the direction at which the distance is that of the regime,
+    /// by bisection. At the end of the interval the solids are apart. `None` if the distance jumps
+    /// over the wanted value.
     fn share(&self, distance: &dyn Fn(f64) -> f64) -> Option<f64> {
         const LONGEST: f64 = 6.0;
         const HALVINGS: usize = 24;

@@ -1,4 +1,4 @@
-//! The target times of impinge, and the comparison with them.
+//! The target times of impinge, and the comparison of its times with those of the rivals.
 
 use std::collections::BTreeMap;
 
@@ -7,22 +7,24 @@ use super::regime::PAIRS;
 use crate::measure::Times;
 use crate::table::Row;
 
-/// The time of parry's manifold of two balls on the machine of the targets, in nanoseconds.
+/// The time of parry's manifold of two balls on the machine for which the targets were set, in
+/// nanoseconds.
 const PARRY_THERE: f64 = 41.0;
 
-/// The part of an update in the narrow phase; the rivals have no such part.
+/// The name of the row for the narrow phase of a world of impinge; the rivals have no such part.
 pub const PART: &str = "impinge narrow phase";
 
-/// This part, where pairs that have hardly moved keep their contacts.
+/// The name of the same row for a world in which pairs keep their contacts.
 pub const REUSING_PART: &str = "impinge reusing narrow phase";
 
-/// Generators of pairs alone, and single queries.
+/// The name of the contender with single calls.
 pub const ALONE: &str = "impinge";
 
-/// Generators of single pairs that keep contacts in this way.
+/// The name of the contender with single calls in which pairs keep their contacts.
 pub const ALONE_REUSING: &str = "impinge alone reusing";
 
-/// The beginning of a case, a question, and the target in nanoseconds per pair of the update of a world.
+/// The targets: the beginning of the name of a case, the query, and the time in nanoseconds per
+/// pair for the update of a world.
 const TARGETS: &[(&str, Question, f64)] = &[
     ("3D ball, ball,", Question::ManifoldWarm, 8.0),
     ("3D ball, cuboid,", Question::ManifoldWarm, 8.0),
@@ -38,18 +40,20 @@ const TARGETS: &[(&str, Question, f64)] = &[
     ("3D cuboid, mesh,", Question::ManifoldWarm, 1000.0),
 ];
 
-/// The overall results of the suite.
+/// The comparison with the rivals over all cases of the suite.
 #[derive(Debug, Default)]
 pub struct Verdicts {
-    /// By question, and once more for kept contacts: the speed relative to the best rival.
+    /// For each query, and for variants of impinge by the name of query and variant: the time of
+    /// the best rival divided by that of impinge, for each case.
     speeds: BTreeMap<String, Vec<f64>>,
-    /// Cases where impinge took more than half of the time of its best rival: the ratio, the two times, and
-    /// the rival.
+    /// The cases in which impinge took more than half of the time of its best rival: the ratio,
+    /// both times, and the row of the rival.
     slower: Vec<(f64, [f64; 2], Row)>,
     cases: usize,
 }
 
-/// Returns the row of a target, if there is one for the case; `scale` is how much slower this machine is.
+/// Returns the row with the target of a case; `None` if it has none. `scale` is the factor of
+/// [`machine_scale`].
 pub fn target(case: &str, question: Question, scale: f64) -> Option<Row> {
     let is_meant =
         |(start, of, _): &&(&str, Question, f64)| case.starts_with(start) && *of == question;
@@ -60,8 +64,8 @@ pub fn target(case: &str, question: Question, scale: f64) -> Option<Row> {
     Some(Row { case: case.to_owned(), contender, answers: 0, differ: 0, times })
 }
 
-/// Returns how much slower this machine is than that of the targets, by the time of parry's manifold of two
-/// balls here.
+/// Returns the factor by which this machine is slower than that of the targets, from the time of
+/// parry's manifold of two balls on this machine.
 pub fn machine_scale(parry: f64) -> f64 {
     parry / PARRY_THERE
 }
@@ -70,8 +74,8 @@ fn is_ours(row: &Row) -> bool {
     row.contender.starts_with("impinge")
 }
 
-/// Whether the row belongs to a rival, whose results agree with ours for at least half of the pairs:
-/// finding nothing is fast.
+/// Returns `true` if the row belongs to another library whose results differ from ours for at most
+/// half of the pairs. A contender that finds nothing would be fast.
 fn is_rival(row: &&Row) -> bool {
     !is_ours(row) && row.contender != "target" && 2 * row.differ <= PAIRS
 }
@@ -81,8 +85,8 @@ fn least<'a>(rows: impl Iterator<Item = &'a Row>) -> Option<&'a Row> {
 }
 
 impl Verdicts {
-    /// Adds the rows of one case. Manifolds of a world are compared with rivals by the time of its narrow
-    /// phase.
+    /// Adds the rows of one case. For manifolds the time of impinge is that of the narrow phase of
+    /// a world, for other queries its best time.
     pub fn add(&mut self, question: Question, rows: &[Row]) {
         let Some(rival) = least(rows.iter().filter(is_rival)) else { return };
         let named = |name: &str| rows.iter().find(|row| row.contender == name);
@@ -107,8 +111,8 @@ impl Verdicts {
         }
     }
 
-    /// Prints the results by question, and the cases where impinge is not twice as fast as its best rival,
-    /// worst first.
+    /// Prints the speeds by query, and the cases in which impinge is not twice as fast as its best
+    /// rival, beginning with the worst.
     pub fn print(&mut self) {
         println!("\ntimes as fast as the best rival, over all cases of a question");
         println!("{:<32} cases  median   >= 1   >= 2   >= 4", "question");

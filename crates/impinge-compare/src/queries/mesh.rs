@@ -1,4 +1,4 @@
-//! Rays against one mesh: hills of triangles in random order.
+//! Ray casts against one mesh: hills whose triangles are stored in random order.
 
 use std::time::Duration;
 
@@ -30,17 +30,17 @@ use crate::table::Row;
 /// The number of rays of each kind.
 const RAYS: usize = 20_000;
 
-/// The height of the hills above and below zero; cells are squares of edge 1.
+/// The amplitude of the hills; the cells of the mesh are squares of edge 1.
 const HEIGHT: f64 = 6.0;
 
-/// The mesh that all contenders get.
+/// The mesh as plain data, the common input of all contenders.
 struct Hills {
     edge: usize,
     vertices: Vec<[f32; 3]>,
     triangles: Vec<[u32; 3]>,
 }
 
-/// Times rays from above and rays along hills of `edge`² cells of two triangles.
+/// Times steep rays and grazing rays against hills of `edge`² cells, each of two triangles.
 pub fn run(edge: usize, arguments: &Arguments) -> Vec<Row> {
     let case = |name: &str| format!("rays {name} on {} triangles", 2 * edge * edge);
     let names = ["down", "grazing"].map(case);
@@ -76,7 +76,8 @@ impl Hills {
         Self { edge, vertices: vertices.collect(), triangles }
     }
 
-    /// Returns rays from above all hills, at up to 17 degrees from the vertical.
+    /// Returns rays that start above all hills and point down, at up to 17 degrees from the
+    /// vertical.
     fn down(&self) -> Vec<Ray<3>> {
         self.rays(3.0 * HEIGHT, |random| {
             let [x, z] = random.direction::<2>().map(|x| 0.3 * x);
@@ -84,8 +85,8 @@ impl Hills {
         })
     }
 
-    /// Returns rays from above all hills, at 1 to 10 degrees from the horizontal: they pass over
-    /// some hills.
+    /// Returns rays that start above all hills and point down by 1 to 10 degrees, so that they pass
+    /// over some hills.
     fn grazing(&self) -> Vec<Ray<3>> {
         self.rays(1.1 * HEIGHT, |random| {
             let [x, z] = random.direction::<2>();
@@ -105,13 +106,13 @@ impl Hills {
     }
 }
 
-/// Returns the height: long hills and short ones.
+/// Returns the height at a point: a sum of waves of different lengths.
 fn height(x: f64, z: f64) -> f64 {
     let long = (0.05 * x).sin() * (0.043 * z).cos();
     HEIGHT * (0.7 * long + 0.25 * (0.31 * x + 0.2 * z).sin() + 0.05 * (1.9 * x - 1.3 * z).sin())
 }
 
-/// Returns the triangles of a cell, whose fronts are above.
+/// Returns the two triangles of a cell; their front sides are above.
 fn cell(x: usize, z: usize, edge: usize) -> [[u32; 3]; 2] {
     let corner = |dx: usize, dz: usize| ((z + dz) * (edge + 1) + x + dx) as u32;
     [[corner(0, 0), corner(0, 1), corner(1, 0)], [corner(1, 0), corner(0, 1), corner(1, 1)]]
@@ -172,7 +173,8 @@ impl Worlds {
         Self { ours, world, parry, wide, wide_triangles, tree, leaves }
     }
 
-    /// Our batch interface, where there is one, goes second, as [`Contender::batch`].
+    /// Returns the contenders with the rays converted. impinge is the first one, with which the
+    /// others are compared.
     fn contenders(&self, rays: &[Ray<3>]) -> Vec<Contender<'_>> {
         let own: Vec<_> = rays.iter().map(ours::ray).collect();
         let (mesh, world, parry) = (&self.ours, &self.world, &self.parry);
@@ -202,7 +204,7 @@ impl Worlds {
         })
     }
 
-    /// It returns boxes from near to far; those behind the best hit can be skipped.
+    /// The traversal returns boxes from near to far; it ends at the first box behind the best hit.
     fn bvh(&self, rays: &[Ray<3>]) -> Contender<'_> {
         let (tree, leaves) = (&self.tree, self.leaves.as_slice());
         let ray = |(from, to): &Ray<3>| bvh::ray::Ray::new(Point::from(*from), (*to).into());
@@ -224,7 +226,7 @@ impl Worlds {
     }
 }
 
-/// Returns the tree of `obvhs`, and the triangles in its order.
+/// Returns the tree of `obvhs`, and the triangles in the order of its leaves.
 fn wide(hills: &Hills) -> (CwBvh, Vec<RtTriangle>) {
     let corners = |triangle: &[u32; 3]| triangle.map(|n| Vec3A::from(hills.vertices[n as usize]));
     let triangle = |triangle: &[u32; 3]| {

@@ -3,10 +3,12 @@
 //!
 //! There are two scenes, each in 2D and 3D: a dense one with short rays, and one with a fifth of
 //! the density and unbounded rays. Queries about solids run on a whole world, or on a tree of boxes
-//! with parry's solids at its leaves. Queries about boxes run on trees of boxes alone. All
-//! contenders get the same queries, converted to their own types before the clock starts. Rivals
-//! use their best build (`medium` of `obvhs`) and, where their authors recommend it, primitives
-//! sorted in the order of the tree. Where a result has a normal, all compute it.
+//! with parry's solids at its leaves. Queries about boxes run on trees of boxes alone.
+//!
+//! All contenders get the same queries, converted to their own types before the clock starts.
+//! Rivals use their best build (`medium` of `obvhs`) and, where their authors recommend it,
+//! primitives sorted in the order of the tree. Where a result has a normal, all contenders compute
+//! it.
 
 mod mesh;
 mod ncollide;
@@ -23,16 +25,17 @@ use scene::{Library, Questions, Scene};
 use crate::Arguments;
 use crate::table::Table;
 
-/// Relative differences of times and distances below this are ignored.
+/// The relative tolerance of times and distances.
 const TOLERANCE: f32 = 1e-4;
 
-/// Times of moving solids are found by iteration, with a different tolerance in each library.
+/// The relative tolerance of times of moving solids. They are computed by iterations, whose
+/// tolerance differs between the libraries.
 const CAST_TOLERANCE: f32 = 1e-3;
 
-/// Meshes have twice the square of these numbers of triangles.
+/// The edges of the meshes in cells; a mesh has two triangles per cell.
 const MESHES: [usize; 2] = [100, 708];
 
-/// Runs all cases. The larger mesh is part of runs with a hundred thousand objects.
+/// Runs all cases. The larger mesh needs more than 50,000 requested objects.
 pub fn run(arguments: &Arguments) -> Vec<Table> {
     let mut table = Table::new("queries", "ns");
     let objects = arguments.objects;
@@ -49,7 +52,7 @@ pub fn run(arguments: &Arguments) -> Vec<Table> {
     vec![table]
 }
 
-/// A tenth of the requested steps.
+/// Returns the number of rounds: a tenth of the requested steps, at least one.
 fn rounds(arguments: &Arguments) -> usize {
     (arguments.steps as usize / 10).max(1)
 }
@@ -67,8 +70,8 @@ fn space(scene: &Scene<3>, arguments: &Arguments, table: &mut Table) {
     ask_all(scene, &all, arguments, table);
 }
 
-/// Runs a world of two thousand objects, some of which moved since the last update, beside the updated
-/// world.
+/// Times queries of a world of 2000 objects after 0, 100 or 1500 of them have moved since the last
+/// update.
 fn between_updates(arguments: &Arguments, table: &mut Table) {
     let scene = Scene::<3>::new("moved", 2000, 0.075, f32::MAX);
     let counts = [("none moved", 0), ("100 moved", 100), ("1500 moved", 1500)];
@@ -98,7 +101,7 @@ fn plane(scene: &Scene<2>, arguments: &Arguments, table: &mut Table) {
     ask_all(scene, &all, arguments, table);
 }
 
-/// Runs all contenders, kind by kind.
+/// Runs all contenders, for one kind of query after another.
 fn ask_all<const D: usize>(
     scene: &Scene<D>,
     libraries: &[&dyn Library<D>],
@@ -118,7 +121,7 @@ fn ask_all<const D: usize>(
     }
 }
 
-/// Selects the contenders that are to run.
+/// Returns the contenders that the arguments select.
 fn wanted<'a>(
     contenders: impl IntoIterator<Item = Contender<'a>>,
     arguments: &Arguments,

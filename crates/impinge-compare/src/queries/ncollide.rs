@@ -1,11 +1,11 @@
-//! The dynamic tree of ncollide over boxes only.
+//! The dynamic tree of ncollide, over boxes only.
 //!
-//! The crates for 2D and 3D differ in their names only, and so do the modules here.
+//! Its crates for 2D and 3D differ only in their names, so both modules include the same source.
 
 use super::race::Contender;
 use super::scene::{Corners, Library, Questions, Scene};
 
-/// 2D.
+/// ncollide in 2D.
 pub mod plane {
     use super::*;
     use ::ncollide2d as ncollide;
@@ -13,7 +13,7 @@ pub mod plane {
     include!("ncollide_common.rs");
 }
 
-/// 3D.
+/// ncollide in 3D.
 pub mod space {
     use super::*;
     use ::ncollide3d as ncollide;

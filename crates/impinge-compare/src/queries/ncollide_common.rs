@@ -1,4 +1,4 @@
-// Common code of both dimensions; included by `ncollide.rs`.
+// Source shared by the modules for both crates of ncollide; included by `ncollide.rs`.
 
 use ncollide::bounding_volume::AABB;
 use ncollide::math::{Isometry, Point, Vector};
@@ -8,13 +8,14 @@ use ncollide::query::visitors::{
 };
 use ncollide::query::{PointQuery, Ray, RayCast};
 
-/// The tree.
+/// The contender: a tree of boxes.
 pub struct Ncollide {
     tree: DBVT<f32, u32, AABB<f32>>,
 }
 
 impl Ncollide {
-    /// Builds the tree over the boxes of a scene, which must be inserted one by one.
+    /// Builds the tree over the boxes of a scene. It has no bulk build; the boxes are inserted one
+    /// by one.
     pub fn new(scene: &Scene<DIM>) -> Self {
         let mut tree = DBVT::new();
         for (n, corners) in (0..).zip(&scene.boxes) {
@@ -28,7 +29,7 @@ fn aabb((low, high): &Corners<DIM>) -> AABB<f32> {
     AABB::new(Point::from(*low), Point::from(*high))
 }
 
-/// Orders boxes by a time or a distance.
+/// A best-first visitor that orders boxes by a time or a distance. `None` excludes a box.
 struct Cheapest<F>(F);
 
 impl<F: Fn(&AABB<f32>) -> Option<f32>> BestFirstVisitor<f32, u32, AABB<f32>> for Cheapest<F> {

@@ -1,4 +1,5 @@
-//! The trees of `obvhs`, in 3D: eight boxes in a compressed node, and two.
+//! The trees of `obvhs` in 3D: one with compressed nodes of eight boxes, and one with nodes of two
+//! boxes.
 
 use std::time::Duration;
 
@@ -16,18 +17,19 @@ use super::parry::space::Parry;
 use super::race::Contender;
 use super::scene::{Corners, Library, Questions, Scene};
 
-/// Both trees, each with the boxes in its own order.
+/// Both trees, each with the boxes in the order of its leaves.
 pub struct Obvhs<'p> {
     wide: CwBvh,
     wide_boxes: Vec<Aabb>,
     narrow: Bvh2,
     narrow_boxes: Vec<Aabb>,
-    /// The solids, which `obvhs` itself does not have.
+    /// The solids of parry, since `obvhs` has none.
     solids: &'p Parry,
 }
 
 impl<'p> Obvhs<'p> {
-    /// Builds the trees over the boxes of a scene, with the effort for long-lived trees.
+    /// Builds the trees over the boxes of a scene, with the build effort meant for long-lived
+    /// trees.
     pub fn new(scene: &Scene<3>, solids: &'p Parry) -> Self {
         let boxes: Vec<_> = scene.boxes.iter().map(aabb).collect();
         let (effort, mut time) = (BvhBuildParams::medium_build(), Duration::default());
@@ -44,13 +46,13 @@ fn aabb((low, high): &Corners<3>) -> Aabb {
     Aabb::new(Vec3A::from(*low), Vec3A::from(*high))
 }
 
-/// Converts a ray to that of `obvhs`.
+/// Converts a ray of length `reach` to that of `obvhs`.
 pub fn ray((from, to): &([f32; 3], [f32; 3]), reach: f32) -> Ray {
     Ray::new(Vec3A::from(*from), Vec3A::from(*to), 0.0, reach)
 }
 
-/// Converts a hit: returns the index of the primitive, by `order`, and the time; `None` without a
-/// hit.
+/// Converts a hit to the index of the primitive and the time; `None` without a hit. `order` maps
+/// positions in the tree to indices.
 pub fn answer(hit: &RayHit, is_hit: bool, order: &[u32]) -> Option<(u32, f32)> {
     is_hit.then(|| (order[hit.primitive_id as usize], hit.t))
 }
@@ -90,7 +92,7 @@ impl Obvhs<'_> {
         vec![of_wide, of_narrow]
     }
 
-    /// Calls back with the boxes of a node that pass a test.
+    /// Calls `found` with the index of each box of a leaf that passes `test`.
     fn leaf(&self, node: u32, test: impl Fn(&Aabb) -> bool, found: &mut dyn FnMut(u32)) -> bool {
         let node = &self.narrow.nodes[node as usize];
         let first = node.first_index as usize;

@@ -1,4 +1,4 @@
-//! impinge: its world, and its tree of boxes.
+//! The contender impinge: its world, and its tree of boxes.
 
 use impinge::bounding_volume::Aabb;
 use impinge::math::na::{Quaternion, Translation, UnitComplex, UnitQuaternion};
@@ -15,13 +15,14 @@ use super::scene::{Corners, Library, Questions, Scene, Solid};
 
 type Isometry<const D: usize> = <f32 as Space<D>>::Isometry;
 
-/// Converts a placement to an isometry of a dimension.
+/// A function that converts a placement to an isometry.
 type Turn<const D: usize> = fn(&Placement<D>) -> Isometry<D>;
 
-/// The number of updates after which nothing moves and the trees have their final order.
+/// The number of updates before the queries: nothing moves any more, and the trees have their final
+/// order.
 const UPDATES: usize = 128;
 
-/// The structures of impinge: world and tree.
+/// The contender: a world and a tree of boxes of the same scene.
 pub struct Impinge<const D: usize>
 where
     f32: Space<D>,
@@ -59,8 +60,8 @@ impl<const D: usize> Impinge<D>
 where
     f32: Space<D>,
 {
-    /// The objects interact with none, so that there are queries but no pairs. The first `moved` of them
-    /// come from a position half a unit away.
+    /// Creates the contender. The objects interact with none, so that the world has queries but no
+    /// pairs. The first `moved` objects were half a unit away at the last update.
     fn new(name: &'static str, scene: &Scene<D>, moved: usize, isometry: Turn<D>) -> Self {
         let mut world = CollisionWorld::new(0.02);
         let mut nobody = CollisionGroups::new();
@@ -115,8 +116,7 @@ impl<const D: usize> Library<D> for Impinge<D>
 where
     f32: Space<D>,
 {
-    /// The others are compared with the first one. A batch interface, where there is one, follows as
-    /// [`Contender::batch`].
+    /// Returns the contenders of this library, the first of which the others are compared with.
     fn contenders<'a>(&'a self, questions: &Questions<D>) -> Vec<Contender<'a>> {
         match questions {
             Questions::Rays(..) | Questions::Casts(..) => self.on_the_way(questions),

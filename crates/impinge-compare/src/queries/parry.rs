@@ -1,12 +1,13 @@
-//! The query pipeline of rapier, and the tree of parry alone, with parry's solids and over boxes only.
+//! The query pipeline of rapier, and the tree of parry alone, with parry's solids or over boxes
+//! only.
 //!
-//! The crates for 2D and 3D differ in their names only, and so do the modules here.
+//! The crates for 2D and 3D differ only in their names, so both modules include the same source.
 
 use super::race::Contender;
 use super::scene::{Corners, Library, Questions, Scene, Solid};
 use impinge_scenes::{Placement, SceneShape};
 
-/// 2D.
+/// parry and rapier in 2D.
 pub mod plane {
     use super::*;
     use ::rapier2d as rapier;
@@ -21,7 +22,7 @@ pub mod plane {
     include!("parry_common.rs");
 }
 
-/// 3D.
+/// parry and rapier in 3D.
 pub mod space {
     use super::*;
     use ::rapier3d as rapier;

@@ -1,4 +1,4 @@
-// Common code of both dimensions; included by `parry.rs`.
+// Source shared by the modules for both dimensions; included by `parry.rs`.
 
 use rapier::parry::bounding_volume::{Aabb, BoundingVolume};
 use rapier::parry::partitioning::{Bvh, BvhBuildStrategy};
@@ -6,10 +6,10 @@ use rapier::parry::query::{DefaultQueryDispatcher, PointQuery, Ray, RayCast, Sha
 use rapier::parry::shape::{Ball, Cuboid, SharedShape};
 use rapier::prelude::*;
 
-/// The number of steps until the tree is fully optimized.
+/// The number of steps of rapier after which its tree is fully optimized.
 const STEPS: usize = 80;
 
-/// A world of rapier: colliders without bodies, which ignore each other.
+/// The contender rapier: colliders without bodies, which ignore each other.
 pub struct Rapier {
     broad_phase: BroadPhaseBvh,
     bodies: RigidBodySet,
@@ -99,7 +99,7 @@ impl Library<DIM> for Rapier {
             Questions::Rays(rays, reach) => {
                 let (rays, reach) = (rays.iter().map(ray).collect(), *reach);
                 Contender::best(name, rays, move |ray| {
-                    // With the normal, which the others return too.
+                    // The variant with a normal is called, since the others compute the normal too.
                     let (handle, hit) = pipeline.cast_ray_and_get_normal(ray, reach, true)?;
                     Some((self.index(handle), hit.time_of_impact))
                 })
@@ -130,7 +130,7 @@ impl Library<DIM> for Rapier {
                     touching.for_each(|(_, it)| found(index_of(it)));
                 })
             }
-            // Its boxes are larger than those of the shapes, which are therefore tested too.
+            // The boxes in rapier's tree are enlarged; therefore the exact boxes are tested too.
             Questions::BoxOverlapping(boxes) => {
                 let boxes = boxes.iter().map(aabb).collect();
                 Contender::all("rapier world", boxes, move |aabb: &Aabb, found| {
@@ -145,7 +145,7 @@ impl Library<DIM> for Rapier {
     }
 }
 
-/// parry's tree over boxes, and the solids in them.
+/// The contender parry: its tree over boxes, and the solids in them.
 pub struct Parry {
     /// The solids with their poses.
     pub solids: Vec<(Pose, SharedShape)>,
@@ -154,7 +154,7 @@ pub struct Parry {
 }
 
 impl Parry {
-    /// Creates a tree with all objects of a scene, by the better of its two build methods.
+    /// Builds a tree over all objects of a scene, with the better of parry's two build strategies.
     pub fn new(scene: &Scene<DIM>) -> Self {
         let boxes: Vec<_> = scene.boxes.iter().map(aabb).collect();
         let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);

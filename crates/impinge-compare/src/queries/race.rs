@@ -1,21 +1,21 @@
-//! Comparable results, and the race.
+//! Comparable results, and the race between contenders.
 
 use crate::measure::{Times, in_turn};
 use crate::table::Row;
 
-/// A result of one query. A query for the first hit or the nearest object has at most one; other
-/// queries have any number.
+/// A result of one query. A query for the first hit or the nearest object has at most one result,
+/// other queries have any number.
 #[derive(Clone, Copy, Debug)]
 pub struct Answer {
     /// The index of the query.
     pub query: u32,
     /// The index of the object or, for rays against a mesh, of the triangle.
     pub id: u32,
-    /// The time of the hit, or the distance; zero for queries whose results have neither.
+    /// The time of the hit, or the distance; zero for queries without either.
     pub key: f32,
 }
 
-/// The results of a contender, with queries in ascending order.
+/// The results of a contender, in ascending order of the queries.
 pub type Answers = Vec<Answer>;
 
 /// A contender that runs all queries of a case.
@@ -25,12 +25,12 @@ pub struct Contender<'a> {
 }
 
 impl<'a> Contender<'a> {
-    /// The name in the table.
+    /// Returns the name in the table.
     pub fn name(&self) -> &'static str {
         self.name
     }
 
-    /// Creates a contender with a batch interface.
+    /// Creates a contender that runs all queries in one call of `ask`.
     pub fn batch(name: &'static str, ask: impl FnMut(&mut Answers) + 'a) -> Self {
         Self { name, ask: Box::new(ask) }
     }
@@ -75,15 +75,16 @@ impl<'a> Contender<'a> {
 /// The rule for comparing results of one case.
 #[derive(Clone, Copy, Debug)]
 pub enum Rule {
-    /// At most one result for each query. Keys agree within this relative tolerance (absolute below
-    /// 1); another object at an equal key is accepted.
+    /// At most one result per query. The keys must agree within this tolerance, relative to the key
+    /// of the first contender but at least absolute. Another object with an equal key is accepted.
     Best(f32),
-    /// Sets of objects, which must be equal.
+    /// Sets of objects, which must be equal. The results of a query are in ascending order of
+    /// objects.
     All,
 }
 
-/// Runs each contender once and compares its results with those of the first, then times them in turn.
-/// Times are in nanoseconds per query.
+/// Runs each contender once and compares its results with those of the first one, then times them
+/// in turn. Times are in nanoseconds per query.
 pub fn race(
     case: &str,
     rule: Rule,
@@ -117,7 +118,7 @@ fn timed_in_turn(
     count: usize,
     asks: &mut [Box<dyn FnMut(&mut Answers) + '_>],
 ) -> Vec<Times> {
-    // One vector of results for all contenders, so that none pays for its growth.
+    // All contenders write to the same vector of results, so that none pays for its growth.
     let answers = std::cell::RefCell::new(Answers::new());
     let mut runs: Vec<_> = asks
         .iter_mut()
@@ -147,7 +148,7 @@ fn differing(rule: Rule, first: &[Answer], other: &[Answer]) -> usize {
         left += usize::from(at <= bt);
         right += usize::from(bt <= at);
     }
-    // A result that both have with different values is one difference, not two.
+    // If both contenders have a result with different values, it counts once, not twice.
     match rule {
         Rule::Best(_) => first.len().max(other.len()) - agreed,
         Rule::All => first.len() + other.len() - 2 * agreed,

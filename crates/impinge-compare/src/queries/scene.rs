@@ -1,39 +1,38 @@
-//! The objects and the queries.
+//! The objects and the queries of the suite, as plain data.
 
 use impinge::bounding_volume::Aabb;
 use impinge::math::{Point, Space};
 use impinge::partitioning::BoxTree;
 use impinge_scenes::{Placement, SceneShape};
 
-/// Half of the edge of the average object.
+/// Half of the average edge of an object.
 const HALF: f64 = 0.5;
 
-/// Balls and rotated boxes in a cube, one of fifty three times as large as the others.
+/// Balls and rotated boxes in a cube. One of fifty is three times as large as the others.
 #[derive(Clone, Debug)]
 pub struct Scene<const D: usize> {
     /// The name in the table.
     pub name: &'static str,
     /// The objects and their placements.
     pub objects: Vec<(SceneShape<D>, Placement<D>)>,
-    /// The boxes of the objects, which are the only content of the trees.
+    /// The AABBs of the objects; trees of boxes contain only these.
     pub boxes: Vec<Corners<D>>,
     /// The edge of the cube.
     edge: f64,
-    /// The length of rays and shape casts.
+    /// The maximum length of rays and shape casts.
     pub reach: f32,
 }
 
-/// The least and the greatest corner of a box.
+/// The corners of a box with the least and the greatest coordinates.
 pub type Corners<const D: usize> = ([f32; D], [f32; D]);
 
-/// The origin and the unit direction.
+/// The origin and the unit direction of a ray.
 pub type Ray<const D: usize> = ([f32; D], [f32; D]);
 
 /// A solid with its placement.
 pub type Solid<const D: usize> = (SceneShape<D>, Placement<D>);
 
-/// The queries of one case. The kinds from `Rays` to `Overlapping` are about solids, the others
-/// about boxes only.
+/// The queries of one case. `Rays` to `Overlapping` are about solids, the others about boxes only.
 #[derive(Clone, Debug)]
 pub enum Questions<const D: usize> {
     /// The first solid that a ray hits, and the time. No ray starts in the box of a solid.
@@ -57,14 +56,16 @@ pub enum Questions<const D: usize> {
     BoxOverlapping(Vec<Corners<D>>),
 }
 
-/// A library that supports some kinds of queries, in one way or several.
+/// A library that supports some kinds of queries, each in one or more ways.
 pub trait Library<const D: usize> {
-    /// Returns the contenders for a kind of queries, which they convert before they are timed.
+    /// Returns the contenders for the queries, with the queries already converted to the library's
+    /// types. Empty if the library does not support this kind.
     fn contenders<'a>(&'a self, questions: &Questions<D>) -> Vec<super::race::Contender<'a>>;
 }
 
 impl<const D: usize> Scene<D> {
-    /// Creates `objects` objects that fill `share` of the cube.
+    /// Creates a scene of `objects` objects. The cube is so large that `share` is about the
+    /// fraction of it that they fill.
     pub fn new(name: &'static str, objects: usize, share: f64, reach: f32) -> Self {
         let mut random = Random(0x5eed + D as u64);
         let edge = (objects as f64 / share).powf(1.0 / D as f64) * 2.0 * HALF;
@@ -74,7 +75,7 @@ impl<const D: usize> Scene<D> {
         Self { name, objects, boxes, edge, reach }
     }
 
-    /// Returns `count` queries of every kind; of expensive kinds a fifth of `count`.
+    /// Returns `count` queries of each cheap kind, and `count / 5` of each expensive kind.
     pub fn questions(&self, count: usize) -> Vec<(&'static str, Questions<D>)>
     where
         f32: Space<D>,
@@ -113,7 +114,8 @@ fn aabb<const D: usize>((low, high): &Corners<D>) -> Aabb<f32, D> {
     Aabb::new(Point::from(*low), Point::from(*high))
 }
 
-/// `SplitMix64`: Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators" (2014).
+/// The generator `SplitMix64`: Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators"
+/// (2014).
 #[derive(Clone, Debug)]
 pub struct Random(pub u64);
 
@@ -125,13 +127,13 @@ impl Random {
         mixed ^ (mixed >> 31)
     }
 
-    /// Returns a number from `low` up to `high`.
+    /// Returns a random number from `low` to `high`.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         let unit = (self.bits() >> 11) as f64 / (1_u64 << 53) as f64;
         low + (high - low) * unit
     }
 
-    /// Returns a number less than `bound`.
+    /// Returns a random integer less than `bound`.
     pub fn below(&mut self, bound: usize) -> usize {
         (self.bits() % bound as u64) as usize
     }
@@ -140,8 +142,7 @@ impl Random {
         std::array::from_fn(|_| self.between(0.0, edge) as f32)
     }
 
-    /// Returns a uniformly distributed unit vector, by rejection of points of the cube outside the
-    /// ball.
+    /// Returns a uniformly distributed unit vector, by rejection of points outside the unit ball.
     pub fn direction<const D: usize>(&mut self) -> [f64; D] {
         loop {
             let v: [f64; D] = std::array::from_fn(|_| self.between(-1.0, 1.0));
@@ -152,12 +153,12 @@ impl Random {
         }
     }
 
-    /// Returns a direction in the form of the queries.
+    /// Returns a random unit vector in `f32`.
     fn heading<const D: usize>(&mut self) -> [f32; D] {
         self.direction().map(|x| x as f32)
     }
 
-    /// Draws until `count` values are accepted.
+    /// Draws until `count` values are accepted, and returns these.
     fn many<T>(
         &mut self,
         count: usize,
@@ -167,7 +168,8 @@ impl Random {
         std::iter::repeat_with(|| draw(self)).filter(is_wanted).take(count).collect()
     }
 
-    /// Returns a ball or a rotated box at a random position in the cube.
+    /// Returns a ball or a rotated box at a random position in the cube. Its half extents are 0.3
+    /// to 0.7 times `scale`.
     fn solid<const D: usize>(&mut self, edge: f64, scale: f64) -> Solid<D> {
         let mut half = || scale * self.between(0.6 * HALF, 1.4 * HALF);
         let (radius, half_extents) = (half(), std::array::from_fn(|_| half()));

@@ -1,4 +1,4 @@
-//! Trees over boxes of crates that support both dimensions: `bvh` and `rstar`.
+//! Trees over boxes from the crates `bvh` and `rstar`, which support both dimensions.
 
 use bvh::aabb::{Aabb, Bounded};
 use bvh::bounding_hierarchy::BHShape;
@@ -102,7 +102,7 @@ impl<const D: usize> Library<D> for BvhTree<D> {
     }
 }
 
-/// The tree of `rstar`, which has no ray queries.
+/// The tree of `rstar`. It has no ray queries.
 pub struct RstarTree<const D: usize> {
     tree: RTree<GeomWithData<Rectangle<[f32; D]>, u32>>,
 }

@@ -1,4 +1,5 @@
-//! Growth of times with the number of boxes: lines of numbers, and a drawing with logarithmic axes.
+//! Writes the times by number of boxes: as lines of numbers, and as a drawing with logarithmic
+//! axes.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -7,10 +8,10 @@ use std::path::Path;
 
 use plotters::prelude::*;
 
-/// The size of the drawing in pixels; the width is shared by the subjects.
+/// The size of the drawing in pixels. The charts of all subjects share its width.
 const SIZE: (u32, u32) = (1200, 520);
 
-/// The times of one contender with a number of boxes, in milliseconds.
+/// The times of one contender for one number of boxes, in milliseconds.
 #[derive(Clone, Debug)]
 pub struct Measured {
     pub subject: String,
@@ -20,7 +21,7 @@ pub struct Measured {
     pub minimum: f64,
 }
 
-/// Writes `scale-series.csv`, one number of boxes per line, and `scale.svg` into the folder.
+/// Writes `scale-series.csv`, one measurement per line, and `scale.svg` into the folder.
 pub fn write(measured: &[Measured], folder: &Path) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(folder)?;
     fs::write(folder.join("scale-series.csv"), lines(measured))?;
@@ -35,10 +36,10 @@ fn lines(measured: &[Measured]) -> String {
     lines
 }
 
-/// For each contender, pairs of a number of boxes and the median time.
+/// The number of boxes and the median time of each measurement, by contender.
 type Curves<'a> = BTreeMap<&'a str, Vec<(f64, f64)>>;
 
-/// One chart for each subject, side by side.
+/// Draws one chart for each subject, side by side.
 fn draw(measured: &[Measured], path: &Path) -> Result<(), Box<dyn Error>> {
     let mut subjects: BTreeMap<&str, Curves<'_>> = BTreeMap::new();
     for one in measured {
@@ -54,7 +55,7 @@ fn draw(measured: &[Measured], path: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Both axes cover all measurements.
+/// Draws the curves of one subject; both axes cover all of its measurements.
 fn chart<B: DrawingBackend>(
     subject: &str,
     curves: &Curves<'_>,

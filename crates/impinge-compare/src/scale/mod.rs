@@ -1,9 +1,9 @@
-//! The suite of growth: the time of a step as a function of the number of boxes, for broad phases and for whole
-//! worlds, all boxes moving. Beside the table it writes `scale-series.csv` and `scale.svg`, which draws it with
-//! logarithmic axes, below `bench/<machine>/`.
+//! The suite of growth: the time of a step as a function of the number of boxes, for broad phases
+//! and for whole worlds, with all boxes moving. Beside the table it writes `scale-series.csv` and
+//! its drawing `scale.svg`, with logarithmic axes, below `bench/<machine>/`.
 //!
-//! With the feature `parallel` it also compares one thread with two, in wall time. Without it all contenders
-//! have one thread, and times are processor times.
+//! With the feature `parallel` it also compares one thread with two, in wall time. Without it all
+//! contenders have one thread, and times are processor times.
 
 mod growth;
 #[cfg(feature = "parallel")]
@@ -52,7 +52,8 @@ fn growth(subject: &str, boxes: usize, row: &Row) -> Measured {
     Measured { subject, contender, boxes, median, minimum }
 }
 
-/// Returns the number of steps: few for many boxes, many for few boxes.
+/// Returns the number of steps: the fewer the more boxes there are, at least six unless fewer are
+/// requested.
 fn steps(count: usize, arguments: &Arguments) -> u32 {
     let most = u32::try_from(1_000_000 / count).expect("it is less than a million");
     arguments.steps.min(most.max(6))
@@ -84,11 +85,11 @@ fn whole_world(count: usize, arguments: &Arguments) -> Vec<Row> {
     race_worlds(&format!("world, {count}"), count, lanes, steps(count, arguments))
 }
 
-/// A world, and its results.
+/// A contender: a world, and its results.
 struct Lane {
     name: &'static str,
     world: Box<dyn World>,
-    /// Runs work in the threads of the lane and returns the nanoseconds that it took.
+    /// Runs work on the threads of the lane and returns the nanoseconds that it took.
     clock: Box<dyn Fn(&mut (dyn FnMut() + Send)) -> f64>,
     times: Times,
     touching: usize,
@@ -96,7 +97,7 @@ struct Lane {
 }
 
 impl Lane {
-    /// Creates a lane on this thread.
+    /// Creates a lane that runs on the calling thread.
     fn new(name: &'static str, world: impl World + 'static) -> Self {
         Self {
             name,
@@ -108,7 +109,7 @@ impl Lane {
         }
     }
 
-    /// Times a step and the reading of all contact points, in milliseconds.
+    /// Runs a step and reads all contact points. Returns the time of both, in milliseconds.
     fn step(&mut self, moved: &[(u32, Cell<3>)]) -> f64 {
         let (world, mut reading) = (&mut self.world, (0, 0.0));
         let time = (self.clock)(&mut || {
@@ -148,7 +149,8 @@ fn race_worlds(case: &str, count: usize, mut lanes: Vec<Lane>, steps: u32) -> Ve
     lanes.into_iter().map(row).collect()
 }
 
-/// Returns, for each world, the number of touching pairs that differ from those of the first world.
+/// Counts the touching pairs of each world that differ from those of the first world, and stores
+/// the maximum.
 fn compare(cells: &[Cell<3>], lanes: &mut [Lane]) {
     let mut first = Vec::new();
     for (n, lane) in lanes.iter_mut().enumerate() {

@@ -1,5 +1,5 @@
-//! One thread compared with two, in wall time: whole worlds of impinge and of rapier, each in its own
-//! pool. All contacts are read, those of impinge in pieces by all threads.
+//! Compares one thread with two, in wall time: whole worlds of impinge and of rapier, each in its
+//! own thread pool. All contacts are read; with impinge all threads read them, in pieces.
 
 use std::time::Instant;
 
@@ -15,10 +15,10 @@ use crate::world::ours;
 use crate::world::rapier::{plane, space};
 use crate::world::stages::asking_for_contacts;
 
-/// The number of boxes of the pile; there are ten times as many drifting boxes.
+/// The number of boxes of the scene "pile"; "sparse drift" has ten times as many.
 const PILE: usize = 10_000;
 
-/// Runs all sizes up to the requested number of boxes, and the scenes that are not larger.
+/// Runs the scenes, and the drifting boxes of all sizes, up to the requested number of boxes.
 pub fn run(arguments: &Arguments) -> Table {
     let mut table = Table::new("threads", "ms");
     for stage in stages::<2>(arguments) {
@@ -48,7 +48,7 @@ fn stages<const D: usize>(arguments: &Arguments) -> impl Iterator<Item = Stage<D
     all.into_iter().filter(|(_, _, count)| arguments.includes(*count))
 }
 
-/// Runs the contenders of a scene, with one thread and with two.
+/// Runs a scene with both libraries, each with one thread and with two.
 fn run_scene<const D: usize>(
     (name, make, count): Stage<D>,
     arguments: &Arguments,
@@ -73,7 +73,7 @@ fn run_scene<const D: usize>(
     table.add(race(&scene, entrants, arguments.steps, &cases));
 }
 
-/// Runs drifting boxes, of any number.
+/// Runs `count` drifting boxes with both libraries, each with one thread and with two.
 fn run_drift(count: usize, arguments: &Arguments, table: &mut Table) {
     let mut lanes = vec![
         lane("impinge, 1 thread", 1, world::Ours::new()),
@@ -108,7 +108,7 @@ fn lane(name: &'static str, threads: usize, world: impl World + 'static) -> Lane
     Lane { clock: Box::new(clock), ..Lane::new(name, world) }
 }
 
-/// A contender and its threads.
+/// A contender that runs in its own thread pool.
 struct Pooled<W> {
     world: W,
     pool: ThreadPool,

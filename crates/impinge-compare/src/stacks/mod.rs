@@ -1,13 +1,15 @@
-//! The suite of stacks: the stability of one solver on the contacts of either library, and the persistence of
-//! contacts.
+//! The suite of stacks: the stability of one solver with the contacts of impinge and of parry, and
+//! the persistence of these contacts.
 //!
-//! The scenes, the solver and the measurements are those of `impinge-stacks`: 600 steps of 1/60 s, 10 iterations, warm
-//! starts. Contacts of impinge are matched by their ids. parry transfers the data of a point to the next manifold
-//! itself, by the pairs of features or by position, as it does for rapier: here the data is a number, which is the id.
-//! Its broad phase here is a comparison of all boxes, which is fast for so few solids.
+//! The scenes, the solver and the measurements are those of `impinge-stacks`: 600 steps of 1/60 s,
+//! 10 iterations, warm starts. Contacts of impinge are matched by their ids. parry transfers the
+//! data of a point to the next manifold itself, by the pairs of features or by position, as it does
+//! for rapier; here the data is the id. Its broad phase here compares all pairs of boxes, which is
+//! fast for so few solids.
 //!
-//! The second table shakes the upper of two solids, a thousand times. Both are also written to
-//! `bench/<machine>/stacks.csv` and `stacks-shaken.csv`. `--case` selects scenes by name, `--only` a contender.
+//! The second table shakes the upper of two solids a thousand times. Both tables are also written
+//! to `bench/<machine>/stacks.csv` and `stacks-shaken.csv`. `--case` selects scenes by name,
+//! `--only` a contender.
 
 mod parry;
 
@@ -24,11 +26,11 @@ use crate::table::Table;
 
 /// The number of steps of a scene.
 const STEPS: usize = 600;
-/// The number of shakes of the upper of two solids, and their amplitude.
+/// The number of shakes of the upper of two solids, and below it the amplitudes of the shakes.
 const SHAKES: usize = 1000;
 const WAYS: [f64; 3] = [1e-5, 1e-4, 1e-3];
 
-/// Prints and writes both tables, whose numbers are not times.
+/// Prints and writes both tables. Returns no table, since the numbers are not times.
 pub fn run(arguments: &Arguments) -> Vec<Table> {
     let mut rest = Lines::new("scene", &Outcome::default().columns());
     for stack in stacks3().iter().filter(|stack| arguments.wants_case(stack.name)) {
@@ -88,14 +90,14 @@ fn shaken_by<const D: usize, P: ContactSource<f32, D>>(
     }
 }
 
-/// A number of a table and its name.
+/// The name of a column, and its value in a row.
 type Column = (&'static str, String);
 
-/// The lines of a table, for the file.
+/// The lines of a table, collected for the CSV file.
 struct Lines(Vec<String>);
 
 impl Lines {
-    /// Prints the head.
+    /// Creates a table and prints its head.
     fn new(case: &str, columns: &[Column]) -> Self {
         let names = columns.iter().map(|(name, _)| format!("{name:>9}"));
         println!("\n{case:<40} {:<10}{}", "contender", names.collect::<String>());

@@ -1,4 +1,4 @@
-//! Contacts of parry for the solver, in 2D and in 3D.
+//! Contacts of parry as input of the solver, in 2D and in 3D.
 
 use impinge::math::{Isometry2, Isometry3};
 use impinge_stacks::{Body, Contact, ContactSource, PREDICTION, Solid, Stack};

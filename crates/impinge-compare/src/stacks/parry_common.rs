@@ -1,4 +1,4 @@
-// Common code of both crates; included by `parry.rs`.
+// Source shared by the modules for both crates of parry; included by `parry.rs`.
 
 use std::collections::BTreeMap;
 
@@ -9,16 +9,16 @@ use parry::query::{
 };
 use parry::shape::SharedShape;
 
-/// Shapes, and the manifolds of near pairs.
+/// The shapes of a scene, and the state of the pairs whose boxes overlap.
 pub struct Parry {
     shapes: Vec<SharedShape>,
     pairs: BTreeMap<[usize; 2], Pair>,
-    /// The id of the newest contact.
+    /// The id of the most recent new contact; ids begin with 1.
     newest: u64,
 }
 
-/// The state that parry keeps for a pair from step to step. The data of a point is its id, or zero
-/// if it is new.
+/// The state that parry keeps for a pair from step to step. The user data of a point is its id, or
+/// zero if the point is new.
 #[derive(Default)]
 struct Pair {
     manifolds: Vec<ContactManifold<(), u64>>,
@@ -26,7 +26,7 @@ struct Pair {
 }
 
 impl Parry {
-    /// Creates the objects of a scene.
+    /// Creates the shapes of a scene.
     pub fn new(stack: &Stack<DIM>) -> Self {
         let shapes = stack.items.iter().map(|item| match &item.solid {
             Solid::One(shape) => builder(shape).shape,
@@ -38,7 +38,8 @@ impl Parry {
         Self { shapes: shapes.collect(), pairs: BTreeMap::new(), newest: 0 }
     }
 
-    /// Returns the pairs of bodies whose boxes overlap, without pairs of two fixed bodies.
+    /// Returns the sorted pairs of bodies whose boxes, enlarged by half of the prediction, overlap.
+    /// Pairs of two fixed bodies are omitted.
     fn near(&self, bodies: &[Body<f32, DIM>], poses: &[Pose]) -> Vec<[usize; 2]> {
         let margin = PREDICTION as f32 / 2.0;
         let boxes = self.shapes.iter().zip(poses).map(|(shape, pose)| {
@@ -78,7 +79,8 @@ impl ContactSource<f32, DIM> for Parry {
     }
 }
 
-/// Reads the points of a manifold within the prediction, as rapier does; new points get ids.
+/// Reads the points of a manifold that are within the prediction, as rapier does. New points get
+/// new ids.
 fn read(
     manifold: &mut ContactManifold<(), u64>,
     bodies: [usize; 2],

@@ -1,11 +1,11 @@
-//! The interface of the contenders, and the race.
+//! The interface of the contenders, and the race between them.
 
 use impinge_scenes::{Placement, Scene};
 
 use crate::measure::{Times, timed};
 use crate::table::Row;
 
-/// A world that is compared with another.
+/// A world that takes part in the comparison.
 pub trait Contender<const D: usize> {
     /// Converts the new placements of some objects; not timed.
     fn prepare(&mut self, change: &Change<D>);
@@ -13,7 +13,7 @@ pub trait Contender<const D: usize> {
     /// Removes and adds objects, sets the new poses and updates; timed.
     fn step(&mut self);
 
-    /// Reads every contact point; timed.
+    /// Reads every contact point and returns their digest; timed.
     fn read(&mut self) -> Reading;
 
     /// Runs a step, and returns its time in nanoseconds.
@@ -21,12 +21,12 @@ pub trait Contender<const D: usize> {
         timed(|| self.step()).0
     }
 
-    /// Reads, and returns the time in nanoseconds with the result.
+    /// Reads every contact point. Returns the time in nanoseconds, and the digest.
     fn timed_read(&mut self) -> (f64, Reading) {
         timed(|| self.read())
     }
 
-    /// Returns the pairs with a contact point, smaller index first, sorted; not timed.
+    /// Returns the pairs with a contact point, sorted, the smaller index first; not timed.
     fn touching(&self) -> Vec<(usize, usize)>;
 }
 
@@ -42,7 +42,8 @@ pub struct Change<const D: usize> {
 }
 
 impl<const D: usize> Change<D> {
-    /// Returns the changes from the previous step; nothing at step 0, where the worlds are made.
+    /// Returns the changes since the previous step; none at step 0, at which the worlds are
+    /// created.
     fn at(scene: &Scene<D>, step: u32) -> Self {
         let mut change = Self::default();
         let Some(before) = step.checked_sub(1) else { return change };
@@ -67,13 +68,15 @@ pub struct Entrant<const D: usize> {
     pub world: Box<dyn Contender<D>>,
 }
 
-/// The timed parts, in the order of the three cases of a scene.
+/// The timed parts: the three cases of each scene.
 pub const KINDS: [&str; 3] = ["step and reading", "step alone", "reading alone"];
 
-/// The kind whose results are points, those of the last step, instead of pairs.
+/// The index in [`KINDS`] of the case whose results are the contact points of the last step. The
+/// results of the others are touching pairs.
 const READING: usize = 2;
 
-/// A digest of all contact points: they must be read, and should be about the same.
+/// A digest of all contact points. It forces a contender to read them, and shows whether the
+/// contenders find about the same contacts.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Reading {
     /// The number of points.
@@ -84,7 +87,7 @@ pub struct Reading {
 
 #[cfg(feature = "parallel")]
 impl Reading {
-    /// Returns the sum of both.
+    /// Returns the sum of two digests.
     pub fn plus(self, other: Self) -> Self {
         Self { points: self.points + other.points, depth: self.depth + other.depth }
     }
@@ -93,15 +96,15 @@ impl Reading {
 /// The results of one contender, in milliseconds per step.
 #[derive(Clone, Debug, Default)]
 struct Lane {
-    /// By the kinds of [`KINDS`].
+    /// The times of each part of [`KINDS`].
     times: [Times; 3],
     points: usize,
     touching: usize,
     differ: usize,
 }
 
-/// Steps the contenders alternately, in an alternating order. The first step, in which everything is
-/// new, is not timed. Each contender has a row for each case.
+/// Steps the contenders alternately, in a rotating order. The first step, in which everything is
+/// new, is not timed. Returns a row for each contender in each case.
 pub fn race<const D: usize>(
     scene: &Scene<D>,
     mut entrants: Vec<Entrant<D>>,
@@ -155,7 +158,8 @@ impl Lane {
     }
 }
 
-/// Counts the touching pairs of each that differ from the first, in the worst of the compared steps.
+/// Counts the touching pairs of each contender that differ from those of the first one, and stores
+/// the maximum over the compared steps.
 fn compare<const D: usize>(entrants: &[Entrant<D>], lanes: &mut [Lane]) {
     let pairs: Vec<_> = entrants.iter().map(|entrant| entrant.world.touching()).collect();
     let missing = |from: &[(usize, usize)], of: &[(usize, usize)]| {

@@ -5,7 +5,7 @@ use impinge_scenes::{Scene, SceneQuery};
 use super::PREDICTION;
 use super::contender::{Change, Contender, Reading};
 
-/// Creates a world of Box2D, if it has all shapes of the scene.
+/// Creates a world of Box2D; `None` if it does not support the scene.
 #[cfg(feature = "box2d")]
 pub fn box2d(
     scene: &Scene<2>,
@@ -17,7 +17,7 @@ pub fn box2d(
     Some(Box::new(impinge_compare_c::Box2d::new(scene, recycling)?))
 }
 
-/// Creates a world of Box3D, if it has all shapes of the scene.
+/// Creates a world of Box3D; `None` if it does not support the scene.
 #[cfg(feature = "box3d")]
 pub fn box3d(
     scene: &Scene<3>,
@@ -29,7 +29,8 @@ pub fn box3d(
     Some(Box::new(impinge_compare_c::Box3d::new(scene, recycling)?))
 }
 
-/// Creates a world of Jolt, whose edges are rounded by a radius, if it has all shapes of the scene.
+/// Creates a world of Jolt, with edges rounded by `convex_radius`; `None` if it does not support
+/// the scene.
 #[cfg(feature = "jolt")]
 pub fn jolt(scene: &Scene<3>, convex_radius: f32) -> Option<Box<dyn Contender<3>>> {
     if !is_played(scene) {
@@ -38,14 +39,15 @@ pub fn jolt(scene: &Scene<3>, convex_radius: f32) -> Option<Box<dyn Contender<3>
     Some(Box::new(impinge_compare_c::Jolt::new(scene, PREDICTION, convex_radius)?))
 }
 
-/// Whether the engines run such a scene: no object is added or removed, and all have contacts.
+/// Returns `true` if no object of the scene is added or removed and all have contacts; the engines
+/// run only such scenes.
 fn is_played<const D: usize>(scene: &Scene<D>) -> bool {
     scene.objects.iter().all(|object| {
         object.alive == (0..u32::MAX) && matches!(object.query, SceneQuery::Contacts { .. })
     })
 }
 
-/// All engines have the same methods.
+/// Implements `Contender` for an engine; all engines have methods of the same names.
 macro_rules! contender {
     ($engine:ident, $feature:literal, $dimension:literal) => {
         #[cfg(feature = $feature)]

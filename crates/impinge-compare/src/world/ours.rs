@@ -1,6 +1,7 @@
-//! impinge, in 2D and 3D.
+//! The contender impinge, in 2D and 3D.
 //!
-//! The library is `super::impinge`, so that this file can be compiled once for each of two versions of it.
+//! The library is imported as `super::impinge`, so that another package can compile this file once
+//! for each of two versions of it.
 
 use std::hint::black_box;
 
@@ -28,14 +29,14 @@ where
     world: CollisionWorld<f32, D, usize>,
     isometry: fn(&Placement<D>) -> Isometry<D>,
     parts: Vec<Part<D>>,
-    /// For each index of an object in the scene its handle; `None` for an object that is not alive.
+    /// The handle of each object by its index in the scene; `None` for an object that is not alive.
     handles: Vec<Option<CollisionObjectHandle>>,
     gone: Vec<CollisionObjectHandle>,
     born: Vec<(usize, Isometry<D>)>,
     moved: Vec<(CollisionObjectHandle, Isometry<D>)>,
 }
 
-/// The constant properties of an object.
+/// The constant properties of an object: its shape and its kind of query.
 struct Part<const D: usize> {
     shape: ShapeHandle<f32, D>,
     query: GeometricQueryType<f32>,
@@ -94,7 +95,7 @@ impl<const D: usize> Impinge<D>
 where
     f32: Space<D>,
 {
-    /// `particular` makes the shapes that exist in one dimension only.
+    /// Creates a world. `particular` converts the shapes that exist in one dimension only.
     fn new(
         scene: &Scene<D>,
         particular: fn(&SceneShape<D>) -> ShapeHandle<f32, D>,
@@ -137,7 +138,7 @@ where
         &self.world
     }
 
-    /// Makes pairs keep their contacts until they have moved by half of the prediction.
+    /// Lets each pair keep its contacts until it has moved by half of the prediction.
     pub fn reusing(mut self) -> Self {
         let narrow_phase = DefaultNarrowPhase::new().reusing(PREDICTION / 2.0);
         self.world.set_narrow_phase(Box::new(narrow_phase));
@@ -161,7 +162,7 @@ fn points_of<const D: usize>(points: &[[f64; D]]) -> Vec<Point<f32, D>> {
     points.iter().map(point).collect()
 }
 
-/// Returns the shapes of both dimensions.
+/// Converts the shapes that exist in both dimensions; returns `None` for the others.
 fn common<const D: usize>(shape: &SceneShape<D>) -> Option<ShapeHandle<f32, D>> {
     Some(match shape {
         SceneShape::Ball { radius } => ShapeHandle::new(Ball::new(*radius as f32)),
@@ -180,7 +181,7 @@ fn common<const D: usize>(shape: &SceneShape<D>) -> Option<ShapeHandle<f32, D>> 
     })
 }
 
-/// Reads every contact point of a world.
+/// Reads every contact point of a world, on all threads of the current pool.
 pub fn read<const D: usize, T: Sync>(world: &CollisionWorld<f32, D, T>) -> Reading
 where
     f32: Space<D>,
@@ -195,7 +196,7 @@ where
     read_all(world.contact_views())
 }
 
-/// Two objects of a world and a manifold of theirs.
+/// The two objects of a pair, and one of its manifolds.
 type View<'a, const D: usize, T> =
     (&'a CollisionObject<f32, D, T>, &'a CollisionObject<f32, D, T>, ManifoldView<'a, f32, D>);
 

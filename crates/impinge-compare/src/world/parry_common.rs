@@ -1,4 +1,4 @@
-// Common code of both crates; included by `parry_tree.rs`.
+// Source shared by the modules for both crates of parry; included by `parry_tree.rs`.
 
 use parry::bounding_volume::Aabb;
 use parry::math::{Pose, Vector};
@@ -10,12 +10,12 @@ use parry::query::{
 use parry::shape::SharedShape;
 use parry::utils::hashmap::HashMap;
 
-/// An object, whose index is that of its leaf in the tree.
+/// An object. Its index is also that of its leaf in the tree.
 struct Object {
     shape: SharedShape,
     pose: Pose,
     is_sensor: bool,
-    /// The step in which it was last moved, added or removed.
+    /// The step in which the object was last moved, added or removed.
     changed: u32,
 }
 
@@ -27,18 +27,19 @@ struct Pair {
     is_touching: bool,
 }
 
-/// A tree, pairs, and the next positions of objects.
+/// The contender: the tree, the pairs, and the pending changes of objects.
 pub struct ParryTree {
     objects: Vec<Object>,
     tree: Bvh,
     workspace: BvhWorkspace,
     pairs: HashMap<(u32, u32), Pair>,
-    /// The pairs that started touching, and those that stopped.
+    /// The pairs whose touching changed in the last step; `true` if they started to touch.
     events: Vec<((u32, u32), bool)>,
     step: u32,
-    /// The margin of the boxes.
+    /// The margin by which boxes are enlarged to fat AABBs.
     margin: f32,
-    /// The leaves that were marked as changed at the last refit of the tree, and at the previous one.
+    /// The leaves that changed in this step, and those that changed in the previous one, whose
+    /// marks the tree still has.
     changed: [Vec<u32>; 2],
     gone: Vec<u32>,
     born: Vec<(u32, Pose)>,
@@ -86,7 +87,7 @@ impl ParryTree {
         made
     }
 
-    /// Sets poses and updates the tree; the pairs that it lists begin.
+    /// Removes, adds and moves leaves, refits the tree, and creates the new pairs that it lists.
     fn update_tree(&mut self) {
         let Self { objects, tree, workspace, pairs, changed: [changed, before], .. } = self;
         std::mem::swap(changed, before);
@@ -95,7 +96,7 @@ impl ParryTree {
             tree.remove(*n);
             objects[*n as usize].changed = self.step;
         }
-        // The tree enlarges boxes itself where it replaces old ones.
+        // The tree enlarges boxes itself when it replaces an old box, but not when it adds one.
         let born = self.born.iter().map(|placed| (placed, self.margin));
         let moved = self.moved.iter().map(|placed| (placed, 0.0));
         for ((n, pose), margin) in born.chain(moved) {
@@ -107,7 +108,8 @@ impl ParryTree {
                 changed.push(*n);
             }
         }
-        // The bounds are those of rapier, which also refits all after a removal.
+        // The limit of a sixteenth is that of rapier, which also refits the whole tree after a
+        // removal.
         let few = (before.len() + changed.len()) * 16 < tree.leaf_count() as usize;
         if few && self.gone.is_empty() {
             tree.refit_partial(before, changed);
@@ -123,8 +125,8 @@ impl ParryTree {
         }
     }
 
-    /// Ends the pairs whose boxes are apart and recomputes the others, except those that have not
-    /// moved.
+    /// Removes the pairs whose boxes are apart, and recomputes the others except those of which
+    /// neither object moved.
     fn update_pairs(&mut self) {
         let Self { objects, tree, pairs, events, step, .. } = self;
         events.clear();
@@ -146,14 +148,16 @@ impl ParryTree {
 }
 
 impl Object {
-    /// Boxes of objects within the prediction overlap.
+    /// Returns the AABB, enlarged by half of the prediction. So the boxes of objects within the
+    /// prediction overlap.
     fn aabb(&self) -> Aabb {
         loosened(&self.shape.compute_aabb(&self.pose), PREDICTION / 2.0)
     }
 }
 
 impl Pair {
-    /// Whether two objects touch, by contact points or by intersection.
+    /// Recomputes the pair. Returns `true` if the objects touch: by a contact point within the
+    /// prediction, or by intersection if one of them is a sensor.
     fn update(&mut self, one: &Object, two: &Object) -> bool {
         let pose12 = one.pose.inv_mul(&two.pose);
         let (shape1, shape2) = (&*one.shape, &*two.shape);

@@ -1,12 +1,13 @@
-//! A world made of the tree and the manifolds of parry, with the rest as a user would write it.
+//! A world made of parry's tree and manifolds; the rest is written as a user of parry would do it.
 //!
-//! The tree is used much as in rapier: leaves are enlarged, the tree is refitted where boxes have left their fat AABBs,
-//! optimized a little where many have, and lists the pairs with such a box. Pairs are in a map of parry, with manifolds
-//! and the workspace that parry requires for the next call. A pair of which neither object has moved is skipped; for
-//! two that moved, parry keeps the points as long as they have hardly slid. Pairs that start and stop touching are
-//! listed, as our events are.
+//! The tree is used much as in rapier. Leaves are enlarged. The tree is refitted where boxes have
+//! left their fat AABBs, optimized incrementally if many have, and lists the pairs with such a box.
+//! Pairs are in a hash map of parry, with the manifolds and the workspace that parry requires for
+//! the next call. A pair of which neither object has moved is skipped; for the others parry keeps
+//! the points as long as they have hardly slid. Pairs that start or stop touching are listed, as
+//! events of impinge are.
 //!
-//! Pairs of an object with a proximity query are tested for intersection only; a margin is not supported.
+//! Pairs with a proximity query are tested for intersection only; a margin is not supported.
 
 use impinge_scenes::{Placement, Scene, SceneQuery};
 

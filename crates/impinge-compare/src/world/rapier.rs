@@ -1,10 +1,10 @@
-//! rapier's `CollisionPipeline`: its two crates differ in their names and some constructors only, and so do
-//! the modules here.
+//! The contender rapier, with its `CollisionPipeline`. Its crates for 2D and 3D differ only in
+//! their names and some constructors, so both modules include the same source.
 //!
-//! Set up as in the tests of that pipeline: colliders without bodies, which cost less than kinematic ones,
-//! all collision types active (colliders without bodies are fixed, and fixed ones would ignore each other),
-//! the workspace kept between steps, no hooks and no events. Its boxes are enlarged by 0.04, as those of the
-//! scenes are.
+//! It is set up as in the tests of that pipeline. Colliders have no bodies, which costs less than
+//! kinematic bodies. All collision types are active: colliders without bodies are fixed, and fixed
+//! ones would ignore each other. The workspace is kept between steps; there are no hooks and no
+//! events. Boxes are enlarged by 0.04, as in the scenes.
 
 use impinge_scenes::{Placement, Scene, SceneQuery, SceneShape};
 

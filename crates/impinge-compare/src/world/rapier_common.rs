@@ -1,6 +1,7 @@
-// Common code of both crates; included by `rapier.rs`.
+// Source shared by the modules for both crates of rapier; included by `rapier.rs`.
 
-/// Colliders without bodies, with indices in the order of their addition, and their pipeline.
+/// Colliders without bodies and their pipeline. The index of a collider is its position in the
+/// order of addition.
 pub struct Colliders {
     islands: IslandManager,
     broad_phase: BroadPhaseBvh,
@@ -25,19 +26,19 @@ impl Colliders {
         }
     }
 
-    /// Adds a collider, which may touch every other.
+    /// Adds a collider that may touch every other collider.
     pub fn add(&mut self, collider: ColliderBuilder) {
         let number = self.handles.len();
         self.handles.push(ColliderHandle::invalid());
         self.put(number, numbered(collider, number));
     }
 
-    /// Reserves the index of a collider that does not exist yet.
+    /// Reserves the next index for a collider that is not alive yet.
     pub fn skip(&mut self) {
         self.handles.push(ColliderHandle::invalid());
     }
 
-    /// Inserts a collider of [`numbered`] at its index.
+    /// Inserts a collider made by [`numbered`] at its index.
     pub fn put(&mut self, number: usize, collider: Collider) {
         self.handles[number] = self.colliders.insert(collider);
     }
@@ -49,12 +50,12 @@ impl Colliders {
         colliders.remove(handle, islands, bodies, &mut SoftBodySet::new(), false);
     }
 
-    /// Returns a collider, to be moved.
+    /// Returns a collider, so that its position can be changed.
     pub fn get_mut(&mut self, number: usize) -> &mut Collider {
         &mut self.colliders[self.handles[number]]
     }
 
-    /// Computes all contacts.
+    /// Updates the broad phase and computes all contacts.
     pub fn step(&mut self) {
         self.pipeline.step(
             PREDICTION,
@@ -79,7 +80,8 @@ impl Colliders {
         reading
     }
 
-    /// Returns the pairs of indices of touching colliders, the smaller index first, sorted.
+    /// Returns the pairs of indices of touching colliders, sorted, the smaller index first. Sensors
+    /// touch if they intersect.
     pub fn touching(&self) -> Vec<(usize, usize)> {
         let near = |pair: &&ContactPair| {
             let mut points = pair.manifolds().iter().flat_map(|manifold| &manifold.points);
@@ -105,12 +107,12 @@ impl Colliders {
     }
 }
 
-/// Returns a collider that may touch every other, with its index as user data.
+/// Builds a collider that may touch every other one, with its index as user data.
 fn numbered(collider: ColliderBuilder, number: usize) -> Collider {
     collider.active_collision_types(ActiveCollisionTypes::all()).user_data(number as u128).build()
 }
 
-/// The objects of a scene, and their next positions.
+/// The contender: the colliders of a scene, and their pending changes.
 pub struct Rapier {
     colliders: Colliders,
     builders: Vec<ColliderBuilder>,
@@ -120,8 +122,8 @@ pub struct Rapier {
 }
 
 impl Rapier {
-    /// Creates a world with the objects of a scene at step 0. Those with proximity queries are
-    /// sensors; a margin is not supported.
+    /// Creates a world with the objects of a scene at step 0. Objects with proximity queries are
+    /// sensors; their margins are not supported.
     pub fn new(scene: &Scene<DIM>) -> Self {
         let (mut colliders, mut builders) = (Colliders::new(), Vec::new());
         for (n, object) in scene.objects.iter().enumerate() {

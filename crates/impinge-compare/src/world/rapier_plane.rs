@@ -1,4 +1,4 @@
-// The constructors of 2D; included by `rapier.rs`.
+// The conversions for 2D; included by `rapier.rs`.
 
 /// The number of dimensions.
 pub const DIM: usize = 2;
@@ -38,7 +38,7 @@ pub fn builder(shape: &SceneShape<2>) -> ColliderBuilder {
     }
 }
 
-/// Returns the order that rapier requires: it misses contacts of a clockwise triangle.
+/// Returns the corners in counter-clockwise order: rapier misses contacts of a clockwise triangle.
 fn counter_clockwise([a, b, c]: [[f64; 2]; 3]) -> [[f64; 2]; 3] {
     let turn = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     if turn < 0.0 { [a, c, b] } else { [a, b, c] }

@@ -1,4 +1,4 @@
-// The constructors of 3D; included by `rapier.rs`.
+// The conversions for 3D; included by `rapier.rs`.
 
 /// The number of dimensions.
 pub const DIM: usize = 3;
@@ -41,7 +41,8 @@ pub fn builder(shape: &SceneShape<3>) -> ColliderBuilder {
     }
 }
 
-/// Cells whose bit is set have the diagonal of those of the scene.
+/// Converts a height field. The status of its cells selects the diagonals that the field of the
+/// scene has.
 fn field([rows, columns]: [usize; 2], heights: &[f64], extents: &[f64; 3]) -> HeightField {
     let by_column = (0..columns)
         .flat_map(|column| (0..rows).map(move |row| heights[row * columns + column] as f32));

@@ -7,21 +7,23 @@ use impinge_scenes::{
     trembling_vehicles_field, trembling_vehicles_mesh, turned_pile, vehicles_field, vehicles_mesh,
 };
 
-/// The distance up to which two objects have contact points: the sum of the predictions of both.
+/// The distance up to which two objects have contact points. It is the sum of the predictions of
+/// both objects.
 pub const PREDICTION: f32 = 0.002;
 
-/// The largest displacement of each object at each step of a shaken scene, along each axis.
+/// The limit of the random displacement of each object along each axis, for each step of a shaken
+/// scene.
 const SHAKE: f64 = 0.001;
 
 /// A scene of the suite.
 pub struct Stage<const D: usize> {
     /// The name in the table.
     pub name: &'static str,
-    /// The constructor, for a number of objects.
+    /// Creates the scene with a number of objects.
     make: fn(usize) -> Scene<D>,
-    /// The number of objects as a function of the requested number.
+    /// Returns the number of objects as a function of the requested number.
     count: fn(usize) -> usize,
-    /// Whether proximity queries are kept; in other scenes all objects have contacts.
+    /// Whether proximity queries of the scene are kept; in other scenes all objects get contacts.
     has_sensors: bool,
 }
 
@@ -51,8 +53,8 @@ impl<const D: usize> Stage<D> {
         (self.count)(objects)
     }
 
-    /// Makes the scene for a requested number of objects; `angular` is the sum over a pair of the angular
-    /// predictions in radians.
+    /// Creates the scene for a requested number of objects. `angular` is the sum over a pair of the
+    /// angular predictions, in radians.
     pub fn scene(&self, objects: usize, angular: f64) -> Scene<D> {
         let scene = (self.make)(self.count(objects));
         if self.has_sensors {
@@ -63,7 +65,8 @@ impl<const D: usize> Stage<D> {
     }
 }
 
-/// Returns the scenes of both dimensions, all with the same prediction: rapier has one for all objects.
+/// Returns the scenes that exist in both dimensions. All have the same prediction, since rapier has
+/// one for all objects.
 pub fn stages<const D: usize>() -> Vec<Stage<D>> {
     let mut stages = vec![
         Stage::new("pile", pile),
@@ -92,7 +95,8 @@ pub fn stages<const D: usize>() -> Vec<Stage<D>> {
     stages
 }
 
-/// Returns boxes in other piles, and scenes in which every step displaces every object at random.
+/// Returns piles with other orientations of boxes, and shaken scenes: every step displaces every
+/// object at random.
 fn shaken_stages<const D: usize>() -> [Stage<D>; 8] {
     [
         Stage::new("aligned pile", aligned_pile),
@@ -119,8 +123,8 @@ fn alone<const D: usize>() -> [Stage<D>; 6] {
     ]
 }
 
-/// Returns solids on a rough plain: plates of half extents from 0.5 to 8, and others of half extent 1 that
-/// move by 0.1 per step.
+/// Returns solids on a rough plain: plates with half extents from 0.5 to 8, some of them shaken,
+/// and single kinds of solids.
 fn on_plain<const D: usize>() -> [Stage<D>; 14] {
     use SolidKind::{Ball, Capsule, Cuboid, Hull};
     [
@@ -141,17 +145,18 @@ fn on_plain<const D: usize>() -> [Stage<D>; 14] {
     ]
 }
 
-/// Returns the scenes of 2D only.
+/// Returns the scenes that exist in 2D only.
 pub fn plane_stages() -> [Stage<2>; 1] {
     [Stage::new("crowd", impinge_scenes::crowd)]
 }
 
-/// Returns the scenes of 3D only.
+/// Returns the scenes that exist in 3D only.
 pub fn space_stages() -> [Stage<3>; 1] {
     [Stage::new("cylinders alone", |count| solids(count, &[SolidKind::Cylinder], 1.3))]
 }
 
-/// Returns the scene slowed down a hundred times, about as objects move that come to rest.
+/// Returns the scene slowed down by a factor of 100, to about the speed of objects that come to
+/// rest.
 fn trembling<const D: usize>(mut scene: Scene<D>) -> Scene<D> {
     for Motion { place, tangent, .. } in scene.objects.iter_mut().map(|object| &mut object.motion) {
         place.iter_mut().chain([tangent]).for_each(|wave| wave.speed /= 100.0);
@@ -159,7 +164,8 @@ fn trembling<const D: usize>(mut scene: Scene<D>) -> Scene<D> {
     scene
 }
 
-/// Returns the scene with contacts for all objects, with these predictions.
+/// Returns the scene in which all objects have contacts, with the prediction of the suite and this
+/// angular prediction.
 pub fn asking_for_contacts<const D: usize>(mut scene: Scene<D>, angular: f64) -> Scene<D> {
     for object in &mut scene.objects {
         object.query = SceneQuery::Contacts { linear: 0.0, angular: 0.0 };
@@ -167,8 +173,8 @@ pub fn asking_for_contacts<const D: usize>(mut scene: Scene<D>, angular: f64) ->
     predicting(scene, angular)
 }
 
-/// Returns the scene in which the sums over a pair are the prediction and an angle in radians, for pairs
-/// with contacts.
+/// Sets the predictions of objects with contacts, so that the sums over a pair are [`PREDICTION`]
+/// and `angular` radians.
 fn predicting<const D: usize>(mut scene: Scene<D>, angular: f64) -> Scene<D> {
     let linear = f64::from(PREDICTION) / 2.0;
     for object in &mut scene.objects {

@@ -1,4 +1,4 @@
-//! Maps of a document in which no key occurs twice.
+//! Deserializes maps that must not contain a key twice.
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 
-/// Deserializes a map; a key that occurs twice is an error (serde would take the last one).
+/// Deserializes a map. A key that occurs twice is an error, whereas serde would keep the last
+/// value.
 pub(super) fn unique_keys<'de, D, V>(deserializer: D) -> Result<BTreeMap<String, V>, D::Error>
 where
     D: Deserializer<'de>,

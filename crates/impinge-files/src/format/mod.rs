@@ -77,7 +77,7 @@ pub enum Dimension {
 }
 
 impl Dimension {
-    /// The number of dimensions as an integer.
+    /// Returns the number of dimensions as an integer.
     #[must_use]
     pub const fn number(self) -> usize {
         match self {

@@ -1,11 +1,11 @@
-//! Deserialization of a number or three numbers.
+//! Deserializes a value that is either a number or a list of three numbers.
 
 use core::fmt;
 
 use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
 
-/// A number, or a list of three. Deserialized by hand, since an untagged enum loses the position of
-/// an error.
+/// A number, or a list of three. It is deserialized by hand, since an untagged enum loses the
+/// position of an error.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum OneOrThree {
     One(f64),

@@ -1,4 +1,4 @@
-//! Objects in a scene file: their positions, groups, query types and motions.
+//! Objects in a scene file: positions, groups, query types and motions.
 
 use std::path::{Path, PathBuf};
 
@@ -64,7 +64,7 @@ pub struct MeshesFile {
 }
 
 impl MeshesFile {
-    /// Returns the parts of a file unchanged: at the origin, at rest, in all groups.
+    /// Returns the parts of a file unchanged: at the origin, at rest, and in all groups.
     #[must_use]
     pub fn new(path: &Path) -> Self {
         Self {
@@ -145,8 +145,8 @@ pub enum RotationOrder {
 }
 
 impl RotationOrder {
-    /// Returns the axes in the order of rotations about fixed axes, and whether it is the reverse of the written
-    /// order.
+    /// Returns the axes in the order of equivalent rotations about fixed axes. The flag is `true`
+    /// if this order is the reverse of the written one.
     #[must_use]
     pub const fn fixed_axes(self) -> ([usize; 3], bool) {
         match self {

@@ -1,4 +1,4 @@
-//! Shapes in a scene file: one member, whose name is the kind.
+//! Shapes in a scene file: objects with one member, whose name is the kind of the shape.
 
 use core::fmt;
 use std::path::PathBuf;
@@ -277,7 +277,7 @@ impl Default for ScaleFile {
 }
 
 impl ScaleFile {
-    /// The factors along x, y and z.
+    /// Returns the scale factors along x, y and z.
     #[must_use]
     pub const fn factors(&self) -> [f64; 3] {
         match self {

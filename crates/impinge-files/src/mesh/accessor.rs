@@ -1,7 +1,7 @@
-//! Accessors of glTF: checks their types, and that their data lie within the buffers.
+//! Checks accessors of glTF files: their types, and that their data lie within the buffers.
 //!
-//! The crate `gltf` trusts both, and the indices of sparse accessors. It reads only accessors that were
-//! checked here.
+//! The crate `gltf` checks neither the types, nor the ranges, nor the indices of sparse accessors.
+//! It reads only accessors that were checked here.
 
 use gltf::accessor::sparse::Sparse;
 use gltf::accessor::{DataType, Dimensions};
@@ -16,17 +16,17 @@ pub(super) struct Layout<'a> {
     pub(super) dimensions: Dimensions,
 }
 
-/// Elements of equal size at equal distances in a view of a buffer.
+/// Elements of equal size at a constant stride in a view of a buffer.
 struct Block<'a> {
     view: buffer::View<'a>,
-    /// The offset of the first element in the view.
+    /// The offset of the first element from the start of the view, in bytes.
     offset: usize,
     count: usize,
-    /// The bytes of each element.
+    /// The size of an element in bytes.
     size: usize,
 }
 
-/// Checks an accessor against its type and the buffers.
+/// Checks an accessor against the required type and the sizes of the buffers.
 pub(super) fn check(
     accessor: &Accessor<'_>,
     buffers: &[&[u8]],
@@ -47,14 +47,16 @@ fn check_numbers(
         return Err("numbers of another type are needed");
     }
     let (count, size) = (accessor.count(), accessor.size());
-    // Without a view all elements are 0 except the sparse ones. The caller limits their number.
+    // Without a view all elements are 0 except the sparse ones. The caller limits the number of
+    // elements.
     if let Some(view) = accessor.view() {
         Block { view, offset: accessor.offset(), count, size }.bytes(buffers)?;
     }
     accessor.sparse().map_or(Ok(()), |sparse| check_sparse(&sparse, accessor, buffers))
 }
 
-/// Checks the elements that replace others: one for each index, with increasing indices.
+/// Checks the sparse elements, which replace elements of the view: one value for each index, with
+/// increasing indices in range.
 fn check_sparse(
     sparse: &Sparse<'_>,
     accessor: &Accessor<'_>,
@@ -71,14 +73,14 @@ fn check_sparse(
         low_to_high.fold(0_usize, |number, byte| number << 8 | usize::from(*byte))
     });
     let numbers: Vec<usize> = numbers.collect();
-    // The crate ignores an element after one with a larger index.
+    // The crate `gltf` ignores an element that follows one with a larger index.
     let is_increasing = numbers.is_sorted_by(|one, next| one < next);
     let is_in_range = numbers.last().is_some_and(|last| *last < accessor.count());
     if is_increasing && is_in_range { Ok(()) } else { Err("its sparse indices are out of order") }
 }
 
 impl Block<'_> {
-    /// The distance between the beginnings of two consecutive elements.
+    /// Returns the distance in bytes between the starts of two consecutive elements.
     fn stride(&self) -> usize {
         self.view.stride().unwrap_or(self.size)
     }

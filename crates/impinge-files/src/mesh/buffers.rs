@@ -1,4 +1,5 @@
-//! The buffers of glTF files: in the file, in data URIs, and in files beside it; each is read once.
+//! Reads the buffers of glTF files: from the file itself, from data URIs, and from other files,
+//! each of which is read once.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -19,15 +20,16 @@ use crate::text::Quoted;
 pub(super) struct Buffers {
     /// The bytes of buffers that are not part of the document.
     read: Vec<Vec<u8>>,
-    /// For each buffer, its index in `read`; `None` for the binary chunk of the document.
+    /// For each buffer of the document, its index in `read`; `None` for the binary chunk of the
+    /// document.
     places: Vec<Option<usize>>,
-    /// For each file that was read, by its path without symbolic links, the index of its bytes in
-    /// `read`.
+    /// The index in `read` for each file that was read, by its path without symbolic links.
     files: BTreeMap<PathBuf, usize>,
 }
 
 impl Buffers {
-    /// Reads the buffers of a document; paths are relative to a folder.
+    /// Reads the buffers of a document. Paths are relative to `folder`. An error if a buffer is
+    /// shorter than the document says.
     pub(super) fn read(
         document: &Gltf,
         folder: &Path,
@@ -62,7 +64,7 @@ impl Buffers {
         }
     }
 
-    /// Returns the index in `read` of the bytes of a URI; reads them at the first use.
+    /// Returns the index in `read` of the bytes of a URI, which are read at the first use.
     fn resource(
         &mut self,
         uri: &str,

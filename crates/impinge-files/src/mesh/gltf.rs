@@ -1,7 +1,9 @@
-//! glTF, text and binary, by the crate `gltf`: each mesh of a node becomes a part, in the frame of the scene.
+//! Reads glTF, text and binary, with the crate `gltf`. Each mesh of a node becomes a part, in the
+//! frame of the scene.
 //!
-//! The crate checks the JSON. It trusts the tree of nodes, the lengths of buffers and the accessors of positions,
-//! which are checked here first, and the ranges of accessors, which `accessor.rs` checks.
+//! The crate checks the JSON. It does not check the tree of nodes, the lengths of buffers and the
+//! accessors of positions, which are checked here first, nor the ranges of accessors, which
+//! `accessor.rs` checks.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -17,10 +19,10 @@ use super::buffers::Buffers;
 use super::raw::FormatError;
 use crate::files::Files;
 
-/// The bytes of the header of a binary file.
+/// The size of the header of a binary file, in bytes.
 const HEADER: u32 = 12;
 
-/// Reads the meshes of the nodes of the default scene, or of all nodes.
+/// Reads the meshes of the nodes of the default scene, else of the first scene, else of all nodes.
 pub(super) fn read(
     path: &Path,
     bytes: &[u8],
@@ -44,7 +46,7 @@ fn parts(document: &Gltf, loader: &mut Loader<'_>) -> Result<Vec<RawPart>, Forma
     let mut parts = Vec::new();
     let mut seen = BTreeSet::new();
     let mut open: Vec<Placed<'_>> = roots(document);
-    // Terminates: no node is visited twice.
+    // Terminates: a node that is visited twice is an error.
     while let Some(Placed { node, frame }) = open.pop() {
         if !seen.insert(node.index()) {
             let message = format!("node {} has two parents, or is its own", node.index());
@@ -53,7 +55,7 @@ fn parts(document: &Gltf, loader: &mut Loader<'_>) -> Result<Vec<RawPart>, Forma
         let frame = frame * matrix(&node);
         if let Some(mesh) = node.mesh() {
             let name = node.name().or(mesh.name()).unwrap_or_default();
-            // Many nodes may use one mesh with a long name: the bytes of the copies count as
+            // Many nodes may use one mesh with a long name, so that the bytes of the names count as
             // elements.
             loader.files.count_elements(name.len())?;
             let mut part = NodePart { raw: RawPart::new(name), frame, first: BTreeMap::new() };
@@ -62,15 +64,16 @@ fn parts(document: &Gltf, loader: &mut Loader<'_>) -> Result<Vec<RawPart>, Forma
             }
             parts.push(part.raw);
         }
-        // The stack returns the last node first. Pushing children in reverse order visits them in
-        // the order of the file.
+        // The stack returns the last node first. Children are pushed in reverse order, so that they
+        // are visited in the order of the file.
         let children: Vec<_> = node.children().map(|node| Placed { node, frame }).collect();
         open.extend(children.into_iter().rev());
     }
     Ok(parts)
 }
 
-/// Checks that the positions of all primitives have an accessor: the crate's own checks index with it.
+/// Checks that the accessors of all attributes exist, since the checks of the crate `gltf` index
+/// the accessor of positions.
 fn check_positions(bytes: &[u8]) -> Result<(), FormatError> {
     let document = Gltf::from_slice_without_validation(bytes);
     let document = document.map_err(|error| syntax_error(&error))?;
@@ -86,7 +89,7 @@ fn check_positions(bytes: &[u8]) -> Result<(), FormatError> {
     }
 }
 
-/// A node with the frame of its parent in the scene.
+/// A node, and the frame of its parent in the scene.
 struct Placed<'a> {
     node: Node<'a>,
     frame: Matrix4<f64>,
@@ -120,37 +123,38 @@ fn syntax_error(error: &gltf::Error) -> FormatError {
     FormatError::syntax(line, error)
 }
 
-/// The part of a node, while it is built.
+/// A part under construction, which contains the mesh of one node.
 struct NodePart {
     raw: RawPart,
-    /// From the frame of the mesh to that of the scene.
+    /// Transforms from the frame of the mesh to the frame of the scene.
     frame: Matrix4<f64>,
     /// For each accessor of positions, the index of its first vertex in the part, and the number of
-    /// its vertices. Primitives share vertices.
+    /// its vertices. Primitives with the same accessor share vertices.
     first: BTreeMap<usize, [u32; 2]>,
 }
 
-/// Reads primitives.
+/// Reads primitives, and checks each accessor once.
 struct Loader<'a> {
     buffers: &'a [&'a [u8]],
     files: &'a mut Files,
-    /// The checked accessors: the index, and whether it was checked as positions (`true`) or as
-    /// indices.
+    /// The accessors that were checked. The flag is `true` for a check as positions, `false` for a
+    /// check as indices.
     checked: BTreeSet<(usize, bool)>,
 }
 
 impl Loader<'_> {
-    /// Adds the triangles of a primitive; lines and points have none.
+    /// Adds the triangles of a primitive. Primitives of lines or points add nothing.
     fn add(&mut self, primitive: &Primitive<'_>, part: &mut NodePart) -> Result<(), FormatError> {
         let mode = primitive.mode();
         if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
             return Ok(());
         }
         let [first, count] = self.vertices(primitive, part)?;
-        // An index beyond the vertices of this primitive must not become a vertex of the next one.
+        // An index beyond the vertices of this primitive must not refer to a vertex of the next
+        // primitive.
         let corner = |corner: u32| if corner < count { first + corner } else { u32::MAX };
         let corners: Vec<u32> = self.corners(primitive, count)?.into_iter().map(corner).collect();
-        // A mirroring frame reverses triangles.
+        // A mirroring frame reverses the orientation of triangles.
         let is_mirrored = part.frame.fixed_view::<3, 3>(0, 0).determinant() < 0.0;
         for [a, b, c] in triangles(&corners, mode) {
             part.raw.face(if is_mirrored { [a, c, b] } else { [a, b, c] });
@@ -159,7 +163,7 @@ impl Loader<'_> {
     }
 
     /// Returns the index of the first vertex of a primitive in its part, and the number of its
-    /// vertices. Adds the vertices if no earlier primitive has them.
+    /// vertices. Adds the vertices unless an earlier primitive of the part has the same accessor.
     fn vertices(
         &mut self,
         primitive: &Primitive<'_>,
@@ -185,14 +189,15 @@ impl Loader<'_> {
         Ok(range)
     }
 
-    /// Returns the indices of a primitive; without an accessor of indices, its `count` vertices in order.
+    /// Returns the vertex indices of a primitive; without an accessor of indices, the numbers below
+    /// `count`.
     fn corners(&mut self, primitive: &Primitive<'_>, count: u32) -> Result<Vec<u32>, FormatError> {
         let accessor = primitive.indices();
         if let Some(accessor) = &accessor {
             self.check(accessor, false)?;
         }
         let number = accessor.map_or(count as usize, |accessor| accessor.count());
-        // Each index of a strip or fan may begin a triangle of three corners.
+        // Each index of a strip or fan may begin a triangle, which has three corners.
         let corners = if primitive.mode() == Mode::Triangles { 1 } else { 3 };
         self.files.count_elements(number.saturating_mul(corners))?;
         let reader = primitive.reader(|buffer| self.buffers.get(buffer.index()).copied());
@@ -202,7 +207,7 @@ impl Loader<'_> {
         })
     }
 
-    /// Checks an accessor of positions or of indices, once.
+    /// Checks an accessor of positions or of indices, unless it was checked before.
     fn check(&mut self, accessor: &Accessor<'_>, is_position: bool) -> Result<(), FormatError> {
         let layout = if is_position {
             Layout { types: &[DataType::F32], dimensions: Dimensions::Vec3 }
@@ -217,7 +222,8 @@ impl Loader<'_> {
     }
 }
 
-/// Returns the corners of each triangle; every other triangle of a strip is reversed.
+/// Returns the corners of each triangle of a primitive. Every second triangle of a strip is
+/// reversed.
 fn triangles(corners: &[u32], mode: Mode) -> Vec<[u32; 3]> {
     let windows = corners.windows(3).enumerate();
     match mode {

@@ -1,4 +1,4 @@
-//! Mesh files: their parts, and the defects of these.
+//! Mesh files: their parts, and the defects of the parts.
 
 mod accessor;
 mod buffers;
@@ -21,8 +21,8 @@ use self::raw::{FormatError, RawPart};
 use crate::files::{Files, extension};
 use crate::{FileError, Problem, ReadOptions};
 
-/// The parts of a mesh file: groups and objects of an OBJ file, meshes of the nodes of a glTF file, solids of an STL
-/// file; one part of a PLY file.
+/// The parts of a mesh file: the groups and objects of an OBJ file, the meshes of the nodes of a
+/// glTF file, or the solids of an STL file. A PLY file has one part.
 ///
 /// ```
 /// use impinge_files::MeshFile;
@@ -38,19 +38,20 @@ use crate::{FileError, Problem, ReadOptions};
 #[derive(Clone, Debug)]
 pub struct MeshFile {
     parts: Vec<MeshPart>,
-    /// For each name, the index of the part.
+    /// The index of each part by its name.
     names: BTreeMap<String, usize>,
 }
 
 /// A part of a mesh file: triangles with finite, shared vertices.
 #[derive(Clone, Debug)]
 pub struct MeshPart {
-    /// The name in the file, or `part` if there is none. A suffix with a number is added if an
-    /// earlier part has the name.
+    /// The name in the file, or `part` if there is none. If an earlier part has the name, a suffix
+    /// with a number is added.
     pub name: String,
     /// The vertices, in the frame of the file. No two are equal.
     pub vertices: Vec<[f64; 3]>,
-    /// The vertices of each triangle, counter-clockwise seen from the front; no triangle has zero area.
+    /// The vertex indices of each triangle, counter-clockwise seen from the front. No triangle has
+    /// zero area.
     pub triangles: Vec<[u32; 3]>,
     /// The defects, and their repairs.
     pub report: MeshReport,
@@ -74,7 +75,7 @@ impl MeshFile {
         Self::read_with(path, &ReadOptions::new())
     }
 
-    /// Reads a file as [`Self::read`] does, with another root or other limits.
+    /// Reads a file like [`Self::read`], with options for the root folder and the limits.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -84,8 +85,8 @@ impl MeshFile {
         Self::of_bytes(path, &bytes, &mut files)
     }
 
-    /// Parses the bytes of a file with this name: its extension gives the format, its folder contains the buffers of
-    /// a glTF file.
+    /// Parses the bytes of a file. The extension of `path` selects the format, and its folder
+    /// contains the buffers of a glTF file.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -122,28 +123,29 @@ impl MeshFile {
         Ok(Self { parts, names })
     }
 
-    /// Whether the format with this extension is supported.
+    /// Returns `true` if the format with this extension is supported.
     pub(crate) fn has_format(extension: &str) -> bool {
         reader(extension).is_some()
     }
 
-    /// The parts, in the order of the file; at least one has a triangle.
+    /// Returns the parts in the order of the file. At least one has a triangle.
     #[must_use]
     pub fn parts(&self) -> &[MeshPart] {
         &self.parts
     }
 
-    /// Returns the part of a name.
+    /// Returns the part with this name.
     #[must_use]
     pub fn part(&self, name: &str) -> Option<&MeshPart> {
         self.names.get(name).map(|index| &self.parts[*index])
     }
 }
 
-/// A function that reads the faces of a file, given its path and bytes, and of the files that it names.
+/// A function that reads the faces of a file from its path and bytes, and from the files that it
+/// names.
 type Reader = fn(&Path, &[u8], &mut Files) -> Result<Vec<RawPart>, FormatError>;
 
-/// Returns the reader of the format with an extension.
+/// Returns the reader for a file extension; `None` if the format is not supported.
 fn reader(extension: &str) -> Option<Reader> {
     Some(match extension {
         "obj" => |_, bytes, _| obj::read(bytes),
@@ -155,16 +157,16 @@ fn reader(extension: &str) -> Option<Reader> {
 }
 
 impl MeshPart {
-    /// Whether the part has neither triangles nor defects.
+    /// Returns `true` if the part has no triangles, and no defects to report.
     fn is_empty(&self) -> bool {
         self.triangles.is_empty() && self.report.is_clean()
     }
 }
 
-/// Makes the names of parts unique; returns the index of the part of each name. O(n log n).
+/// Makes the names of parts unique, and returns the index of the part with each name. O(n log n).
 fn unique_names(parts: &mut [MeshPart]) -> BTreeMap<String, usize> {
     let mut names = BTreeMap::new();
-    // For each name, the next suffix to try: smaller suffixes are taken.
+    // The next suffix to try for each name. All smaller suffixes are taken.
     let mut next: BTreeMap<String, usize> = BTreeMap::new();
     for (index, part) in parts.iter_mut().enumerate() {
         if part.name.is_empty() {
@@ -173,7 +175,7 @@ fn unique_names(parts: &mut [MeshPart]) -> BTreeMap<String, usize> {
         if names.contains_key(&part.name) {
             let stem = core::mem::take(&mut part.name);
             let number = next.entry(stem.clone()).or_insert(2);
-            // Terminates: some suffix is free, since there are finitely many names.
+            // Terminates: finitely many names exist, so that some suffix is free.
             part.name = loop {
                 let name = format!("{stem}.{number}");
                 *number += 1;

@@ -1,10 +1,10 @@
-//! Wavefront OBJ: groups and objects become parts. Materials, texture coordinates, normals, lines and points are
-//! ignored.
+//! Reads Wavefront OBJ. Groups and objects become parts. Materials, texture coordinates, normals,
+//! lines and points are ignored.
 
 use super::RawPart;
 use super::raw::{FormatError, number, words};
 
-/// The vertex does not belong to the current part yet.
+/// Marks a vertex that does not belong to the current part yet.
 const NONE: u32 = u32::MAX;
 
 /// Returns the parts of an OBJ file. O(n) in its bytes.
@@ -23,13 +23,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<RawPart>, FormatError> {
     Ok(reader.finish())
 }
 
-/// Returns the vertices of the whole file: faces may name vertices on later lines.
+/// Returns the vertices of the whole file, since faces may name vertices on later lines.
 fn vertices(text: &str) -> Result<Vec<[f64; 3]>, FormatError> {
     let lines = (1..).zip(text.lines().map(words)).filter(|(_, (keyword, _))| *keyword == "v");
     lines.map(|(line, (_, rest))| vertex(rest, line)).collect()
 }
 
-/// Parses three coordinates; a fourth number divides them, and three more are a colour, which is ignored.
+/// Parses three coordinates. A single fourth number is a weight, which divides them. If two or more
+/// numbers follow the coordinates, such as a colour, all of them are ignored.
 fn vertex(text: &str, line: usize) -> Result<[f64; 3], FormatError> {
     let mut words = text.split_whitespace();
     let mut position = [0.0; 3];
@@ -46,17 +47,18 @@ fn vertex(text: &str, line: usize) -> Result<[f64; 3], FormatError> {
     }))
 }
 
-/// The parts so far. The corners of a part are indices into its own vertices, in the order of their
-/// first use.
+/// The parts read so far. The corners of a part are indices into its own vertices, in the order of
+/// their first use.
 struct Reader {
     vertices: Vec<[f64; 3]>,
-    /// For each vertex of the file, its index in the current part, or [`NONE`].
+    /// For each vertex of the file, its index in the current part; [`NONE`] if the part does not
+    /// use it.
     own: Vec<u32>,
     /// For each vertex of the current part, its index in the file.
     used: Vec<usize>,
     part: RawPart,
     parts: Vec<RawPart>,
-    /// The number of vertices on earlier lines.
+    /// The number of vertices on the lines read so far.
     seen: usize,
     out_of_range: Vec<usize>,
 }
@@ -74,7 +76,7 @@ impl Reader {
         }
     }
 
-    /// Begins a group or object. One without faces makes no part.
+    /// Begins a group or object, which becomes a part if it has faces.
     fn begin(&mut self, name: &str) {
         self.end();
         self.part.name = name.to_owned();
@@ -109,8 +111,9 @@ impl Reader {
         Ok(())
     }
 
-    /// Returns the index of a vertex from 0, given the index in the file: from 1 upwards, or from
-    /// -1 downwards from the last vertex before the line. `None` if the vertex does not exist.
+    /// Converts a vertex index of the file to an index from 0. Indices of the file count from 1
+    /// upwards, or from -1 downwards, where -1 is the last vertex before the line. `None` if the
+    /// vertex does not exist.
     fn vertex(&self, index: i64) -> Option<usize> {
         let distance = usize::try_from(index.unsigned_abs()).ok()?;
         let vertex =
@@ -118,7 +121,8 @@ impl Reader {
         vertex.filter(|vertex| *vertex < self.vertices.len())
     }
 
-    /// Returns the index of a vertex in the current part; adds the vertex if it is new.
+    /// Returns the index of a vertex in the current part. Adds the vertex to the part at its first
+    /// use.
     fn corner(&mut self, vertex: usize) -> u32 {
         if self.own[vertex] == NONE {
             self.own[vertex] = u32::try_from(self.used.len()).unwrap_or(NONE);

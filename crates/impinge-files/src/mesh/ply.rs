@@ -1,4 +1,4 @@
-//! PLY, ASCII and binary, by `ply-rs-bw`.
+//! Reads PLY, ASCII and binary, with the crate `ply-rs-bw`.
 
 use std::io::Cursor;
 
@@ -9,7 +9,7 @@ use super::RawPart;
 use super::raw::FormatError;
 use crate::Problem;
 
-/// An element of any kind: a vertex, a face, or an ignored one.
+/// An element of any kind: a vertex, a face, or a kind that is ignored.
 #[derive(Debug, Default)]
 struct Element {
     position: [f64; 3],
@@ -29,7 +29,7 @@ impl PropertyAccess for Element {
             return PropertyAccessResult::Set;
         }
         if name == "vertex_indices" || name == "vertex_index" {
-            // A negative index becomes an index out of range.
+            // A negative index becomes an index out of range, so that the face is dropped.
             self.corners = value.to_u32_list().unwrap_or_else(|| vec![u32::MAX]);
             return PropertyAccessResult::Set;
         }
@@ -37,7 +37,7 @@ impl PropertyAccess for Element {
     }
 }
 
-/// Converts a scalar of any type.
+/// Converts a scalar of any type; `None` for a list.
 fn number_of(value: &Property) -> Option<f64> {
     Some(match value {
         Property::Char(x) => f64::from(*x),
@@ -86,12 +86,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<RawPart>, FormatError> {
     Ok(vec![part])
 }
 
-/// Checks that the elements of a header, all kinds together, fit into the bytes of the file: a header must not
-/// request more time and memory than the size of the file allows.
+/// Checks that the elements of all kinds in the header fit into the bytes of the file. Otherwise a
+/// small file could request much time and memory.
 fn check_counts(header: &Header, bytes: usize) -> Result<(), FormatError> {
     let mut needed: usize = 0;
     for (_, element) in &header.elements {
-        // Each property takes at least one byte, and so does the end of a line.
+        // Each property takes at least one byte. An element without properties still takes the end
+        // of a line.
         let least = element.properties.len().max(1);
         needed = needed.saturating_add(element.count.saturating_mul(least));
         if needed > bytes {

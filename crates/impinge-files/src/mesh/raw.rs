@@ -1,11 +1,11 @@
-//! Faces as in the file, before any check.
+//! The faces of a mesh file as the file contains them, before any check.
 
 use core::fmt;
 use core::str::FromStr;
 
 use crate::{Limit, Problem};
 
-/// The reason why a format cannot be read.
+/// An error of parsing a mesh file, without the path of the file.
 #[derive(Debug)]
 pub(super) struct FormatError {
     pub(super) line: Option<usize>,
@@ -37,20 +37,20 @@ pub(super) fn number<T: FromStr>(word: Option<&str>, line: usize) -> Result<T, F
     word.parse().map_err(|_| FormatError::syntax(Some(line), format!("{word:?} is no number")))
 }
 
-/// A part of a file: polygons, whose corners may be out of range.
+/// A part of a file as read: polygons, whose corners may be out of range.
 #[derive(Debug, Default)]
 pub(super) struct RawPart {
     pub(super) name: String,
     pub(super) vertices: Vec<[f64; 3]>,
-    /// The corners of all faces, face by face.
+    /// The vertex indices of all faces, face by face.
     pub(super) corners: Vec<u32>,
     /// For each face, the end of its range in `corners`.
     ends: Vec<usize>,
     /// The line of each face; empty for binary formats.
     pub(super) lines: Vec<usize>,
-    /// The lines of faces that the parser dropped because they name vertices that do not exist.
+    /// The lines of faces that the parser dropped because they name a vertex that does not exist.
     pub(super) out_of_range: Vec<usize>,
-    /// Whether the format has no indices, so that each triangle has its own vertices.
+    /// `true` if the format has no indices, so that each triangle has its own vertices.
     pub(super) is_soup: bool,
 }
 
@@ -65,7 +65,7 @@ impl RawPart {
         Self { is_soup: true, ..Self::new(name) }
     }
 
-    /// Adds a face.
+    /// Adds a face with these vertex indices.
     pub(super) fn face(&mut self, corners: impl IntoIterator<Item = u32>) {
         self.corners.extend(corners);
         self.ends.push(self.corners.len());
@@ -78,7 +78,7 @@ impl RawPart {
         self.face((0..3).map(|corner| first.saturating_add(corner)));
     }
 
-    /// Returns the corners of each face.
+    /// Returns the vertex indices of each face.
     pub(super) fn faces(&self) -> impl Iterator<Item = &[u32]> {
         let starts = core::iter::once(0).chain(self.ends.iter().copied());
         starts.zip(&self.ends).map(|(start, end)| &self.corners[start..*end])
@@ -95,7 +95,7 @@ impl RawPart {
         }
     }
 
-    /// The line of a face.
+    /// Returns the line of a face; `None` for binary formats.
     pub(super) fn line(&self, face: usize) -> Option<usize> {
         self.lines.get(face).copied()
     }

@@ -8,7 +8,7 @@ use super::report::MeshReport;
 use super::topology::examine;
 use super::triangulate::Triangulator;
 
-/// Marks a vertex that is dropped because a coordinate is not finite.
+/// Marks a vertex that is dropped because one of its coordinates is not finite.
 const NONE: u32 = u32::MAX;
 
 /// A triangle, and the index of its face in the file.
@@ -31,13 +31,13 @@ pub(super) fn repaired(raw: RawPart) -> MeshPart {
     MeshPart { name: raw.name, vertices, triangles, report }
 }
 
-/// Returns, for each vertex, the index of the first vertex at its position; [`NONE`] for a vertex
-/// that is not finite.
+/// Returns, for each vertex, the index of the first vertex at the same position; [`NONE`] if a
+/// coordinate is not finite.
 fn weld(raw: &RawPart, report: &mut MeshReport) -> Vec<u32> {
     let mut welded = vec![NONE; raw.vertices.len()];
     let is_finite = |index: &u32| raw.vertices[*index as usize].iter().all(|x| x.is_finite());
     let mut order: Vec<u32> = (0..NONE).take(raw.vertices.len()).filter(is_finite).collect();
-    // Adding zero makes zeros positive, so that both zeros are one position.
+    // Adding 0 converts -0 to 0, so that both zeros are the same position.
     let key = |index: &u32| raw.vertices[*index as usize].map(|x| x + 0.0);
     order.sort_unstable_by(|a, b| {
         let [a_key, b_key] = [key(a), key(b)];
@@ -58,7 +58,7 @@ fn weld(raw: &RawPart, report: &mut MeshReport) -> Vec<u32> {
     welded
 }
 
-/// Returns the triangles with positive area of all faces.
+/// Returns the triangles of all faces that have positive area.
 fn pieces(raw: &RawPart, welded: &[u32], report: &mut MeshReport) -> Vec<Piece> {
     let mut triangulator = Triangulator::new();
     let mut pieces = Vec::new();
@@ -95,17 +95,17 @@ fn pieces(raw: &RawPart, welded: &[u32], report: &mut MeshReport) -> Vec<Piece> 
     pieces
 }
 
-/// Whether the corners are not on one line.
+/// Returns `true` if the corners are not collinear, up to rounding.
 fn has_area(corners: [u32; 3], vertices: &[[f64; 3]]) -> bool {
     let [a, b, c] = corners.map(|corner| Vector3::from(vertices[corner as usize]));
-    // Scaling by the largest side keeps squares of tiny and of huge triangles in range.
+    // Scaling by the largest coordinate of the edges prevents overflow and underflow of products.
     let [ab, ac] = [b - a, c - a];
     let size = ab.amax().max(ac.amax());
     let cross = (ab / size).cross(&(ac / size));
     cross.amax() > f64::EPSILON && cross.iter().all(|x| x.is_finite())
 }
 
-/// Drops triangles with the corners of an earlier triangle in the same orientation.
+/// Drops each triangle that has the corners and the orientation of an earlier triangle.
 fn drop_duplicates(raw: &RawPart, pieces: &mut Vec<Piece>, report: &mut MeshReport) {
     let mut order: Vec<usize> = (0..pieces.len()).collect();
     let key = |index: &usize| rotated(pieces[*index].corners);
@@ -135,8 +135,8 @@ fn rotated([a, b, c]: [u32; 3]) -> [u32; 3] {
     }
 }
 
-/// Returns the vertices that triangles use, in their order, and the triangles with indices of
-/// these.
+/// Returns the vertices that triangles use, in their order, and the triangles with indices of these
+/// vertices.
 fn compact(raw: &RawPart, pieces: &[Piece]) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     let mut number = vec![NONE; raw.vertices.len()];
     pieces.iter().flat_map(|piece| piece.corners).for_each(|corner| number[corner as usize] = 0);

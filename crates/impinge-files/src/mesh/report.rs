@@ -2,44 +2,45 @@
 
 use core::fmt;
 
-/// The largest number of listed defects of each kind; all are counted.
+/// The maximum number of defects of each kind that a report lists. All defects are counted.
 pub const MAX_DEFECTS: usize = 8;
 
-/// Defects of the triangles of a part, and their repairs.
+/// The defects of the triangles of a part, and their repairs.
 ///
-/// Vertices are welded first: edges and triangles are compared by the positions of their corners. Indices count
-/// from 0 in the order of the file, within the part.
+/// Vertices are welded first, so that edges and triangles are compared by the positions of their
+/// corners. Indices count from 0 in the order of the file, within the part.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshReport {
-    /// The number of vertices, as loaded.
+    /// The number of vertices after the repairs.
     pub vertices: usize,
-    /// The number of triangles, as loaded.
+    /// The number of triangles after the repairs.
     pub triangles: usize,
-    /// The number of faces with more than three corners, which were triangulated.
+    /// The number of faces with more than three corners that were triangulated.
     pub polygons: usize,
-    /// Vertices with a coordinate that is NaN or infinite; the faces at them were dropped.
+    /// Vertices with a coordinate that is NaN or infinite. Their faces were dropped.
     pub non_finite_vertices: Defects,
-    /// Faces that name a vertex that does not exist; they were dropped.
+    /// Faces that name a vertex that does not exist. They were dropped.
     pub out_of_range: Defects,
-    /// Faces with zero area, or with fewer than three corners; they were dropped. A polygon counts
+    /// Faces with zero area or with fewer than three corners. They were dropped. A polygon counts
     /// if none of its triangles has positive area.
     pub degenerate: Defects,
-    /// Vertices at the position of an earlier one; they were welded. In formats without indices none are counted, as
-    /// each triangle has its own vertices.
+    /// Vertices at the position of an earlier vertex. They were welded. Formats without indices
+    /// count none, as each triangle has its own vertices.
     pub duplicate_vertices: Defects,
-    /// Triangles with the corners of an earlier one in the same orientation; they were dropped.
+    /// Triangles with the corners and the orientation of an earlier triangle. They were dropped.
     pub duplicate_triangles: Defects,
-    /// Edges that belong to one triangle only: the surface is open there. The defect has the index
-    /// of the triangle's face.
+    /// Edges of one triangle only, at which the surface is open. The index of the defect is that of
+    /// the triangle's face.
     pub boundary_edges: Defects,
-    /// Edges that belong to more than two triangles. The defect has the index of the first face.
+    /// Edges of more than two triangles. The index of the defect is that of the first face.
     pub non_manifold_edges: Defects,
-    /// Edges at which the fronts of the two triangles disagree. The defect has the index of the
-    /// first face.
+    /// Edges whose two triangles have their fronts on different sides. The index of the defect is
+    /// that of the first face.
     pub inconsistent_edges: Defects,
-    /// The number of components that are connected by edges.
+    /// The number of components of triangles that are connected by edges.
     pub components: usize,
-    /// The volume enclosed by a surface that is closed and consistent; negative if it is inside out.
+    /// The volume enclosed by the surface, negative if its triangles point inwards. `None` unless
+    /// [`MeshReport::is_solid`].
     pub volume: Option<f64>,
 }
 
@@ -48,7 +49,7 @@ pub struct MeshReport {
 pub struct Defects {
     /// The number of defects.
     pub count: usize,
-    /// The first defects, at most [`MAX_DEFECTS`].
+    /// The first defects in the order in which they were found, at most [`MAX_DEFECTS`].
     pub first: Vec<Defect>,
 }
 
@@ -71,20 +72,21 @@ impl Defects {
 }
 
 impl MeshReport {
-    /// Whether each edge has two triangles or more, so that there is no boundary.
+    /// Returns `true` if the mesh has triangles, and each edge has two triangles or more.
     #[must_use]
     pub const fn is_closed(&self) -> bool {
         self.triangles > 0 && self.boundary_edges.count == 0
     }
 
-    /// Whether the surface bounds a volume: each edge has two triangles, which agree about the front.
+    /// Returns `true` if the surface bounds a volume: each edge has exactly two triangles, whose
+    /// fronts are on the same side.
     #[must_use]
     pub const fn is_solid(&self) -> bool {
         self.is_closed() && self.non_manifold_edges.count == 0 && self.inconsistent_edges.count == 0
     }
 
-    /// Whether all faces of the file were kept unchanged, and no edge is non-manifold or
-    /// inconsistent. The surface may be open or closed.
+    /// Returns `true` if all faces of the file were kept, none of their vertices was welded, and no
+    /// edge is non-manifold or inconsistent. The surface may be open or closed.
     #[must_use]
     pub fn is_clean(&self) -> bool {
         self.defects().all(|(_, defects)| defects.count == 0)
@@ -98,7 +100,7 @@ impl MeshReport {
         found.map(|(what, defects)| format!("{} {what}: {defects}", defects.count)).collect()
     }
 
-    /// Returns the defects of each kind, with its name.
+    /// Returns the defects of each kind, with the name of the kind.
     fn defects(&self) -> impl Iterator<Item = (&'static str, &Defects)> {
         [
             ("vertices that are not finite", &self.non_finite_vertices),
@@ -114,7 +116,7 @@ impl MeshReport {
 }
 
 impl fmt::Display for MeshReport {
-    /// Writes one line of counts, and one for each kind of defect.
+    /// Writes a line of counts, and a line for each kind of defect that occurs.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { vertices, triangles, components, .. } = self;
         write!(f, "{vertices} vertices, {triangles} triangles, {components} pieces, ")?;
@@ -131,7 +133,7 @@ impl fmt::Display for MeshReport {
 }
 
 impl fmt::Display for Defects {
-    /// Writes indices and lines, such as `4 (line 12), 9 (line 31), ...`.
+    /// Writes the indices and lines of the listed defects, such as `4 (line 12), 9 (line 31), ...`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (position, Defect { index, line }) in self.first.iter().enumerate() {
             let separator = if position == 0 { "" } else { ", " };

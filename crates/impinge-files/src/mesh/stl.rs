@@ -1,12 +1,12 @@
-//! STL, binary and ASCII.
+//! Reads STL, binary and ASCII.
 
 use super::RawPart;
 use super::raw::{FormatError, number, words};
 
-/// The bytes before the triangles of a binary file.
+/// The number of bytes before the triangles of a binary file.
 const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
-/// The bytes of the normal of a triangle, which comes first.
+/// The number of bytes of the normal, with which the record of a triangle begins.
 const NORMAL: usize = 12;
 
 /// Returns the solids of an STL file. O(n) in its bytes.
@@ -14,7 +14,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<RawPart>, FormatError> {
     let count = count(bytes);
     let has_length =
         count.is_some_and(|count| HEADER as u64 + TRIANGLE as u64 * count == bytes.len() as u64);
-    // The header of a binary file may begin with the word of a text file.
+    // The header of a binary file may also begin with `solid`.
     if has_length || !bytes.trim_ascii_start().starts_with(b"solid") {
         return Ok(vec![binary(bytes, count.unwrap_or(u64::MAX))?]);
     }
@@ -23,7 +23,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<RawPart>, FormatError> {
     ascii(text)
 }
 
-/// The number of triangles in the header of a binary file.
+/// Returns the number of triangles in the header of a binary file; `None` if the file is too short
+/// for a header.
 fn count(bytes: &[u8]) -> Option<u64> {
     let count = bytes.get(HEADER - 4..HEADER)?.try_into().ok()?;
     Some(u64::from(u32::from_le_bytes(count)))
@@ -43,13 +44,13 @@ fn binary(bytes: &[u8], count: u64) -> Result<RawPart, FormatError> {
     Ok(part)
 }
 
-/// Reads a number of four bytes.
+/// Reads a little-endian number of four bytes.
 fn float(bytes: &[u8]) -> f64 {
     bytes.try_into().map_or(f64::NAN, |bytes| f64::from(f32::from_le_bytes(bytes)))
 }
 
-/// The state of the parser of a solid; each state follows the one above, vertices occur three
-/// times.
+/// The state of the parser of a text file. Each facet goes through `Facet`, `Loop` and `Closed`;
+/// its three vertices are read in `Loop`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Place {
     Outside,
@@ -72,7 +73,7 @@ fn ascii(text: &str) -> Result<Vec<RawPart>, FormatError> {
                 part = RawPart::soup(rest.trim());
                 Place::Solid
             }
-            // Text after the end of a solid does not belong to the next one.
+            // Text between two solids is ignored.
             (Place::Outside, _) => place,
             (Place::Solid, "endsolid") => {
                 parts.push(core::mem::take(&mut part));
@@ -115,7 +116,7 @@ const fn expected(place: Place) -> &'static str {
     }
 }
 
-/// Parses three numbers, which STL stores in 32 bits.
+/// Parses three numbers, rounded to 32 bits as in binary files.
 fn vertex(text: &str, line: usize) -> Result<[f64; 3], FormatError> {
     let mut words = text.split_whitespace();
     let mut position = [0.0; 3];

@@ -1,21 +1,21 @@
-//! The edges of triangles: checks whether these bound a volume.
+//! Classifies the edges of a mesh, and checks whether its triangles bound a volume.
 
 use impinge::math::na::Vector3;
 
 use super::report::MeshReport;
 
-/// A side of a triangle.
+/// An edge of one triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Side {
-    /// The indices of the two vertices, the lower one first.
+    /// The indices of the two vertices, the lower index first.
     ends: [u32; 2],
     triangle: u32,
-    /// Whether the side goes from the lower to the higher vertex.
+    /// `true` if the triangle traverses the edge from the lower to the higher vertex index.
     is_forward: bool,
 }
 
-/// Counts edges of each kind and components, and computes the volume. `origin` returns the face of a triangle
-/// and its line. O(n log n).
+/// Counts the edges of each kind and the components, and computes the volume if the mesh is solid.
+/// `origin` returns the face of a triangle, and its line. O(n log n).
 pub(super) fn examine(
     vertices: &[[f64; 3]],
     triangles: &[[u32; 3]],
@@ -60,7 +60,7 @@ fn volume(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> f64 {
     six_times.sum::<f64>() / 6.0
 }
 
-/// Connected components of triangles (union-find with path halving).
+/// The connected components of triangles, by union-find with path halving.
 struct Pieces {
     parent: Vec<u32>,
     count: usize,

@@ -1,9 +1,10 @@
-//! Triangulation of polygons.
+//! Triangulates polygons in 3D.
 
 use earcut::Earcut;
 use impinge::math::na::Vector3;
 
-/// Triangulates polygons by Mapbox's earcut in the coordinate plane of the largest projection.
+/// Triangulates polygons with Mapbox's earcut algorithm, in the coordinate plane in which the
+/// projection of the polygon is largest.
 pub(super) struct Triangulator {
     earcut: Earcut<f64>,
     outline: Vec<[f64; 2]>,
@@ -15,8 +16,8 @@ impl Triangulator {
         Self { earcut: Earcut::new(), outline: Vec::new(), cut: Vec::new() }
     }
 
-    /// Returns the triangles of a polygon, in the direction of its corners; none if its area is zero
-    /// or not finite. Corners must be in range.
+    /// Returns the triangles of a polygon in the orientation of its corners; none if its area is
+    /// zero or not finite. Corners must be valid indices of `vertices`.
     pub(super) fn cut(&mut self, corners: &[u32], vertices: &[[f64; 3]]) -> Vec<[u32; 3]> {
         if let &[a, b, c] = corners {
             return vec![[a, b, c]];
@@ -30,7 +31,8 @@ impl Triangulator {
         let dropped = normal.iamax();
         let axes = [(dropped + 1) % 3, (dropped + 2) % 3];
         self.outline.clear();
-        // Coordinates are relative to a corner, since products lose accuracy far from the origin.
+        // Coordinates are relative to the first corner, since products lose accuracy far from the
+        // origin.
         let relative = points.iter().map(|point| point - points[0]);
         self.outline.extend(relative.map(|point| axes.map(|axis| point[axis])));
         self.earcut.earcut(self.outline.iter().copied(), &[], &mut self.cut);
@@ -38,7 +40,7 @@ impl Triangulator {
         self.cut.chunks_exact(3).map(|cut| self.oriented(cut, is_front, corners)).collect()
     }
 
-    /// Returns a triangle of the outline in the orientation of the polygon.
+    /// Returns a triangle of the projected outline, in the orientation of the polygon.
     fn oriented(&self, cut: &[u32], is_front: bool, corners: &[u32]) -> [u32; 3] {
         let [a, b, c] = [cut[0], cut[1], cut[2]].map(|index| self.outline[index as usize]);
         let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);

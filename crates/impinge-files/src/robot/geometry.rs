@@ -1,4 +1,4 @@
-//! The collision elements of links as shapes.
+//! Converts the collision elements of links to shapes.
 
 use impinge::math::na::{Isometry3, UnitQuaternion, Vector3};
 use impinge::shape::ShapeError;
@@ -14,8 +14,8 @@ use crate::scene::about;
 
 /// Returns the collision elements of a link as one shape; `None` if there is none.
 ///
-/// A single element becomes a shape around its own origin, and the frame of the link's shape is the
-/// origin of the element: so a box stays a cuboid. Several elements become a compound in the frame
+/// A single element becomes a shape around its own origin, at the origin of the element in the
+/// frame of the link, so that a box stays a cuboid. Several elements become a compound in the frame
 /// of the link.
 pub(super) fn solid(
     link: &Link,
@@ -35,14 +35,15 @@ pub(super) fn solid(
     Ok(Some(LinkSolid { shape, frame: Isometry3::identity() }))
 }
 
-/// Converts a collision element to a shape. Sizes in URDF are full lengths, sizes of the library are half lengths.
+/// Converts a collision element to a shape. URDF gives full lengths, whereas the shapes of the
+/// library have half lengths.
 fn element_solid(
     element: &Collision,
     kind: MeshKind,
     packages: &Packages,
 ) -> Result<LinkSolid, Problem> {
     let origin = isometry(&element.origin)?;
-    // Cylinders and capsules of URDF are along z, those of the library along y.
+    // The axis of cylinders and capsules is z in URDF, and y in the library.
     let upright = origin * about(Vector3::x(), core::f64::consts::FRAC_PI_2);
     Ok(match &element.geometry {
         Geometry::Box { size } => {
@@ -74,7 +75,8 @@ fn element_solid(
     })
 }
 
-/// Returns a size; an error if it is invalid. Checked here, since the line of the link is known.
+/// Returns a size; an error if it is negative or not finite. It is checked here, since the line of
+/// the link is known.
 fn checked(what: &'static str, value: f64) -> Result<f64, Problem> {
     if !value.is_finite() {
         return Err(ShapeError::NotFinite { what, value }.into());
@@ -85,12 +87,13 @@ fn checked(what: &'static str, value: f64) -> Result<f64, Problem> {
     Ok(value)
 }
 
-/// Returns half a size, after checking it.
+/// Returns half of a size; an error if it is negative or not finite.
 fn half(what: &'static str, size: f64) -> Result<f64, Problem> {
     checked(what, 0.5 * size)
 }
 
-/// Returns the frame of an origin: roll, pitch and yaw are rotations about the fixed axes x, y and z.
+/// Converts an origin of URDF to an isometry. Roll, pitch and yaw are rotations about the fixed
+/// axes x, y and z, in this order.
 pub(super) fn isometry(origin: &Pose) -> Result<Isometry3<f64>, Problem> {
     let numbers = origin.xyz.iter().chain(origin.rpy.iter());
     if let Some(value) = numbers.copied().find(|number| !number.is_finite()) {
@@ -101,8 +104,8 @@ pub(super) fn isometry(origin: &Pose) -> Result<Isometry3<f64>, Problem> {
     Ok(Isometry3::from_parts(Vector3::from(origin.xyz.0).into(), rotation))
 }
 
-/// Converts a frame to that of a scene file. The quaternion is unit up to rounding, and is normalized again when it
-/// is read.
+/// Converts an isometry to a position of a scene file. The quaternion has length 1 up to rounding,
+/// and is normalized again when it is read.
 fn pose_file(frame: &Isometry3<f64>) -> PoseFile {
     let turn = frame.rotation.coords;
     PoseFile {

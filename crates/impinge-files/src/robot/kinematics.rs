@@ -1,4 +1,4 @@
-//! The tree of joints: computes the frames of links from joint values.
+//! The tree of joints of a robot, which computes the frames of links from joint values.
 
 use core::fmt;
 use std::collections::{BTreeMap, BTreeSet};
@@ -13,51 +13,53 @@ use crate::error::{Fault, Within};
 use crate::scene::{about, unit};
 use crate::{FileError, Printable, Problem};
 
-/// Links, and the joints between them.
+/// The links of a robot, and the joints between them.
 #[derive(Debug)]
 pub(super) struct Tree {
     /// The names of the links, in the order of the file.
     pub(super) links: Vec<String>,
-    /// For each name of a link, its index.
+    /// The index of each link by its name.
     index: BTreeMap<String, usize>,
     joints: BTreeMap<String, TreeJoint>,
-    /// For each link, the name of the joint above it; `None` for the root.
+    /// For each link, the name of the joint that connects it to its parent; `None` for the root.
     above: Vec<Option<String>>,
     /// The indices of the links, sorted so that parents come before their children.
     order: Vec<usize>,
-    /// For each joint that mimics another, the relation between them.
+    /// For each joint that mimics another, the resolved relation to a joint that mimics none.
     follows: BTreeMap<String, Follows>,
 }
 
-/// A joint that mimics another: its value is `factor` times the value of `joint`, which mimics none, plus `offset`.
+/// The value of a joint that mimics another: `factor` times the value of `joint`, which mimics
+/// none, plus `offset`.
 #[derive(Clone, Debug, PartialEq)]
 struct Follows {
-    /// Shared by all joints that mimic it.
+    /// The name of the joint that is followed. All joints that follow it share the text.
     joint: Rc<str>,
     factor: f64,
     offset: f64,
 }
 
-/// A joint of a robot at a value outside the limits of its URDF file.
+/// A joint of a robot whose value is outside the limits of its URDF file.
 ///
-/// The link below the joint is placed by this value all the same. Limits describe the drives of a
-/// robot, while a collision checker must accept any pose.
+/// The link below the joint is placed by this value nevertheless. Limits describe the drives of a
+/// robot, whereas a collision checker must accept any pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointBeyondLimits {
     /// The prefix of the names of the robot's objects.
     pub robot: String,
-    /// The joint.
+    /// The name of the joint.
     pub joint: String,
-    /// The value in the scene: radians, or a length. For a joint that mimics another, the derived value.
+    /// The value in the scene, in radians or as a length. For a joint that mimics another, the
+    /// derived value.
     pub value: f64,
     /// The lower and the upper limit of the URDF file.
     pub limits: [f64; 2],
 }
 
-/// A joint above a link.
+/// A joint, stored by its name.
 #[derive(Debug)]
 struct TreeJoint {
-    /// The index of the link above the joint.
+    /// The index of the parent link.
     parent: usize,
     /// The frame of the joint in the frame of the parent link.
     origin: Isometry3<f64>,
@@ -67,17 +69,18 @@ struct TreeJoint {
     mimic: Option<Mimic>,
 }
 
-/// The motion of a joint as a function of its value; axes are unit vectors.
+/// The motion of a joint as a function of its value, about or along a unit vector.
 #[derive(Clone, Copy, Debug)]
 enum JointMotion {
     Turn(Vector3<f64>),
     Slide(Vector3<f64>),
-    /// The joint is fixed, or has several degrees of freedom, which are not moved.
+    /// The joint is fixed, or has several degrees of freedom, which scenes do not move.
     None,
 }
 
 impl Tree {
-    /// Builds the tree of a robot.
+    /// Builds the tree of a robot, and checks that its links form a tree. Errors contain the line
+    /// in `xml`.
     pub(super) fn new(robot: &urdf_rs::Robot, xml: &XmlFile) -> Result<Self, FileError> {
         let links: Vec<String> = robot.links.iter().map(|link| link.name.clone()).collect();
         let index: BTreeMap<String, usize> = links.iter().cloned().zip(0..).collect();
@@ -90,8 +93,8 @@ impl Tree {
                 found.ok_or_else(|| wrong(Problem::UnknownLink(name.clone())))
             };
             let (parent, child) = (link(&joint.parent.link)?, link(&joint.child.link)?);
-            // With one joint above each link but the root, links form a tree unless there is a separate cycle, which
-            // `sorted` finds.
+            // Each link has at most one joint above it. The links then form a tree if `sorted`
+            // finds a single root and no separate cycle.
             if above[child].replace(joint.name.clone()).is_some() {
                 return Err(wrong(Problem::NotATree { link: joint.child.link.clone() }));
             }
@@ -110,12 +113,12 @@ impl Tree {
         Ok(tree)
     }
 
-    /// Returns the indices of the links, parents first. The error has the name of a link that is
-    /// not connected to the root, or of a second root.
+    /// Returns the indices of the links, parents first. The error contains the name of a second
+    /// root, or of a link that is not connected to the root.
     fn sorted(&self) -> Result<Vec<usize>, String> {
         let mut below = vec![Vec::new(); self.links.len()];
         let mut open = Vec::new();
-        // The stack starts with the root alone.
+        // The stack starts with the root.
         for (link, above) in self.above.iter().enumerate() {
             match above {
                 Some(joint) => below[self.joints[joint].parent].push(link),
@@ -126,13 +129,13 @@ impl Tree {
             return Err(self.links[*second].clone());
         }
         let mut order = Vec::new();
-        // Terminates: each link has at most one parent.
+        // Terminates: each link has at most one parent, so that it is pushed at most once.
         while let Some(link) = open.pop() {
             order.push(link);
             open.append(&mut below[link]);
         }
         let reached: BTreeSet<&usize> = order.iter().collect();
-        // Links of a cycle are not below the root.
+        // The links of a cycle cannot be reached from the root.
         let is_missing = |link: &usize| !reached.contains(link);
         match (0..self.links.len()).find(is_missing) {
             Some(link) => Err(self.links[link].clone()),
@@ -140,15 +143,16 @@ impl Tree {
         }
     }
 
-    /// Resolves chains of mimicking joints of any length; each joint is visited once. The error has
-    /// the name of a joint that mimics a missing joint, or itself through other joints.
+    /// Resolves chains of mimicking joints of any length, and visits each joint once. The error
+    /// contains the name of a joint that mimics itself through other joints, or whose chain ends at
+    /// a missing joint.
     fn mimics(&self) -> Result<BTreeMap<String, Follows>, (String, Problem)> {
         let mut follows: BTreeMap<String, Follows> = BTreeMap::new();
         for name in self.joints.keys() {
             let mut chain: Vec<(&String, &Mimic)> = Vec::new();
             let mut passed = BTreeSet::new();
             let mut current = name;
-            // Terminates: no joint is visited twice.
+            // Terminates: a joint that is visited twice is an error.
             while let (None, Some(mimic)) = (follows.get(current), &self.joints[current].mimic) {
                 if !passed.insert(current) {
                     return Err((name.clone(), Problem::MimicCycle(name.clone())));
@@ -169,8 +173,8 @@ impl Tree {
         Ok(follows)
     }
 
-    /// Returns the frames of the links for joint values and a frame of the root. Joints without a value are at 0. Only
-    /// joints that move and mimic no other may have a value.
+    /// Returns the frames of all links, from joint values and the frame of the root. Joints without
+    /// a value are at 0. Only joints that move and mimic no other joint may have a value.
     pub(super) fn frames(
         &self,
         values: &BTreeMap<String, f64>,
@@ -197,7 +201,7 @@ impl Tree {
         Ok(frames)
     }
 
-    /// Returns the value of a joint, which may mimic another.
+    /// Returns the value of a joint; for a mimicking joint, the derived value.
     fn value(&self, name: &str, values: &BTreeMap<String, f64>) -> f64 {
         let given = |name: &str| values.get(name).copied().unwrap_or(0.0);
         match self.follows.get(name) {
@@ -206,7 +210,8 @@ impl Tree {
         }
     }
 
-    /// Returns the moving joints whose values are outside of their limits, sorted by name.
+    /// Returns the joints whose values are outside their limits, sorted by name. `robot` is the
+    /// prefix of the names of the robot's objects.
     pub(super) fn beyond_limits(
         &self,
         robot: &str,
@@ -223,20 +228,20 @@ impl Tree {
         joints.collect()
     }
 
-    /// The number of joints.
+    /// Returns the number of joints.
     pub(super) fn num_joints(&self) -> usize {
         self.joints.len()
     }
 
-    /// Returns the link of a name.
+    /// Returns the index of the link with this name.
     pub(super) fn link(&self, name: &str) -> Option<usize> {
         self.index.get(name).copied()
     }
 
-    /// Returns for each link the nearest ancestor that satisfies a predicate.
+    /// Returns, for each link, its nearest ancestor for which `holds` returns `true`.
     pub(super) fn nearest_above(&self, holds: impl Fn(usize) -> bool) -> Vec<Option<usize>> {
         let mut nearest = vec![None; self.links.len()];
-        // Parents come first, so that their result is known.
+        // Parents come first, so that the result of the parent is known.
         for &link in &self.order {
             if let Some(joint) = &self.above[link] {
                 let parent = self.joints[joint].parent;
@@ -248,7 +253,7 @@ impl Tree {
 }
 
 impl Follows {
-    /// Composes two relations: the relation of a joint that mimics this one.
+    /// Returns the relation of a joint that mimics the joint of this relation.
     fn followed_by(&self, mimic: &Mimic) -> Self {
         let multiplier = mimic.multiplier.unwrap_or(1.0);
         Self {
@@ -259,7 +264,7 @@ impl Follows {
     }
 }
 
-/// Converts a joint. Axes of fixed joints are ignored: many files have zeros there.
+/// Converts a joint. The axes of fixed joints are ignored, since many files have zeros there.
 fn tree_joint(joint: &Joint, parent: usize) -> Result<TreeJoint, Problem> {
     let axis = || unit(Vector3::from(joint.axis.xyz.0));
     let motion = match joint.joint_type {
@@ -273,8 +278,8 @@ fn tree_joint(joint: &Joint, parent: usize) -> Result<TreeJoint, Problem> {
     Ok(TreeJoint { parent, origin, motion, limits: limits(joint), mimic })
 }
 
-/// Returns the limits of joints of the kinds that have limits in URDF. For a joint without a `limit` element, as in
-/// many files, the parser returns 0 twice.
+/// Returns the limits of a revolute or prismatic joint; `None` for other kinds. For a joint without
+/// a `limit` element, as in many files, the parser returns 0 twice, which means no limits.
 fn limits(joint: &Joint) -> Option<[f64; 2]> {
     let is_limited = matches!(joint.joint_type, JointType::Revolute | JointType::Prismatic);
     let limits = [joint.limit.lower, joint.limit.upper];
@@ -282,7 +287,8 @@ fn limits(joint: &Joint) -> Option<[f64; 2]> {
 }
 
 impl fmt::Display for JointBeyondLimits {
-    /// Writes for example `the joint elbow of arm is at 3.5, outside its limits -2.5 to 2.5`.
+    /// Writes a sentence such as `the joint elbow of arm is at 3.5, outside its limits -2.5 to
+    /// 2.5`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { robot, joint, value, limits: [lower, upper] } = self;
         let [robot, joint] = [robot, joint].map(|name| Printable(name));
@@ -294,7 +300,7 @@ impl fmt::Display for JointBeyondLimits {
 }
 
 impl JointMotion {
-    /// The motion by a value, in the frame of the joint.
+    /// Returns the motion of the joint at `value`, in the frame of the joint.
     fn at(self, value: f64) -> Isometry3<f64> {
         match self {
             Self::Turn(axis) => Isometry3::from_parts(Translation3::identity(), about(axis, value)),

@@ -25,9 +25,9 @@ use crate::{FileError, Problem};
 pub(crate) struct Robot {
     pub(crate) name: String,
     tree: Tree,
-    /// For each link, its collision elements in the frame of the link; `None` if it has none.
+    /// For each link, its collision elements as one shape; `None` if it has none.
     solids: Vec<Option<LinkSolid>>,
-    /// Pairs of names of links that the SRDF file disables.
+    /// The pairs of link names whose contacts the SRDF file disables.
     disabled: BTreeSet<[String; 2]>,
 }
 
@@ -39,7 +39,7 @@ struct LinkSolid {
     frame: Isometry3<f64>,
 }
 
-/// A link with collision elements, with its frame.
+/// A link with collision elements, and the frame of its shape in the scene.
 #[derive(Debug)]
 pub(crate) struct RobotLink {
     pub(crate) name: String,
@@ -48,7 +48,7 @@ pub(crate) struct RobotLink {
 }
 
 impl Robot {
-    /// Reads the files of a robot; paths are relative to a folder.
+    /// Reads the files of a robot. Paths are relative to `folder`.
     pub(crate) fn read(
         file: &RobotFile,
         folder: &Path,
@@ -72,14 +72,14 @@ impl Robot {
         Ok(Self { name: robot.name, tree, solids, disabled })
     }
 
-    /// Returns the links with collision elements, in the order of the file, for joint values and a frame of the root
-    /// link.
+    /// Returns the links with collision elements, in the order of the file. `base` is the frame of
+    /// the root link.
     pub(crate) fn links(
         &self,
         file: &RobotFile,
         base: &Isometry3<f64>,
     ) -> Result<Vec<RobotLink>, Fault> {
-        // Links without collision elements move the links below them, but are no objects.
+        // Links without collision elements move their child links, but become no objects.
         let frames = self.tree.frames(&file.joints, base)?;
         let links = self.tree.links.iter().zip(&self.solids).zip(frames);
         let links = links.filter_map(|((name, solid), frame)| {
@@ -90,19 +90,21 @@ impl Robot {
         Ok(links.collect())
     }
 
-    /// The number of joints.
+    /// Returns the number of joints.
     pub(crate) fn num_joints(&self) -> usize {
         self.tree.num_joints()
     }
 
-    /// Returns the joints at values outside their limits; `name` is the prefix of the names of the robot's objects.
+    /// Returns the joints whose values are outside their limits. `name` is the prefix of the names
+    /// of the robot's objects.
     pub(crate) fn beyond_limits(&self, file: &RobotFile, name: &str) -> Vec<JointBeyondLimits> {
         self.tree.beyond_limits(name, &file.joints)
     }
 
-    /// Returns the pairs of links that have no contacts, as indices among the links with collision elements: pairs that
-    /// are connected by a joint, directly or through links without collision elements, and pairs that the SRDF file
-    /// disables. A pair may occur several times. O(n log n) for n links and pairs of the file.
+    /// Returns the pairs of links whose contacts are disabled, as indices among the links with
+    /// collision elements. These are the pairs connected by a joint, directly or through links
+    /// without collision elements, and the pairs of the SRDF file. A pair may occur several times.
+    /// O(n log n) for n links and pairs of the file.
     pub(crate) fn disabled_pairs(&self) -> Vec<[usize; 2]> {
         let has_solid = |link: usize| self.solids[link].is_some();
         let numbers = (0..self.solids.len()).scan(0, |next, link| {
@@ -123,7 +125,7 @@ impl Robot {
     }
 }
 
-/// Reads the pairs of an SRDF file; its links must be those of the robot.
+/// Reads the disabled pairs of an SRDF file. A link that the robot does not have is an error.
 fn disabled_pairs(xml: &XmlFile, tree: &Tree) -> Result<BTreeSet<[String; 2]>, FileError> {
     let mut pairs = BTreeSet::new();
     xml.each("disable_collisions", ["link1", "link2"], |names| {

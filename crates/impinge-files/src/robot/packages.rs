@@ -6,7 +6,7 @@ use crate::Problem;
 use crate::files::Files;
 use crate::format::RobotFile;
 
-/// Folders that are searched for packages, and the folder of relative paths.
+/// The folders that are searched for packages, and the folder of relative paths.
 #[derive(Debug)]
 pub(super) struct Packages {
     /// The folder of the URDF file.
@@ -15,9 +15,9 @@ pub(super) struct Packages {
 }
 
 impl Packages {
-    /// Collects the searched folders: those of the options, those that the scene names, and the
-    /// ancestors of the URDF file. Folders of the last two kinds are kept only if files may be read
-    /// from them.
+    /// Collects the searched folders: those of the options, those of the scene, and the ancestors
+    /// of the URDF file. Folders of the last two kinds are kept only if files may be read from
+    /// them.
     pub(super) fn new(file: &RobotFile, folder: &Path, urdf: &Path, files: &Files) -> Self {
         let absolute = std::path::absolute(urdf).unwrap_or_else(|_| urdf.to_owned());
         let own = absolute.parent().unwrap_or_else(|| Path::new("")).to_owned();
@@ -28,7 +28,7 @@ impl Packages {
     }
 
     /// Returns the path for a `package://` name, a `file://` name, or a name relative to the URDF
-    /// file. The result may lie outside of the root, which is checked when the file is read.
+    /// file. The result may lie outside the root, which is checked when the file is read.
     pub(super) fn find(&self, name: &str) -> Result<PathBuf, Problem> {
         if let Some(path) = name.strip_prefix("file://") {
             return Ok(PathBuf::from(path));
@@ -38,12 +38,13 @@ impl Packages {
         };
         let (package, rest) = path.split_once('/').unwrap_or((path, ""));
         let unknown = || Problem::UnknownPackage(package.to_owned());
-        // The name must be that of a folder, not a path with several components.
+        // The package must be a single folder name, not a path with several components.
         let mut parts = Path::new(package).components();
         if !matches!((parts.next(), parts.next()), (Some(Component::Normal(_)), None)) {
             return Err(unknown());
         }
-        // A folder with the name of the package is the package; otherwise the package is a folder within it.
+        // If a searched folder has the name of the package, it is the package. Otherwise the
+        // package is a subfolder.
         let found = self.folders.iter().find_map(|folder| {
             let inner = folder.join(package);
             if folder.file_name().is_some_and(|name| name == package) {

@@ -1,4 +1,4 @@
-//! XML files with the lines of their elements.
+//! Reads XML files with the lines of their elements.
 
 use std::path::{Path, PathBuf};
 
@@ -8,13 +8,15 @@ use crate::files::Files;
 use crate::text::Quoted;
 use crate::{FileError, Problem};
 
-/// The largest depth of elements: the parsers that read the text next are recursive.
+/// The maximum depth of nested elements. The parsers that read the text afterwards are recursive.
 const MAX_DEPTH: usize = 32;
 
-/// The largest number of attributes of an element: parsers compare each with all earlier ones.
+/// The maximum number of attributes of an element. Parsers compare each attribute with all earlier
+/// ones.
 const MAX_ATTRIBUTES: usize = 256;
 
-/// The text of an XML file, which is well-formed and of bounded depth.
+/// The text of an XML file that is well-formed, with bounded depth and bounded numbers of
+/// attributes.
 #[derive(Debug)]
 pub(super) struct XmlFile {
     path: PathBuf,
@@ -22,7 +24,7 @@ pub(super) struct XmlFile {
 }
 
 impl XmlFile {
-    /// Reads and checks a file.
+    /// Reads a file, and checks its syntax and bounds.
     pub(super) fn read(path: &Path, files: &mut Files) -> Result<Self, FileError> {
         let text = String::from_utf8_lossy(&files.read_named(path)?).into_owned();
         let file = Self { path: path.to_owned(), text };
@@ -32,7 +34,8 @@ impl XmlFile {
             return Err(file.whole(Problem::TooMany { what, given, limit }));
         }
         let document = file.parse()?;
-        // At most `MAX_DEPTH + 1` ancestors are counted, so that the check is linear in the text.
+        // At most `MAX_DEPTH + 1` ancestors are counted, so that the check takes time linear in the
+        // text.
         let depth = |node: &Node<'_, '_>| node.ancestors().take(MAX_DEPTH + 1).count();
         let too_deep = document.descendants().find(|node| depth(node) > MAX_DEPTH);
         if let Some(node) = too_deep {
@@ -42,8 +45,8 @@ impl XmlFile {
         Ok(file)
     }
 
-    /// Returns the text with `visual` and `material` elements replaced by white space. Collisions
-    /// do not need them, and errors in them must not matter. Other lines keep their line numbers.
+    /// Returns the text with `visual` and `material` elements replaced by spaces. Collisions do not
+    /// need these elements, and errors in them must not matter. All lines keep their numbers.
     pub(super) fn without_visuals(&self) -> Result<String, FileError> {
         let document = self.parse()?;
         let is_visual =
@@ -55,11 +58,11 @@ impl XmlFile {
                 .filter(|byte| **byte != b'\n')
                 .for_each(|byte| *byte = b' ');
         }
-        // Only whole elements were replaced: the text is still UTF-8.
+        // Only whole elements were replaced, so that the text is still UTF-8.
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 
-    /// Parses the text. The error has the position at which the parser stops.
+    /// Parses the text. The error contains the position at which the parser stops.
     fn parse(&self) -> Result<Document<'_>, FileError> {
         Document::parse(&self.text).map_err(|error| {
             let place = error.pos();
@@ -74,7 +77,7 @@ impl XmlFile {
         FileError::whole(&self.path, problem)
     }
 
-    /// Returns an error of the element with this tag and name.
+    /// Returns an error at the element with this tag and name.
     pub(super) fn error(&self, tag: &str, name: &str, problem: Problem) -> FileError {
         let path = format!("{tag} {}", Quoted(name));
         let Ok(document) = self.parse() else { return self.whole(problem) };
@@ -94,8 +97,8 @@ impl XmlFile {
         FileError { line, column, ..self.whole(problem) }
     }
 
-    /// Calls `take` with two attributes of each element with a tag. The first error ends the loop and gets the line
-    /// of the element.
+    /// Calls `take` with the values of two attributes of each element with this tag. The first
+    /// error ends the loop and gets the line of the element.
     pub(super) fn each(
         &self,
         tag: &str,
@@ -105,14 +108,16 @@ impl XmlFile {
         let document = self.parse()?;
         for node in document.descendants().filter(|node| node.has_tag_name(tag)) {
             let values = names.map(|name| node.attribute(name).unwrap_or_default());
-            // The line is computed for an error alone: it needs a pass over the text before.
+            // The line is computed only for an error, since it takes a pass over the text before
+            // the element.
             take(values).map_err(|problem| self.at(&document, node, problem))?;
         }
         Ok(())
     }
 }
 
-/// Bounds the number of attributes of an element: counts `=` between angle brackets and outside of quotes.
+/// Returns an upper bound of the number of attributes of any element: the maximum number of `=`
+/// between angle brackets and outside of quotes.
 fn attributes(text: &str) -> usize {
     let (mut most, mut count) = (0, 0);
     let (mut is_tag, mut quote) = (false, None);

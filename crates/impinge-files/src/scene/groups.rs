@@ -1,4 +1,4 @@
-//! Groups of objects, and groups for the disabled pairs of links.
+//! Assigns collision groups: those of the document, and those that disable pairs of links.
 
 use std::collections::BTreeSet;
 
@@ -8,41 +8,41 @@ use crate::Problem;
 use crate::error::{Fault, Within};
 use crate::format::{GroupsFile, SceneFile};
 
-/// The number of groups.
+/// The number of groups that the library has.
 const GROUPS: usize = 30;
 
 /// The groups of a scene: those that the document names, and those that disable pairs of links.
 ///
-/// Pairs of links are disabled by groups, so that a recording needs no pair filter. For each pair,
-/// one link is the only member of a group that the other link blacklists. These groups are taken
-/// from those that the document does not name. Objects that are members of all groups are not
-/// members of these groups.
+/// Groups disable the pairs, so that a recording needs no pair filter. For each pair, one link is
+/// the only member of a group that the other link blacklists. Only groups that the document does
+/// not name are used. Objects whose membership is not given are members of all groups except these.
 #[derive(Debug)]
 pub(super) struct GroupPlan {
-    /// The groups that the document does not name, the highest first.
+    /// The groups that the document does not name and that are not taken, in ascending order. The
+    /// last one is taken next.
     free: Vec<usize>,
     /// The groups that disable pairs.
     taken: BTreeSet<usize>,
 }
 
-/// The indices of two objects that have no contacts, the lower index first.
+/// The indices of two objects whose contacts are disabled, the lower index first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct DisabledPair([usize; 2]);
 
 impl DisabledPair {
-    /// The pair of two indices in any order.
+    /// Creates the pair of two indices given in any order.
     pub(super) fn new([a, b]: [usize; 2]) -> Self {
         Self([a.min(b), a.max(b)])
     }
 
-    /// Returns the other object of a pair with `object`; `None` if the pair does not contain it.
+    /// Returns the other index of the pair; `None` if the pair does not contain `object`.
     fn partner(self, object: usize) -> Option<usize> {
         let [a, b] = self.0;
         if a == object { Some(b) } else { (b == object).then_some(a) }
     }
 }
 
-/// The groups that disabled pairs add to an object.
+/// The groups that an object gets from its disabled pairs.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OwnGroups {
     member: Option<usize>,
@@ -62,8 +62,8 @@ impl GroupPlan {
     }
 
     /// Assigns groups to objects until each pair is disabled. The object with the most remaining
-    /// pairs gets the next group, which its partners blacklist: a greedy vertex cover, since there
-    /// are few groups. An error if the groups do not suffice.
+    /// pairs gets the next group, which its partners blacklist. This is a greedy vertex cover,
+    /// since there are few groups. It is an error if the groups do not suffice.
     pub(super) fn separate(
         &mut self,
         objects: usize,
@@ -71,7 +71,7 @@ impl GroupPlan {
     ) -> Result<Vec<OwnGroups>, Problem> {
         let mut own = vec![OwnGroups::default(); objects];
         let mut left: Vec<DisabledPair> = pairs.iter().copied().collect();
-        // Terminates: each iteration disables the pairs of an object that has some.
+        // Terminates: each iteration disables at least one pair.
         while !left.is_empty() {
             let mut counts = vec![0_usize; objects];
             left.iter().flat_map(|pair| pair.0).for_each(|object| counts[object] += 1);
@@ -89,7 +89,7 @@ impl GroupPlan {
         Ok(own)
     }
 
-    /// Returns the groups of an object.
+    /// Returns the groups of an object: those of the file, and those of its disabled pairs.
     pub(super) fn groups(
         &self,
         file: &GroupsFile,

@@ -1,4 +1,4 @@
-//! The mesh files of a scene, and the shapes made of their triangles.
+//! The mesh files of a scene, and the shapes built from their triangles.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,18 +14,19 @@ use crate::format::{MeshKind, MeshSource, RobotFile, ScaleFile, ShapeFile, Shape
 use crate::robot::Robot;
 use crate::{Dimension, FileError, MeshFile, MeshPart, Problem};
 
-/// The mesh files that were read, by path; each is read once. Clones share the files.
+/// The mesh files that were read, by path. Each file is read once. Clones share the data of the
+/// files.
 #[derive(Clone, Debug)]
 pub(crate) struct MeshTable {
     folder: PathBuf,
-    /// Reads all files of the scene.
+    /// The reader of all files of the scene.
     pub(crate) files: Files,
     meshes: BTreeMap<PathBuf, Named>,
-    /// For each path that was read, the path without symbolic links.
+    /// The path without symbolic links, for each path that was read.
     real: BTreeMap<PathBuf, PathBuf>,
 }
 
-/// A mesh file, and the path by which it was named first.
+/// A mesh file, and the first path by which it was named.
 #[derive(Clone, Debug)]
 struct Named {
     path: PathBuf,
@@ -33,13 +34,13 @@ struct Named {
 }
 
 impl MeshTable {
-    /// Creates a table without meshes; paths are relative to `folder`.
+    /// Creates a table without meshes. Paths are relative to `folder`.
     pub(crate) fn new(folder: &Path, files: Files) -> Self {
         let (meshes, real) = (BTreeMap::new(), BTreeMap::new());
         Self { folder: folder.to_owned(), files, meshes, real }
     }
 
-    /// Returns the file of a path; reads it at the first call.
+    /// Returns the mesh file at a path, which is read at the first call.
     pub(crate) fn read(&mut self, path: &Path) -> Result<&MeshFile, FileError> {
         let path = self.folder.join(path);
         if !self.real.contains_key(&path) {
@@ -51,12 +52,12 @@ impl MeshTable {
         Ok(&self.meshes[&self.real[&path]].mesh)
     }
 
-    /// Reads the files of a robot, except its meshes.
+    /// Reads the URDF and SRDF files of a robot, but not its meshes.
     pub(crate) fn read_robot(&mut self, robot: &RobotFile) -> Result<Robot, FileError> {
         Robot::read(robot, &self.folder, &mut self.files)
     }
 
-    /// Reads a file, unless it was read by another path.
+    /// Reads a file, unless it was read before through another path.
     fn read_new(&mut self, path: &Path, real: &Path) -> Result<(), FileError> {
         if !self.meshes.contains_key(real) {
             let bytes = self.files.read_named(path)?;
@@ -66,8 +67,8 @@ impl MeshTable {
         Ok(())
     }
 
-    /// Reads all mesh files of a shape and of the inline shapes in it. A named shape is skipped: it
-    /// is read with the `shapes` of the document.
+    /// Reads all mesh files of a shape and of the inline shapes in it. A named shape is skipped,
+    /// since it is read with the `shapes` of the document.
     pub(crate) fn read_all(&mut self, shape: &ShapeRef) -> Result<(), FileError> {
         match shape {
             ShapeRef::Name(_) => Ok(()),
@@ -92,7 +93,7 @@ impl MeshTable {
         self.meshes.values().map(|Named { path, mesh }| (path.as_path(), &**mesh))
     }
 
-    /// Makes the shape of a file that was read before.
+    /// Builds the shape of a mesh file that was read before.
     pub(crate) fn shape<N: SceneSpace<D>, const D: usize>(
         &self,
         source: &MeshSource,
@@ -117,8 +118,8 @@ impl MeshTable {
 }
 
 impl MeshTable {
-    /// Returns the parts of a file from which a shape is made. The file must have been read; an
-    /// error if it has no part of the given name.
+    /// Returns the parts of a file from which a shape is built. The file must have been read. It is
+    /// an error if the file has no part with the given name.
     fn parts(&self, source: &MeshSource) -> Result<Vec<&MeshPart>, Fault> {
         let real = &self.real[&self.folder.join(&source.path)];
         let file = &self.meshes[real].mesh;
@@ -131,14 +132,14 @@ impl MeshTable {
         }
     }
 
-    /// Returns the number of vertices and triangle corners of a shape.
+    /// Returns the number of vertices plus the number of triangle corners of a shape.
     pub(crate) fn elements(&self, source: &MeshSource) -> Result<usize, Fault> {
         let parts = self.parts(source)?.into_iter();
         Ok(parts.map(|part| part.vertices.len() + 3 * part.triangles.len()).sum())
     }
 }
 
-/// Returns the factors along the axes; an error if one is zero or not finite.
+/// Returns the scale factors along the axes; an error if one is zero or not finite.
 fn scale(scale: ScaleFile) -> Result<[f64; 3], Problem> {
     let factors = scale.factors();
     match factors.into_iter().find(|factor| *factor == 0.0 || !factor.is_finite()) {
@@ -162,10 +163,10 @@ impl Triangles<'_> {
         Vector::<N, D>::from_fn(|axis, _| N::lit(vertex[axis] * self.scale[axis])).into()
     }
 
-    /// Makes one mesh of all parts.
+    /// Builds one mesh of all parts.
     ///
-    /// Triangles keep their fronts: a mirroring scale reverses their corners. With
-    /// `turns_outwards`, the triangles of parts that are inside out (negative volume) are reversed
+    /// Triangles keep their fronts: if the scale mirrors, their corners are reversed. With
+    /// `turns_outwards`, the triangles of parts that point inwards (negative volume) are reversed
     /// too.
     fn mesh<N: SceneSpace<D>, const D: usize>(
         &self,
@@ -186,7 +187,7 @@ impl Triangles<'_> {
         TriMesh::try_new(vertices, triangles)
     }
 
-    /// Makes the convex hull of some parts.
+    /// Builds the convex hull of all vertices of some parts.
     fn hull<N: SceneSpace<D>, const D: usize>(
         &self,
         parts: &[&MeshPart],
@@ -196,7 +197,7 @@ impl Triangles<'_> {
         Ok(N::convex_hull(&points)?)
     }
 
-    /// Makes a compound of the convex hulls of all parts that have triangles.
+    /// Builds a compound of the convex hulls of all parts that have triangles.
     fn hulls<N: SceneSpace<D>, const D: usize>(&self) -> Result<ShapeHandle<N, D>, Fault> {
         let at = N::isometry(&Pose::identity());
         let parts = self.parts.iter().filter(|part| !part.triangles.is_empty());

@@ -1,4 +1,4 @@
-//! Scenes: documents whose files are read and whose objects are placed.
+//! Scenes: documents whose files have been read and whose objects have been placed.
 
 mod groups;
 mod meshes;
@@ -30,8 +30,9 @@ use crate::{
     ScalarFile, SceneFile, UpAxis,
 };
 
-/// A scene: its objects by name, and their files. The library has not validated its values yet:
-/// [`Self::world`] and [`Self::collision_world`] return an error if a shape or object is invalid.
+/// A scene: its named objects, and the mesh files that they use. The library validates shapes and
+/// objects when a world is created: [`Self::world`] and [`Self::collision_world`] return an error
+/// if a shape or object is invalid.
 ///
 /// ```
 /// use impinge_files::Scene;
@@ -54,7 +55,7 @@ use crate::{
 pub struct Scene {
     source: Source,
     file: SceneFile,
-    /// The shapes of objects, each with its place in the document; the objects of a grid share one.
+    /// The shapes of objects, each with its path in the document. The objects of a grid share one.
     forms: Vec<Form>,
     objects: Vec<SceneObject>,
     meshes: MeshTable,
@@ -66,11 +67,11 @@ pub struct Scene {
 struct Form {
     shape: ShapeRef,
     path: String,
-    /// The member of the entry that contains the shape; empty for meshes and robots.
+    /// The member of the entry that contains the shape; empty for shapes of meshes and robots.
     member: &'static str,
 }
 
-/// An object, before a world is made.
+/// An object before a world is created.
 #[derive(Clone, Debug)]
 struct SceneObject {
     name: String,
@@ -96,10 +97,10 @@ pub fn load(path: &Path) -> Result<Scene, FileError> {
     load_with(path, &ReadOptions::new())
 }
 
-/// Reads a file as [`load`] does, with another root, packages, or other limits.
+/// Reads a file like [`load`], with options for the root folder, packages and limits.
 ///
-/// The root of a robot is the folder of the ROS package that its URDF file is in, if it is in one, and the folder of
-/// the file otherwise.
+/// If the URDF file of a robot is in a ROS package, the default root is the folder of the package.
+/// Otherwise it is the folder of the file.
 ///
 /// # Errors
 /// As [`load`].
@@ -117,7 +118,7 @@ pub fn load_with(path: &Path, options: &ReadOptions) -> Result<Scene, FileError>
 }
 
 impl SceneFile {
-    /// Resolves the scene: reads the files that it names, with paths relative to the folder.
+    /// Resolves the scene: reads the files that it names. Paths are relative to `folder`.
     ///
     /// # Errors
     /// As [`Scene::read`], without lines.
@@ -125,8 +126,8 @@ impl SceneFile {
         self.resolve_with(folder, &ReadOptions::new())
     }
 
-    /// Resolves the scene as [`Self::resolve`] does, with another root than the folder, packages,
-    /// or other limits.
+    /// Resolves the scene like [`Self::resolve`], with options for the root folder, packages and
+    /// limits.
     ///
     /// # Errors
     /// As [`Self::resolve`].
@@ -147,7 +148,8 @@ impl Scene {
         Self::read_with(path, &ReadOptions::new())
     }
 
-    /// Reads a scene file as [`Self::read`] does, with another root, packages, or other limits.
+    /// Reads a scene file like [`Self::read`], with options for the root folder, packages and
+    /// limits.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -158,7 +160,8 @@ impl Scene {
         Self::of_text(Source::new(path.to_owned(), text), files)
     }
 
-    /// Parses a document. The path names it in errors, and its folder contains the files that it names.
+    /// Parses a document. Errors contain `path`, and the files that the document names are relative
+    /// to its folder.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -166,7 +169,8 @@ impl Scene {
         Self::from_json_with(path, text, &ReadOptions::new())
     }
 
-    /// Parses a document as [`Self::from_json`] does, with another root, packages, or other limits.
+    /// Parses a document like [`Self::from_json`], with options for the root folder, packages and
+    /// limits.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -187,47 +191,50 @@ impl Scene {
         Self::resolve(source, file, meshes)
     }
 
-    /// The document.
+    /// Returns the document.
     #[must_use]
     pub const fn file(&self) -> &SceneFile {
         &self.file
     }
 
-    /// The number of dimensions.
+    /// Returns the number of dimensions.
     #[must_use]
     pub const fn dimension(&self) -> Dimension {
         self.file.dimension
     }
 
-    /// The scalar of the document; a world may have another.
+    /// Returns the scalar of the document. A world may be created with another scalar.
     #[must_use]
     pub const fn scalar(&self) -> ScalarFile {
         self.file.scalar
     }
 
-    /// The axis that points up in pictures.
+    /// Returns the axis that points up in pictures.
     #[must_use]
     pub const fn up(&self) -> UpAxis {
         self.file.up
     }
 
-    /// The names of the objects, in the order of the objects in worlds: objects, parts of meshes, links of robots.
+    /// Returns the names of the objects in the order in which worlds contain them: `objects` first,
+    /// then the parts of `meshes`, then the links of `robots`.
     pub fn names(&self) -> impl ExactSizeIterator<Item = &str> {
         self.objects.iter().map(|object| object.name.as_str())
     }
 
-    /// The mesh files that were read, by path, with the reports of their parts.
+    /// Returns the mesh files that were read, with their paths. Their parts contain the reports of
+    /// defects.
     pub fn mesh_files(&self) -> impl Iterator<Item = (&Path, &MeshFile)> {
         self.meshes.iter()
     }
 
-    /// The joints of robots whose values are outside the limits of their URDF files. The scene is valid all the same.
+    /// Returns the joints of robots whose values are outside the limits of their URDF files. Such a
+    /// scene is still valid.
     #[must_use]
     pub fn joints_beyond_limits(&self) -> &[JointBeyondLimits] {
         &self.joints_beyond_limits
     }
 
-    /// Whether an object moves.
+    /// Returns `true` if at least one object moves.
     #[must_use]
     pub fn has_motion(&self) -> bool {
         self.objects.iter().any(|object| object.motion.is_some())

@@ -1,4 +1,4 @@
-//! The objects of a scene in the scalar and dimension of a world.
+//! Converts the objects of a scene to the scalar and dimension of a world.
 
 use impinge::narrow_phase::GeometricQueryType;
 use impinge::shape::ShapeHandle;
@@ -11,7 +11,7 @@ use crate::error::{Fault, Within};
 use crate::format::{QueryTypeFile, ShapeFile, ShapeRef};
 use crate::{FileError, Problem};
 
-/// An object with the arguments of the call that adds it to a world.
+/// An object, and the arguments with which it is added to a world.
 pub(super) struct PlacedObject<'a, N: SceneSpace<D>, const D: usize> {
     pub(super) object: &'a SceneObject,
     pub(super) position: N::Isometry,
@@ -20,10 +20,11 @@ pub(super) struct PlacedObject<'a, N: SceneSpace<D>, const D: usize> {
 }
 
 impl Scene {
-    /// Makes a collision world with the objects, in their order, not updated yet. The data of an object is its name.
+    /// Creates a collision world with the objects in their order. The world is not updated yet. The
+    /// data of an object is its name.
     ///
-    /// Objects that share a shape in the document share its handle. The cost is that of making the shapes, and O(log n)
-    /// for each object.
+    /// Objects that share a shape in the document share its handle. The cost is that of building
+    /// the shapes, plus O(log n) for each object.
     ///
     /// # Errors
     /// If the dimension differs from that of the scene, or if the library rejects a shape, a
@@ -41,7 +42,7 @@ impl Scene {
         Ok(world)
     }
 
-    /// Makes a shape for queries: by its name in the document, or from JSON as in a scene file.
+    /// Builds a shape for queries from its name in the document, or from JSON as in a scene file.
     ///
     /// ```
     /// use impinge_files::Scene;
@@ -55,8 +56,8 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// If there is no such shape, the JSON is not that of a shape, the library rejects its values, or a mesh file that
-    /// the JSON names cannot be read.
+    /// If there is no such shape, the JSON is not that of a shape, the library rejects its values,
+    /// or a mesh file that the JSON names cannot be read.
     pub fn shape<N: SceneSpace<D>, const D: usize>(
         &self,
         shape: &str,
@@ -71,7 +72,8 @@ impl Scene {
                 ShapeRef::Inline(Box::new(parsed.map_err(wrong)?))
             }
         };
-        // The table shares the files of the scene, and reads those that only this shape names.
+        // The copy of the table shares the files of the scene, and reads those that only this shape
+        // names.
         let mut meshes = self.meshes.clone();
         meshes.read_all(&file)?;
         self.builder(&meshes).make(&file).map_err(|fault| match fault.is_absolute {
@@ -80,7 +82,7 @@ impl Scene {
         })
     }
 
-    /// Returns the objects for a world of this scalar and dimension.
+    /// Returns the objects, converted for a world of this scalar and dimension.
     pub(super) fn placed<N: SceneSpace<D>, const D: usize>(
         &self,
     ) -> Result<Vec<PlacedObject<'_, N, D>>, FileError> {
@@ -92,8 +94,8 @@ impl Scene {
         placed.map_err(|fault| self.source.error(fault))
     }
 
-    /// Makes the shape of each form. Named shapes are made even if no object uses them, and their errors have their own
-    /// path.
+    /// Builds the shape of each form. Named shapes are built even if no object uses them; their
+    /// errors contain the path of the named shape.
     fn shapes<N: SceneSpace<D>, const D: usize>(&self) -> Result<Vec<ShapeHandle<N, D>>, Fault> {
         let mut builder = self.builder(&self.meshes);
         for name in self.file.shapes.keys() {
@@ -102,7 +104,8 @@ impl Scene {
         let forms = self.forms.iter().map(|form| {
             let made = builder.make(&form.shape);
             if form.member.is_empty() {
-                // For a part or link only the problem is kept: the document has no path to it.
+                // The path within the shape is dropped, since the document does not contain the
+                // shape of a part or link.
                 return made.map_err(|fault| Fault::from(fault.problem).within(&form.path));
             }
             made.within(form.member).within(&form.path)

@@ -1,4 +1,4 @@
-//! Positions and motions of scenes, in `f64`, before the scalar of a world is known.
+//! Positions and motions of scenes in `f64`, before they are converted to the scalar of a world.
 
 use impinge::math::na::{
     Isometry2, Isometry3, Quaternion, Translation2, Translation3, UnitComplex, UnitQuaternion,
@@ -10,23 +10,23 @@ use crate::error::{Fault, Within};
 use crate::format::{AngularVelocity, MotionFile, PoseFile, RotationFile};
 use crate::{Dimension, Problem};
 
-/// A position of either dimension.
+/// A position in 2D or 3D.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Placement {
     Two(Isometry2<f64>),
     Three(Isometry3<f64>),
 }
 
-/// Constant velocities; angular velocities are in radians per second.
+/// Constant velocities of an object. Angular velocities are in radians per second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Motion {
     velocity: Vector3<f64>,
-    /// Along the axis of the rotation: along z in 2D.
+    /// The angular velocity, a vector along the axis of the rotation; along z in 2D.
     angular: Vector3<f64>,
 }
 
 impl Placement {
-    /// Reads the position of a file.
+    /// Converts a position of a scene file.
     pub(crate) fn read(pose: &PoseFile, dimension: Dimension) -> Result<Self, Fault> {
         let translation = pose.translation.as_ref();
         let translation = translation.map_or(Ok(Vector3::zeros()), |numbers| {
@@ -60,7 +60,7 @@ impl Placement {
         N::isometry_of(&numbers).ok_or(Problem::OtherWorld { scene, asked: D })
     }
 
-    /// Returns the position translated in the frame of the world.
+    /// Returns the position, translated by a vector in the frame of the world.
     pub(crate) fn translated(mut self, by: Vector3<f64>) -> Self {
         match &mut self {
             Self::Two(at) => at.translation.vector += by.xy(),
@@ -69,8 +69,8 @@ impl Placement {
         self
     }
 
-    /// Returns the position after some seconds of a motion. It is computed from the start, so that no error
-    /// accumulates.
+    /// Returns the position after `seconds` of a motion. It is computed from the start, so that no
+    /// error accumulates.
     pub(crate) fn after(self, motion: &Motion, seconds: f64) -> Self {
         let mut moved = self.translated(motion.velocity * seconds);
         let angle = motion.angular * seconds;
@@ -83,7 +83,7 @@ impl Placement {
 }
 
 impl Motion {
-    /// Reads the motion of a file; `None` at rest.
+    /// Converts a motion of a scene file; `None` if both velocities are zero.
     pub(crate) fn read(motion: &MotionFile, dimension: Dimension) -> Result<Option<Self>, Fault> {
         let velocity = motion.velocity.as_ref();
         let velocity = velocity.map_or(Ok(Vector3::zeros()), |numbers| {
@@ -104,7 +104,7 @@ impl Motion {
     }
 }
 
-/// Converts coordinates to a vector, whose z is 0 in 2D.
+/// Converts coordinates to a vector. In 2D its z is 0.
 pub(crate) fn vector(numbers: &[f64], dimension: Dimension) -> Result<Vector3<f64>, Problem> {
     match (numbers, dimension) {
         (&[x, y], Dimension::Two) => Ok(Vector3::new(x, y, 0.0)),
@@ -158,9 +158,9 @@ fn turn3(rotation: &RotationFile) -> Result<UnitQuaternion<f64>, Fault> {
     }
 }
 
-/// Returns the vector scaled to length 1.
+/// Returns the vector scaled to length 1; an error if it is zero or not finite.
 pub(crate) fn unit(vector: Vector3<f64>) -> Result<Vector3<f64>, Problem> {
-    // Dividing by the largest component first avoids overflow and underflow of squares.
+    // Dividing by the largest component first avoids overflow and underflow of the squares.
     let scaled = vector / vector.amax();
     let unit = scaled.normalize();
     let is_usable = unit.iter().all(|x| x.is_finite());
@@ -172,26 +172,28 @@ pub(crate) const fn not_a_direction(length: f64) -> Problem {
     Problem::BadValue { what: "the length must be finite and not zero", value: length }
 }
 
-/// Returns a rotation in 2D. `libm` gives the same bits on every platform.
+/// Returns the 2D rotation by an angle. `libm` returns the same bits on every platform.
 fn turn_by(radians: f64) -> UnitComplex<f64> {
     UnitComplex::from_cos_sin_unchecked(libm::cos(radians), libm::sin(radians))
 }
 
-/// Returns the rotation by an angle in radians about a vector of any length; the identity for the zero vector.
+/// Returns the rotation by an angle in radians about a vector of any length; the identity if the
+/// vector is zero or not finite.
 pub(crate) fn about(axis: Vector3<f64>, radians: f64) -> UnitQuaternion<f64> {
     let Ok(axis) = unit(axis) else { return UnitQuaternion::identity() };
     let half = 0.5 * radians;
     turn_by_half(axis, [libm::sin(half), libm::cos(half)])
 }
 
-/// Returns the rotation about a unit vector by twice the angle with this sine and cosine.
+/// Returns the rotation about a unit vector by twice the angle that has this sine and cosine.
 fn turn_by_half(axis: Vector3<f64>, [sine, cosine]: [f64; 2]) -> UnitQuaternion<f64> {
     let vector = axis * sine;
     UnitQuaternion::new_normalize(Quaternion::new(cosine, vector.x, vector.y, vector.z))
 }
 
-/// Returns sine and cosine of an angle in degrees, exact for multiples of a quarter turn: the angle is reduced to at
-/// most an eighth of a turn, and the omitted quarters exchange and negate the two.
+/// Returns the sine and the cosine of an angle in degrees, exact for multiples of a quarter turn.
+/// The angle is reduced to at most an eighth of a turn. The removed quarter turns exchange and
+/// negate the two values.
 fn sine_cosine(degrees: f64) -> [f64; 2] {
     let rest = degrees % 360.0;
     let quarters = libm::round(rest / 90.0);

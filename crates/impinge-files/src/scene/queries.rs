@@ -15,14 +15,14 @@ use crate::format::{CastFile, QueryFile, RayFile};
 /// A query of a scene, for [`Query::ask`] and [`Recorder::ask`](impinge_record::Recorder::ask).
 #[derive(Clone, Debug)]
 pub struct NamedQuery<N: SceneSpace<D>, const D: usize> {
-    /// Its name.
+    /// The name in the document.
     pub name: String,
     /// The query.
     pub query: Query<N, D>,
 }
 
 impl Scene {
-    /// The queries of the document, in order of their names.
+    /// Returns the queries of the document, in order of their names.
     ///
     /// ```
     /// use impinge_files::Scene;

@@ -1,4 +1,4 @@
-//! Resolves a document to a scene: reads files, expands grids, compares names.
+//! Resolves a document to a scene: reads files, expands grids, and checks that names are unique.
 
 use std::collections::BTreeSet;
 
@@ -35,19 +35,19 @@ impl From<Fault> for ResolveError {
     }
 }
 
-/// The objects collected so far.
+/// The objects and files that were collected from the document so far.
 struct Collected<'a> {
     file: &'a SceneFile,
     forms: Vec<Form>,
     objects: Vec<Draft<'a>>,
-    /// The number of bytes of the names of the objects.
+    /// The total number of bytes of the names of the objects.
     names: usize,
     disabled: BTreeSet<DisabledPair>,
     meshes: MeshTable,
     joints_beyond_limits: Vec<JointBeyondLimits>,
 }
 
-/// An object without its groups, which can be computed only when all objects are known.
+/// An object without its groups, which are computed after all objects are known.
 struct Draft<'a> {
     name: String,
     form: usize,
@@ -55,7 +55,7 @@ struct Draft<'a> {
     common: Common<'a>,
 }
 
-/// The common data of all objects of one entry of the document.
+/// The data that all objects of one entry of the document have in common.
 #[derive(Clone, Copy)]
 struct Common<'a> {
     groups: &'a GroupsFile,
@@ -64,7 +64,8 @@ struct Common<'a> {
 }
 
 impl Scene {
-    /// Resolves a parsed document; also returns the table of the files that were read.
+    /// Resolves a parsed document to a scene, which keeps the table of the mesh files that were
+    /// read.
     pub(super) fn resolve(
         source: Source,
         file: SceneFile,
@@ -95,7 +96,7 @@ impl<'a> Collected<'a> {
         }
     }
 
-    /// Adds all objects in their order, and reads all files.
+    /// Reads all files of the document, and adds all objects in their order.
     fn add_all(&mut self) -> Result<(), ResolveError> {
         let file = self.file;
         file.shapes.values().try_for_each(|shape| self.meshes.read_files(shape))?;
@@ -142,8 +143,8 @@ impl<'a> Collected<'a> {
         Ok(())
     }
 
-    /// Checks the limits before `objects` objects are added, whose names have `names` bytes
-    /// together.
+    /// Checks the limits before `objects` objects with names of `names` bytes in total are added,
+    /// and counts these bytes.
     fn expect(&mut self, objects: usize, names: usize) -> Result<(), Problem> {
         let files = &self.meshes.files;
         let total = self.objects.len().saturating_add(objects);
@@ -215,7 +216,7 @@ impl<'a> Collected<'a> {
         self.objects.push(Draft { name, form, start, common });
     }
 
-    /// Moves the objects out of the collection, with their groups.
+    /// Moves the objects out of the collection, and computes their groups.
     fn take_objects(&mut self) -> Result<Vec<SceneObject>, Fault> {
         self.check_names()?;
         let drafts = std::mem::take(&mut self.objects);
@@ -243,7 +244,7 @@ impl<'a> Collected<'a> {
     }
 }
 
-/// A grid of objects: the count along each axis, and the distances.
+/// A grid of objects: the count along each axis, and the distance between neighbors.
 struct Grid {
     count: Vec<usize>,
     spacing: Vector3<f64>,
@@ -267,13 +268,13 @@ impl Grid {
         self.count.iter().fold(1, |product: usize, count| product.saturating_mul(*count))
     }
 
-    /// The largest number of bytes of the indices in a name, with their brackets.
+    /// Returns the maximum number of bytes of the indices in a name, with their brackets.
     fn text_len(&self) -> usize {
         let digits = |count: &usize| count.to_string().len() + 1;
         self.count.iter().map(digits).sum::<usize>() + 1
     }
 
-    /// Returns the index along each axis; the last axis runs fastest.
+    /// Returns the indices of an object along each axis. The last axis varies fastest.
     fn indices(&self, index: usize) -> Vec<usize> {
         let mut rest = index;
         let mut indices = vec![0; self.count.len()];
@@ -284,7 +285,7 @@ impl Grid {
         indices
     }
 
-    /// Returns the offset from the first object to the one with these indices.
+    /// Returns the offset from the first object of the grid to the object with these indices.
     fn offset(&self, indices: &[usize]) -> Vector3<f64> {
         let mut offset = Vector3::zeros();
         for (axis, index) in indices.iter().enumerate() {
@@ -294,7 +295,7 @@ impl Grid {
     }
 }
 
-/// Formats indices as they occur in names, such as `[2,0,1]`.
+/// Formats indices as they occur in names, without the brackets, such as `2,0,1`.
 fn text_of(indices: &[usize]) -> String {
     indices.iter().map(ToString::to_string).collect::<Vec<_>>().join(",")
 }

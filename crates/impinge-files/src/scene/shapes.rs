@@ -19,26 +19,27 @@ use crate::files::check;
 use crate::format::{ChildFile, DiagonalsFile, HeightFieldFile, MeshSource, ShapeFile, ShapeRef};
 use crate::{Dimension, Limit, Problem};
 
-/// The key of the shape of a mesh file: path, part, bits of the scale, kind. Sources with equal
-/// keys share one shape.
+/// Identifies the shape of a mesh file: its path, part, bits of the scale, and kind. Sources with
+/// equal keys share one shape.
 type MeshKey = (PathBuf, Option<String>, [u64; 3], u8);
 
-/// Makes shapes. Each named shape is made once.
+/// Builds shapes. Each named shape is built once.
 pub(super) struct Builder<'a, N: SceneSpace<D>, const D: usize> {
     dimension: Dimension,
     shapes: &'a BTreeMap<String, ShapeFile>,
     meshes: &'a MeshTable,
     made: BTreeMap<&'a str, ShapeHandle<N, D>>,
     of_files: BTreeMap<MeshKey, ShapeHandle<N, D>>,
-    /// The number of vertices and triangle corners of the shapes of mesh files made so far.
+    /// The number of vertices and triangle corners of the shapes that were built from mesh files so
+    /// far.
     elements: usize,
-    /// The names of the shapes that contain the one being made, to detect cycles.
+    /// The names of the shapes that contain the shape under construction, to detect cycles.
     holders: Vec<&'a str>,
     depth: u32,
 }
 
 impl<'a, N: SceneSpace<D>, const D: usize> Builder<'a, N, D> {
-    /// Creates a builder without shapes.
+    /// Creates a builder that has not built any shape yet.
     pub(super) const fn new(
         dimension: Dimension,
         shapes: &'a BTreeMap<String, ShapeFile>,
@@ -56,7 +57,7 @@ impl<'a, N: SceneSpace<D>, const D: usize> Builder<'a, N, D> {
         }
     }
 
-    /// Returns the shape of a reference.
+    /// Returns the shape of a reference, which is built at its first use.
     pub(super) fn make(&mut self, shape: &ShapeRef) -> Result<ShapeHandle<N, D>, Fault> {
         let limit = MAX_DEPTH as usize;
         if self.depth > MAX_DEPTH {
@@ -90,8 +91,7 @@ impl<'a, N: SceneSpace<D>, const D: usize> Builder<'a, N, D> {
         Ok(made)
     }
 
-    /// Makes an inline shape; an error in it has the kind of the shape as the first step of its
-    /// path.
+    /// Builds an inline shape. The path of an error starts with the kind of the shape.
     fn inline(&mut self, shape: &ShapeFile) -> Result<ShapeHandle<N, D>, Fault> {
         self.shape(shape).within(kind_of(shape))
     }
@@ -156,7 +156,7 @@ impl<'a, N: SceneSpace<D>, const D: usize> Builder<'a, N, D> {
         }
     }
 
-    /// Makes the shape of a mesh file. Sources with equal path, part, scale and kind share one
+    /// Builds the shape of a mesh file. Sources with equal path, part, scale and kind share one
     /// shape.
     fn mesh_file(&mut self, source: &MeshSource) -> Result<ShapeHandle<N, D>, Fault> {
         let scale = source.scale.factors().map(f64::to_bits);
@@ -184,7 +184,7 @@ impl<'a, N: SceneSpace<D>, const D: usize> Builder<'a, N, D> {
         Ok(ShapeHandle::new(Plane::<N, D>::new(Unit::new_normalize(normal))))
     }
 
-    /// Makes a shape that exists in one dimension only.
+    /// Builds a shape that exists in one dimension only.
     fn own(&self, data: &ShapeData<N, D>, what: &'static str) -> Result<ShapeHandle<N, D>, Fault> {
         N::own_shape(data).map_err(|problem| match problem {
             RecordProblem::Library(error) => sized(error),
@@ -214,7 +214,7 @@ impl<'a, N: SceneSpace<D>, const D: usize> Builder<'a, N, D> {
     }
 }
 
-/// The member that names the kind of a shape.
+/// Returns the name of the member for a kind of shape.
 const fn kind_of(shape: &ShapeFile) -> &'static str {
     match shape {
         ShapeFile::Ball { .. } => "ball",
@@ -246,8 +246,8 @@ fn handle<N: SceneSpace<D>, const D: usize>(
     made.map(ShapeHandle::new).map_err(Into::into)
 }
 
-/// Returns an error at the member of the file that gives a size; the library has another name for
-/// it.
+/// Adds to an error of a size the member of the file that contains the size, since the library uses
+/// other names.
 fn sized(error: impl Into<LibraryError>) -> Fault {
     let error = error.into();
     let member = match &error {
@@ -265,7 +265,7 @@ fn sized(error: impl Into<LibraryError>) -> Fault {
     member.into_iter().fold(error.into(), Fault::within)
 }
 
-/// Converts coordinates; an error if their number differs from the dimension.
+/// Converts coordinates to a vector; an error if their number differs from the dimension.
 pub(super) fn coordinates<N: SceneSpace<D>, const D: usize>(
     numbers: &[f64],
 ) -> Result<Vector<N, D>, Problem> {
@@ -275,7 +275,7 @@ pub(super) fn coordinates<N: SceneSpace<D>, const D: usize>(
     Ok(Vector::from_fn(|axis, _| N::lit(numbers[axis])))
 }
 
-/// Converts the points of a member.
+/// Converts a list of points. The path of an error starts with `member` and the index.
 fn points<N: SceneSpace<D>, const D: usize>(
     given: &[Vec<f64>],
     member: &str,
@@ -286,7 +286,7 @@ fn points<N: SceneSpace<D>, const D: usize>(
     given.iter().enumerate().map(read).collect()
 }
 
-/// Converts `COUNT` points of a member.
+/// Converts a list of `COUNT` points.
 fn corners<N: SceneSpace<D>, const D: usize, const COUNT: usize>(
     given: &[Vec<f64>; COUNT],
     member: &str,
@@ -295,7 +295,7 @@ fn corners<N: SceneSpace<D>, const D: usize, const COUNT: usize>(
     Ok(core::array::from_fn(|index| read[index]))
 }
 
-/// The segment of a capsule.
+/// The segment of a capsule: half its length on the y axis, or its two ends.
 enum EndsOf<N: SceneSpace<D>, const D: usize> {
     HalfHeight(N),
     Points([Point<N, D>; 2]),
@@ -353,14 +353,14 @@ fn line<N: SceneSpace<D>, const D: usize>(
     })
 }
 
-/// The flag of a removed cell: both its triangles, or in 2D its segment.
+/// The mark of a removed cell in 2D (its segment) and in 3D (both its triangles).
 const HOLE: [u8; 2] = [1, 3];
-/// The flag of a cell with the other diagonal.
+/// The mark of a cell that is cut along the backward diagonal.
 const BACKWARD: u8 = 4;
-/// The flag of a ghost.
+/// The mark of a ghost cell.
 const GHOST: u8 = 8;
 
-/// Returns the arguments of a height field, with flags for each cell.
+/// Returns the data of a height field, with a mark for each cell.
 fn field<N: SceneSpace<D>, const D: usize>(
     file: &HeightFieldFile,
     dimension: Dimension,
@@ -403,7 +403,7 @@ fn field<N: SceneSpace<D>, const D: usize>(
     }))
 }
 
-/// The number of parts of a shape.
+/// Returns the number of parts of a shape; 1 if it is not a composite.
 fn num_parts<N: SceneSpace<D>, const D: usize>(shape: &ShapeHandle<N, D>) -> usize {
     shape.geometry().as_composite().map_or(1, |composite| composite.num_parts() as usize)
 }

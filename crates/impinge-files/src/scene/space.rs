@@ -1,4 +1,4 @@
-//! Construction of the shapes that differ by dimension.
+//! Builds the shapes whose types differ between 2D and 3D.
 
 use impinge::dim2::shape::ConvexPolygon;
 use impinge::dim3::shape::ConvexHull;

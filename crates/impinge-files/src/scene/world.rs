@@ -1,4 +1,4 @@
-//! The world of a scene: a recorded world whose objects have names and move.
+//! The world of a scene, whose objects have names and move, with a recorder.
 
 use core::num::NonZeroU64;
 use core::ops::Deref;
@@ -45,7 +45,7 @@ pub struct SceneWorld<N: SceneSpace<D>, const D: usize> {
     seconds: f64,
 }
 
-/// An object that moves.
+/// The handle, start and motion of an object that moves.
 #[derive(Debug)]
 struct Mover {
     handle: CollisionObjectHandle,
@@ -54,11 +54,11 @@ struct Mover {
 }
 
 impl Scene {
-    /// Makes a recorded world with the objects, in their order, not updated yet. The data of an object is its
-    /// name.
+    /// Creates a recorded world with the objects in their order. The world is not updated yet. The
+    /// data of an object is its name.
     ///
-    /// The recorder stores every shape; [`Self::collision_world`] avoids that. The recording needs no registered
-    /// shapes or filters.
+    /// The recorder stores every shape, which [`Self::collision_world`] avoids. The recording needs
+    /// no registered shapes or filters.
     ///
     /// # Errors
     /// If [`Self::collision_world`] would return an error, or a shape has more parts than
@@ -99,7 +99,7 @@ impl<N: SceneSpace<D>, const D: usize> SceneWorld<N, D> {
         Ok(())
     }
 
-    /// Moves the objects as [`Self::step`] does, but does not update the world: positions can be
+    /// Moves the objects like [`Self::step`], without updating the world. Positions can then be
     /// read before the update.
     ///
     /// # Errors
@@ -118,13 +118,13 @@ impl<N: SceneSpace<D>, const D: usize> SceneWorld<N, D> {
         Ok(())
     }
 
-    /// The seconds since the start.
+    /// Returns the elapsed time in seconds, which is the sum over all steps.
     #[must_use]
     pub const fn seconds(&self) -> f64 {
         self.seconds
     }
 
-    /// Returns the object of a name.
+    /// Returns the handle of the object with this name. The handle may be stale.
     #[must_use]
     pub fn handle(&self, name: &str) -> Option<CollisionObjectHandle> {
         self.handles.get(name).copied()

@@ -1,5 +1,5 @@
-//! Truncated files and files with changed bytes: typed errors, no panic, no more memory than the file
-//! explains.
+//! Tests truncated files and files with random bytes: each gives a typed error or a valid mesh,
+//! never a panic, and no more memory than the size of the file allows.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,8 @@ use impinge_files::{FileError, MeshFile, Problem, Scene, load};
 
 use crate::cube::samples;
 
-/// A small random number generator, the same on every run (Marsaglia, *Xorshift RNGs*, 2003).
+/// A random number generator with a fixed sequence for each seed (Marsaglia, *Xorshift RNGs*,
+/// 2003).
 struct Numbers(u64);
 
 impl Numbers {
@@ -24,7 +25,8 @@ impl Numbers {
     }
 }
 
-/// Checks the result for any bytes: an error that names the file, or parts within the bounds of the file.
+/// Checks the result of reading arbitrary bytes: an error that contains the path, or parts no
+/// larger than the file.
 fn check(path: &Path, bytes: &[u8]) -> Result<MeshFile, FileError> {
     let read = MeshFile::parse(path, bytes);
     match &read {
@@ -52,7 +54,7 @@ fn files_cut_at_every_length() {
         for length in 0..sample.bytes.len() {
             refused += usize::from(check(&sample.path(), &sample.bytes[..length]).is_err());
         }
-        // The end of a text may be missing without an error.
+        // The last lines of a text may be missing without an error.
         assert!(refused > sample.bytes.len() / 4, "{}: {refused} refused", sample.name);
     }
 }

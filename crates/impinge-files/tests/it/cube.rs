@@ -1,8 +1,8 @@
-//! A cube in every format, written by hand.
+//! A cube in every mesh format, written by hand.
 
 use std::path::PathBuf;
 
-/// The corners of the cube from 0 to 2.
+/// The corners of the cube, whose coordinates are 0 or 2.
 pub(crate) const CORNERS: [[f32; 3]; 8] = [
     [0.0, 0.0, 0.0],
     [2.0, 0.0, 0.0],
@@ -18,12 +18,12 @@ pub(crate) const CORNERS: [[f32; 3]; 8] = [
 pub(crate) const QUADS: [[u32; 4]; 6] =
     [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
 
-/// The sides of the cube as triangles.
+/// Returns the sides of the cube as triangles.
 pub(crate) fn triangles() -> Vec<[u32; 3]> {
     QUADS.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect()
 }
 
-/// A file as bytes.
+/// A mesh file in memory.
 pub(crate) struct Sample {
     pub(crate) name: &'static str,
     pub(crate) bytes: Vec<u8>,
@@ -35,14 +35,14 @@ impl Sample {
     }
 }
 
-/// The cube in every format.
+/// Returns the cube in every mesh format.
 pub(crate) fn samples() -> Vec<Sample> {
     let sample = |name, bytes| Sample { name, bytes };
     vec![
         sample("quads.obj", obj().into_bytes()),
         sample("ascii.stl", stl_text().into_bytes()),
         sample("binary.stl", stl_binary(b"a cube")),
-        // The header of a binary file may begin with the word of a text file.
+        // The header of a binary file may also begin with `solid`.
         sample("misleading.stl", stl_binary(b"solid cube")),
         sample("ascii.ply", ply_text().into_bytes()),
         sample("little.ply", ply_binary(true)),
@@ -65,7 +65,7 @@ pub(crate) fn obj() -> String {
     text
 }
 
-/// The cube with its fronts inside, like the walls of a room.
+/// Returns the cube as OBJ with its fronts inside, like the walls of a room.
 pub(crate) fn obj_inside_out() -> String {
     let lines = obj();
     let turned = lines.lines().map(|line| match line.strip_prefix("f ") {
@@ -138,7 +138,7 @@ pub(crate) fn ply_binary(is_little: bool) -> Vec<u8> {
     bytes
 }
 
-/// Returns the bytes of positions, followed by indices of 16 bits.
+/// Returns the bytes of the positions, followed by indices of 16 bits.
 pub(crate) fn gltf_buffer() -> Vec<u8> {
     let mut bytes: Vec<u8> = CORNERS.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
     let indices = triangles().into_iter().flatten();
@@ -146,8 +146,8 @@ pub(crate) fn gltf_buffer() -> Vec<u8> {
     bytes
 }
 
-/// Returns the JSON of a file in which a node that mirrors the cube contains a node that translates
-/// it: triangles must be reversed.
+/// Returns the JSON of a file in which a mirroring node contains a translating node with the cube.
+/// The reader must reverse the triangles.
 fn gltf_json(buffer: &str) -> String {
     format!(
         r#"{{"asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"nodes": [0]}}],
@@ -165,20 +165,21 @@ pub(crate) fn gltf_text() -> String {
     gltf_with("")
 }
 
-/// Returns the cube with more buffers behind its own.
+/// Returns a glTF file of the cube, with additional buffers after its own.
 pub(crate) fn gltf_with(more: &str) -> String {
     let data = base64(&gltf_buffer());
     let text = gltf_json(&format!("\"uri\": \"data:application/octet-stream;base64,{data}\", "));
     text.replace("\"byteLength\": 168}", &format!("\"byteLength\": 168}}{more}"))
 }
 
-/// Returns the cube with its buffer in a file.
+/// Returns a glTF file of the cube, with its buffer at a URI.
 pub(crate) fn gltf_with_uri(uri: &str) -> String {
     gltf_json(&format!("\"uri\": \"{uri}\", "))
 }
 
-/// The first corner is the origin and is not stored: the accessor of the positions has no view of its own, and
-/// seven sparse elements with the indices from 1 to 7.
+/// Returns a glTF file of the cube with sparse positions. Their accessor has no view, so that all
+/// elements are 0, and stores seven sparse elements with the indices 1 to 7. The first corner is
+/// the origin and is not stored.
 pub(crate) fn gltf_sparse() -> String {
     let sparse = "\"sparse\": {\"count\": 7, \"indices\": {\"bufferView\": 2, \"componentType\": 5121}, \
                   \"values\": {\"bufferView\": 0, \"byteOffset\": 12}}, \"componentType\": 5126";
@@ -204,7 +205,7 @@ pub(crate) fn glb() -> Vec<u8> {
     glb_with("{\"byteLength\": 168}", 168)
 }
 
-/// Returns a binary file with these buffers, and a binary chunk of `bytes` bytes.
+/// Returns a binary file of the cube with these buffers, and a binary chunk of `bytes` bytes.
 pub(crate) fn glb_with(buffers: &str, bytes: usize) -> Vec<u8> {
     let mut json = gltf_json("").replace("{\"byteLength\": 168}", buffers).into_bytes();
     while !json.len().is_multiple_of(4) {
@@ -225,7 +226,7 @@ pub(crate) fn glb_with(buffers: &str, bytes: usize) -> Vec<u8> {
     bytes
 }
 
-/// Returns a number as 32 bits.
+/// Returns a number as four bytes, little-endian.
 fn word(number: usize) -> [u8; 4] {
     u32::try_from(number).expect("a small file").to_le_bytes()
 }

@@ -1,4 +1,4 @@
-//! Reads one cube from every format.
+//! Tests that every format gives the same cube.
 
 use std::fs;
 
@@ -37,7 +37,7 @@ fn the_shape_is_a_box_at_every_distance() {
         let world = scene.collision_world::<f64, 3>().expect("of three dimensions");
         let mesh = world.collision_objects().next().expect("one object").shape().clone();
         for step in 0..40 {
-            // The points lie around the cube, at growing distances.
+            // The points lie around the cube, at increasing distances.
             let (angle, far) = (f64::from(step), 2.5 + 0.1 * f64::from(step));
             let point = [1.0 + far * angle.cos(), 1.0 + far * angle.sin(), 1.0 + 0.3 * angle.cos()];
             let place = Isometry::translation(point[0], point[1], point[2]);
@@ -78,7 +78,8 @@ fn a_solid_has_an_inside_and_a_hull_of_it_is_convex() {
 fn a_room_keeps_its_fronts_unless_it_shall_be_solid() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("room.obj"), obj_inside_out()).expect("it is written");
-    // A ball of radius 0.5 overlaps a wall of the room from 0 to 2 by 0.1, from inside or from outside.
+    // A ball of radius 0.5 overlaps the wall x = 0 of the room by 0.1 if it is at x = 0.4 (inside)
+    // or x = -0.4 (outside).
     let touches = |kind: &str, scale: [f64; 3], x: f64| {
         let text = format!(
             r#"{{"dimension": 3, "meshes": [{{"path": "room.obj", "as": "{kind}", "scale": {scale:?}}}],
@@ -105,14 +106,14 @@ fn a_room_keeps_its_fronts_unless_it_shall_be_solid() {
 
 #[test]
 fn sparse_elements_replace_those_of_the_view() {
-    // One element, with the index 6 and the value of the first corner, in front of the positions of the view.
+    // One sparse element with index 6 replaces that position of the view by the first corner.
     let text = gltf_sparse()
         .replace("\"count\": 7, \"indices\": {", "\"count\": 1, \"indices\": {\"byteOffset\": 5, ")
         .replace("\"byteOffset\": 12}}", "\"byteOffset\": 0}}, \"bufferView\": 0");
     let file = MeshFile::parse("moved.gltf".as_ref(), text.as_bytes()).expect("it can be read");
     let vertices = &file.parts()[0].vertices;
     assert_eq!(vertices.len(), 7, "two corners are one: {vertices:?}");
-    // The nodes mirror the cube in x = 1.
+    // The nodes mirror the cube at the plane x = 1.
     assert!(!vertices.contains(&[0.0, 2.0, 2.0]), "corner 6 has moved to corner 0: {vertices:?}");
 }
 

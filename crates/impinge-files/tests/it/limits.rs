@@ -1,4 +1,4 @@
-//! Small files that request much memory: limits with typed errors, and shared data.
+//! Tests the limits on small files that request much memory, and the sharing of data.
 
 use std::fs::{self, File};
 use std::path::Path;
@@ -7,7 +7,7 @@ use impinge_files::{Limit, Limits, MeshFile, Problem, ReadOptions, Scene, load, 
 
 use crate::cube::{glb_with, gltf_with, obj};
 
-/// Returns options with some limits.
+/// Returns options with these limits.
 fn limited(limits: Limits) -> ReadOptions {
     ReadOptions::new().with_limits(limits)
 }
@@ -21,8 +21,8 @@ fn assert_beyond<T>(found: Result<T, impinge_files::FileError>, expected: Limit)
     assert!(error.to_string().contains(&format!("`Limits::{}`", expected.name())), "{error}");
 }
 
-/// Returns a glTF file with `nodes` nodes of one mesh, which has `primitives` primitives of one
-/// accessor each.
+/// Returns a glTF file with `nodes` nodes that use the same mesh. The mesh has `primitives`
+/// primitives with the same accessors.
 fn instances(nodes: usize, primitives: usize) -> String {
     let node = "{\"mesh\": 0}";
     let two = "{\"scale\": [-1, 1, 1], \"children\": [1]}, {\"name\": \"cube\", \"mesh\": 0, \"translation\": [-2, 0, 0]}";
@@ -66,7 +66,7 @@ fn a_limit_can_be_raised_and_lowered() {
 
 #[test]
 fn buffers_of_one_chunk_or_file_are_read_once() {
-    // If each buffer copied these bytes, they would take 20 GB.
+    // Twenty thousand copies of the chunk of 1 MiB would take 20 GB.
     let buffers = vec!["{\"byteLength\": 168}"; 20_000].join(",");
     let blob = MeshFile::parse("blob.glb".as_ref(), &glb_with(&buffers, 1 << 20));
     assert_eq!(blob.expect("a cube").parts()[0].triangles.len(), 12);
@@ -91,7 +91,7 @@ fn a_file_of_any_length_is_not_read_beyond_the_limit() {
     let folder = tempfile::tempdir().expect("a folder");
     for name in ["huge.obj", "huge.json", "huge.urdf", "huge.glb"] {
         let path = folder.path().join(name);
-        // A file with a length and no content: a terabyte.
+        // A sparse file with a length of one terabyte and no content.
         File::create(&path).and_then(|file| file.set_len(1 << 40)).expect("a sparse file");
         assert_beyond(load(&path), Limit::Bytes);
     }
@@ -180,7 +180,7 @@ fn elements_without_properties_take_no_time_and_no_memory() {
         let text = kinds(format, 60_000) + &"\n".repeat(100_000);
         let error = MeshFile::parse("kinds.ply".as_ref(), text.as_bytes()).expect_err("too many");
         assert!(matches!(*error.problem, Problem::TooMany { .. }), "{error}");
-        // The file has enough bytes for this number, but its elements are empty.
+        // The file has enough bytes for this number of elements, but the elements are empty.
         let text = kinds(format, 20) + &"\n".repeat(40_000);
         let error =
             MeshFile::parse("kinds.ply".as_ref(), text.as_bytes()).expect_err("no triangle");
@@ -197,7 +197,7 @@ fn polygons_of_very_many_corners_are_refused() {
         let face: String = (1..=corners).map(|corner| format!(" {corner}")).collect();
         format!("{vertices}f{face}\n")
     };
-    // Triangulating it would take too long.
+    // Without the limit, triangulating this polygon would take too long.
     let text = polygon(1 << 20);
     let error = MeshFile::parse("star.obj".as_ref(), text.as_bytes()).expect_err("too many");
     assert_eq!(error.line, Some((1 << 20) + 1), "{error}");

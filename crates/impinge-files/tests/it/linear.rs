@@ -1,4 +1,4 @@
-//! Files that would take too long with an algorithm of quadratic time.
+//! Tests large inputs on which an algorithm of quadratic time would take too long.
 
 use std::fmt::Write;
 use std::fs;
@@ -37,7 +37,8 @@ fn numbers_that_are_taken_are_left_out() {
 
 #[test]
 fn groups_of_a_large_file_have_their_own_vertices() {
-    // Each group costs as much as its faces, however many vertices the file has.
+    // The time for a group is proportional to its faces, independent of the number of vertices of
+    // the file.
     let count = 100_000;
     let mut text = String::new();
     for index in 0..count {
@@ -78,7 +79,7 @@ fn lines_without_end() {
     }
 }
 
-/// A robot of links with small balls, and joints.
+/// Returns the URDF text of a robot with these links and joints.
 fn robot(links: impl Iterator<Item = String>, joints: impl Iterator<Item = String>) -> String {
     format!(
         "<robot name=\"r\">\n{}{}</robot>",
@@ -155,7 +156,7 @@ fn chains_of_joints_that_mimic() {
     let beyond = scene.joints_beyond_limits();
     assert_eq!(beyond.len(), count, "2 and -1.5 by turns");
     assert!(beyond.iter().all(|joint| [2.0, -1.5].contains(&joint.value)));
-    // The first joint follows the last.
+    // Each joint follows the joint before it, and the first joint follows the last: a cycle.
     let joints = (0..count).map(|index| {
         let of = (index + count - 1) % count;
         joint(index, 0, &format!("<mimic joint=\"j{of}\"/>"))
@@ -167,8 +168,8 @@ fn chains_of_joints_that_mimic() {
 #[test]
 fn links_below_a_long_chain_without_solids() {
     let folder = tempfile::tempdir().expect("a folder");
-    // A link with a ball, a chain of links without, and at its end links with balls: each is connected
-    // with the first.
+    // A link with a ball, a chain of links without shapes, and at its end many links with balls.
+    // Each of these is connected to the first link.
     let (chain, leaves) = (20_000, 20_000);
     let links = (0..=chain + leaves)
         .map(|index| if (1..=chain).contains(&index) { bare(index) } else { ball(index) });

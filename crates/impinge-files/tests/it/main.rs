@@ -1,4 +1,4 @@
-//! The public interface of impinge-files: formats, broken files, scenes, robots.
+//! Tests of the public interface of impinge-files: formats, broken files, scenes and robots.
 
 mod broken;
 mod cube;

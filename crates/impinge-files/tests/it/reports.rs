@@ -1,4 +1,4 @@
-//! Reports of mesh defects and their positions.
+//! Tests the reports of mesh defects and their positions in the file.
 
 use impinge_files::{Defect, Defects, MeshFile, MeshReport, Problem};
 

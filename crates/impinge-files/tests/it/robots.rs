@@ -1,4 +1,4 @@
-//! Robots: joints, meshes of packages, and disabled pairs of links.
+//! Tests robots: joints, meshes of packages, and disabled pairs of links.
 
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write;
@@ -12,7 +12,8 @@ use crate::cube::stl_binary;
 
 const PREFIX: &str = r#"<robot name="arm">"#;
 
-/// The world of a robot in a folder, for joint values.
+/// Returns the world of a robot in `folder`. `more` contains further members of the robot, such as
+/// joint values.
 fn world(folder: &Path, urdf: &str, more: &str) -> SceneWorld<f64, 3> {
     scene(folder, urdf, more).world().unwrap_or_else(|error| panic!("{error}"))
 }
@@ -34,7 +35,7 @@ fn assert_at(world: &SceneWorld<f64, 3>, name: &str, expected: [f64; 3]) {
     assert!(apart < 1e-12, "{name} is at {found:?}, not {expected:?}");
 }
 
-/// Returns a link with a small ball.
+/// Returns the URDF text of a link with a small ball.
 fn link(name: &str) -> String {
     format!(
         r#"<link name="{name}"><collision><geometry><sphere radius="0.1"/></geometry></collision></link>"#
@@ -108,7 +109,7 @@ fn joints_beyond_their_limits_are_placed_and_reported() {
     assert_at(&scene.world().expect("a world"), "r/d", [5.0, 0.0, 0.0]);
 }
 
-/// Returns an arm of six axes, whose links are meshes of a package.
+/// Returns the URDF text of an arm with six axes, whose links are meshes of a package.
 fn six_axes(folder: &Path) -> String {
     let meshes = folder.join("arm_description/meshes");
     fs::create_dir_all(&meshes).expect("it is made");
@@ -117,7 +118,7 @@ fn six_axes(folder: &Path) -> String {
     for index in 0..7 {
         fs::write(meshes.join(format!("link{index}.stl")), stl_binary(b"link"))
             .expect("it is written");
-        // The cube from 0 to 2 becomes a box of 0.1 x 0.1 x 0.3 around the z axis.
+        // The scaled and translated cube is a box of 0.1 x 0.1 x 0.3 around the z axis.
         writeln!(
             urdf,
             r#"<link name="link{index}"><collision><origin xyz="-0.05 -0.05 0"/><geometry>
@@ -169,8 +170,8 @@ fn a_six_axis_arm_with_meshes() {
 fn disabled_pairs_and_links_without_solids() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
-    // Balls within each other: a joint connects a and b; b and c are connected through a link without shape; the
-    // file disables a and d.
+    // All balls overlap. A joint connects a and b; b and c are connected through a link without a
+    // shape; the SRDF file disables a and d.
     let bare = r#"<link name="bare"/>"#;
     let links = [link("a"), link("b"), bare.to_owned(), link("c"), link("d")].concat();
     let joints = [

@@ -1,4 +1,4 @@
-//! Root folders: which files may be read.
+//! Tests from which folders files may be read.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,7 @@ use tempfile::TempDir;
 
 use crate::cube::{gltf_buffer, gltf_with_uri, obj};
 
-/// Returns a folder `in` with a package, and files beside it that must not be read.
+/// Creates a folder `in` with a package, and a folder `out` whose files must not be read.
 fn desk() -> TempDir {
     let desk = tempfile::tempdir().expect("a folder");
     let write = |name: &str, bytes: &[u8]| {
@@ -27,7 +27,7 @@ fn is_outside<T>(found: &Result<T, FileError>) -> bool {
     matches!(found, Err(error) if matches!(*error.problem, Problem::Outside { .. }))
 }
 
-/// Reads a glTF file in the folder `in` whose buffer has this URI.
+/// Reads a glTF file in the folder `in`, whose buffer has this URI.
 fn gltf(desk: &Path, uri: &str, options: &ReadOptions) -> Result<MeshFile, FileError> {
     let path = desk.join("in/cube.gltf");
     fs::write(&path, gltf_with_uri(uri)).expect("it is written");

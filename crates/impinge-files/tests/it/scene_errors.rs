@@ -1,8 +1,8 @@
-//! Bad scenes: the line, the column, the path and the value of each error.
+//! Tests invalid scenes: the line, the column, the path and the value of each error.
 
 use impinge_files::{Problem, Scene};
 
-/// Returns the error of a scene, from reading it or from making its world.
+/// Returns the error of reading a scene, or of creating its world.
 fn error(text: &str) -> impinge_files::FileError {
     match Scene::from_json("bad.json", text) {
         Err(error) => error,
@@ -13,14 +13,15 @@ fn error(text: &str) -> impinge_files::FileError {
     }
 }
 
-/// Returns the error of an object with these members, on the third line from column 2 on.
+/// Returns the error of an object with these members, which start at column 2 of the third line.
 fn object_error(dimension: usize, members: &str) -> impinge_files::FileError {
     error(&format!(
         "{{\"dimension\": {dimension}, \"objects\": [\n{{\"name\": \"a\",\n {members}}}]}}"
     ))
 }
 
-/// Dimension, members of an object, the path of the invalid value, and the value.
+/// For each invalid object: the dimension, its members, the path of the invalid value, and the
+/// value.
 const REFUSED: &[(usize, &str, &str, &str)] = &[
     (2, r#""shape": {"ball": {"radius": -2}}"#, "shape.ball.radius", "-2"),
     (

@@ -1,4 +1,5 @@
-//! A ball bounces in a square room; prints which coloured areas it enters and leaves.
+//! A ball bounces in a square room. The program prints which coloured areas the ball enters and
+//! leaves.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -9,7 +10,7 @@ use impinge::dim2::math::{Isometry, Unit, Vector};
 use impinge::dim2::shape::{Ball, Cuboid, Plane, ShapeHandle};
 use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
 
-/// The data of an object: the ball has a velocity, an area a name.
+/// The data of an object. Only the ball has a velocity, in units per second.
 struct ObjectData {
     name: &'static str,
     velocity: Option<Cell<Vector<f32>>>,
@@ -17,15 +18,15 @@ struct ObjectData {
 
 type World = CollisionWorld<f32, ObjectData>;
 
-/// Seconds per step.
+/// The duration of a step, in seconds.
 const STEP: f32 = 0.016;
 
 fn fixed(name: &'static str) -> ObjectData {
     ObjectData { name, velocity: None }
 }
 
-/// Returns the groups: the ball is in group 1; the rest is in group 2, which interacts with group 1
-/// only.
+/// Returns the groups of the ball and of all other objects. The ball is in group 1, the others are
+/// in group 2 and interact with group 1 only.
 fn groups() -> (CollisionGroups, CollisionGroups) {
     let mut ball = CollisionGroups::new();
     ball.set_membership(&[1]);
@@ -35,7 +36,7 @@ fn groups() -> (CollisionGroups, CollisionGroups) {
     (ball, others)
 }
 
-/// Adds the ball, four walls, four areas.
+/// Builds the world: the ball, four walls, and four areas.
 fn build() -> World {
     let mut world = CollisionWorld::new(0.02);
     let (ball_groups, other_groups) = groups();
@@ -59,7 +60,8 @@ fn build() -> World {
     world
 }
 
-/// Returns the line to print, if there is one.
+/// Returns the line to print for an event; `None` if the event does not involve an area that the
+/// ball enters or leaves.
 fn describe(world: &World, event: &ProximityEvent) -> Option<String> {
     let area = [event.collider1, event.collider2]
         .into_iter()
@@ -100,7 +102,7 @@ fn advance(world: &mut World) {
     world.set_position(ball, position);
 }
 
-/// Runs until `lines` lines are printed.
+/// Runs the program until it has printed at least `lines` lines, and returns all lines.
 pub(crate) fn run(lines: usize) -> Vec<String> {
     let mut world = build();
     let mut log = Vec::new();
@@ -115,7 +117,7 @@ pub(crate) fn run(lines: usize) -> Vec<String> {
     log
 }
 
-/// The first lines, in order.
+/// The expected first lines.
 pub(crate) const EXPECTED: [&str; 13] = [
     "The ball enters the blue area.",
     "The ball enters the purple area.",

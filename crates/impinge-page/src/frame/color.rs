@@ -1,4 +1,5 @@
-//! Colours: a muted palette by the kind of a shape, legible on a light and on a dark page.
+//! The colours of objects: a muted palette by the kind of shape, legible on a light and on a dark
+//! page.
 
 use impinge::debug_render::{Color, DebugOptions, Drawn, MeshOptions, Style};
 use impinge::math::Real;
@@ -16,7 +17,7 @@ const SELECTION: Color = Color::rgb(242, 153, 46);
 const SENSORS: Color = Color::rgb(150, 120, 200).with_alpha(88);
 /// The colour towards which touching objects are mixed.
 const WARM: Color = Color::rgb(255, 140, 110);
-/// The share of the colour `WARM` in the mixture, of 256.
+/// The share of the colour `WARM` in the mixture, in 256ths.
 const WARMTH: u16 = 40;
 
 /// Returns the colour of a kind of shape.
@@ -38,9 +39,10 @@ const fn of_kind(kind: ShapeKind) -> Color {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Look {
     pub(crate) kind: ShapeKind,
-    /// The index of the object's handle: neighbours in a pile get slightly different tones by it.
+    /// The index of the object's handle. It varies the tone of the colour, so that neighbours in a
+    /// pile can be distinguished.
     pub(crate) object: usize,
-    /// The flags.
+    /// The flags: a combination of [`TOUCHES`], [`SENSOR`] and [`SELECTED`].
     pub(crate) flags: u32,
 }
 
@@ -60,7 +62,7 @@ impl Look {
     /// Returns one of four tones of the colour of the shape's kind.
     fn shaded(&self) -> Color {
         let base = of_kind(self.kind);
-        // The order 0, 2, 1, 3: neighbours differ more.
+        // The order of the tones is 0, 2, 1, 3, so that consecutive objects differ more.
         let tone = [0, 32, 16, 48][self.object % 4];
         mixed(base, Color::rgb(225, 228, 230), tone)
     }
@@ -72,7 +74,8 @@ pub(crate) const fn word(color: Color) -> u32 {
     u32::from_le_bytes([red, green, blue, color.alpha])
 }
 
-/// Mixes two colours: `part` of 256 of the second colour, with the alpha of the first.
+/// Mixes two colours: `part` is the share of the second colour in 256ths. The alpha is that of the
+/// first colour.
 fn mixed(from: Color, to: Color, part: u16) -> Color {
     let mut rgb = from.rgb;
     for (byte, goal) in rgb.iter_mut().zip(to.rgb) {
@@ -82,7 +85,8 @@ fn mixed(from: Color, to: Color, part: u16) -> Color {
     Color { rgb, ..from }
 }
 
-/// The layers of a frame, in order: the name, and the kind of drawing in it.
+/// The layers of a frame, in their order: the name of a layer, and the kind of element that it
+/// contains.
 pub(crate) const LAYERS: [(&str, Drawn); 10] = [
     ("object", Drawn::Object),
     ("tight box", Drawn::TightBox),
@@ -96,13 +100,13 @@ pub(crate) const LAYERS: [(&str, Drawn); 10] = [
     ("query hit", Drawn::QueryHit),
 ];
 
-/// Returns the index of the layer of a kind of drawing.
+/// Returns the index of the layer for a kind of element.
 pub(crate) fn layer_of(what: Drawn) -> usize {
     LAYERS.iter().position(|(_, drawn)| *drawn == what).unwrap_or(0)
 }
 
-/// Returns the styles of the visible layers, for objects of about this size. Objects themselves are instances and
-/// have no style; queries always have one, since samples read it.
+/// Returns the styles of the visible layers, for objects of about this size. Objects themselves are
+/// drawn as instances and have no style. Queries always have a style, since samples read it.
 pub(crate) fn options<N: Real>(
     mesh: MeshOptions<N>,
     size: N,

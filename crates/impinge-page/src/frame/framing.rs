@@ -1,4 +1,4 @@
-//! The position of a stage and the size of its objects, for coordinates and cameras.
+//! Determines the origin of coordinates and the size of typical objects in a stage.
 
 use impinge::bounding_volume::Aabb;
 use impinge::math::{Real, Space};
@@ -6,8 +6,8 @@ use impinge::world::CollisionWorld;
 
 use crate::space::coordinates;
 
-/// Objects with a larger extent count as unbounded, and larger coordinates are omitted: the square of this is still
-/// within the range of `f32`.
+/// Objects with a larger extent count as unbounded, and larger coordinates are omitted. The square
+/// of this number is still within the range of `f32`.
 pub(crate) const FAR: f64 = 1e18;
 
 /// A box in `f64` and three dimensions; flat in 2D.
@@ -18,7 +18,7 @@ pub(crate) struct Bounds {
 }
 
 impl Bounds {
-    /// Returns the bounds of a bounded box; `None` for an unbounded one.
+    /// Converts a box; `None` if it is unbounded or has a coordinate beyond [`FAR`].
     pub(crate) fn of<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> Option<Self> {
         let [mins, maxs] = [aabb.mins(), aabb.maxs()].map(|point| coordinates(&point.coords));
         let is_near = mins.iter().chain(&maxs).all(|x| x.abs() <= FAR);
@@ -50,7 +50,7 @@ impl Bounds {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Framing {
     pub(crate) origin: [f64; 3],
-    /// Half the diagonal of the box of the object of median size; never 0.
+    /// Half the diagonal of the AABB of the object of median size; never 0.
     pub(crate) size: f64,
     /// The distance from its origin up to which a half-space is drawn.
     pub(crate) patch: f64,
@@ -72,12 +72,12 @@ impl Framing {
         sizes.sort_by(f64::total_cmp);
         let (center, radius) = (bounds.center(), bounds.radius());
         let middle = sizes[sizes.len() / 2];
-        // Points and segments have size zero, and a world of one point radius zero.
+        // Points have size zero, and a world with a single point has radius zero.
         let size = [middle, radius / 8.0].into_iter().find(|size| *size > 0.0).unwrap_or(1.0);
         let distance = center.iter().fold(0.0_f64, |far, x| far.max(x.abs()));
         let is_near = distance <= 64.0 * radius.max(size);
         let origin = if is_near { [0.0; 3] } else { center };
-        // A half-space is drawn beyond the objects that lie on it.
+        // A half-space is drawn larger than the objects that lie on it.
         Some(Self { origin, size, patch: (1.5 * radius).max(8.0 * size) })
     }
 }
@@ -91,7 +91,8 @@ fn boxes<N: Space<D>, const D: usize, T>(
         .filter_map(|object| Bounds::of(&object.shape().aabb(&N::pose(object.position()))))
 }
 
-/// Returns the box of all bounded objects; `None` if there is none. Computes the boxes of all objects.
+/// Returns the box around all bounded objects; `None` if there is none. Computes the AABBs of all
+/// objects.
 pub(crate) fn bounds<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
 ) -> Option<Bounds> {

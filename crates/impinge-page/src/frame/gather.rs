@@ -1,5 +1,5 @@
-//! A back end of debug drawing that fills the buffers of a frame: structures of arrays, which the page uploads
-//! unchanged.
+//! A back end of debug drawing that fills the buffers of a frame. The buffers are structures of
+//! arrays, which the page uploads unchanged.
 
 use core::marker::PhantomData;
 
@@ -14,10 +14,10 @@ use crate::frame::payload::{Payload, Section};
 use crate::frame::unit_shapes::UNSCALED;
 use crate::space::{Viewed, coordinates};
 
-/// The object index of an instance that is not an object.
+/// The object index of an instance that is not an object of the world.
 const NO_OBJECT: u32 = u32::MAX;
 
-/// The largest number of texts; more would not be legible.
+/// The maximum number of texts in a frame; more would not be legible.
 const MAX_LABELS: usize = 200;
 
 /// A text in a frame.
@@ -29,7 +29,7 @@ struct Label {
     layer: u32,
 }
 
-/// Lines, triangles or points: their coordinates, and for each a colour and a layer.
+/// Lines, triangles or points: their coordinates, and a colour and a layer for each element.
 #[derive(Debug, Default)]
 struct Things {
     numbers: Vec<f32>,
@@ -47,7 +47,7 @@ impl Things {
     }
 }
 
-/// Instances by mesh, scale and pose.
+/// The instances of a frame, as a structure of arrays.
 #[derive(Debug, Default)]
 struct Instances {
     mesh: Vec<u32>,
@@ -62,14 +62,14 @@ struct Instances {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Instance {
     pub(crate) mesh: u32,
-    /// The factors along the axes of the mesh, applied before its pose.
+    /// The scale factors along the axes of the mesh, applied before the pose.
     pub(crate) scale: [f32; 3],
     pub(crate) object: u32,
     pub(crate) color: u32,
     pub(crate) flags: u32,
 }
 
-/// The content of a frame, relative to an origin.
+/// The content of a frame; positions are relative to its origin.
 #[derive(Debug, Default)]
 pub(crate) struct Buffers {
     instances: Instances,
@@ -79,7 +79,7 @@ pub(crate) struct Buffers {
     labels: Vec<Label>,
 }
 
-/// The back end: fills buffers with the things of visible layers.
+/// The back end. It fills the buffers with the elements of visible layers.
 #[derive(Debug)]
 pub(crate) struct Gather<'a, N, const D: usize> {
     pub(crate) buffers: Buffers,
@@ -90,14 +90,14 @@ pub(crate) struct Gather<'a, N, const D: usize> {
 }
 
 impl<N: Viewed<D>, const D: usize> Gather<'_, N, D> {
-    /// Returns the layer, if it is visible.
+    /// Returns the index of a layer; `None` if the layer is invisible.
     fn layer(&self, what: Drawn) -> Option<u32> {
         let layer = layer_of(what);
         self.is_shown[layer].then(|| u32::try_from(layer).unwrap_or(0))
     }
 
-    /// Returns a point relative to the origin. The difference is computed in `f64`, so that scenes far from 0 keep
-    /// their digits.
+    /// Returns a point relative to the origin. The difference is computed in `f64`, so that a scene
+    /// far from 0 loses no precision.
     fn relative(&self, point: [f64; 3]) -> [f32; 3] {
         [0, 1, 2].map(|axis| single(point[axis] - self.origin[axis]))
     }
@@ -106,7 +106,7 @@ impl<N: Viewed<D>, const D: usize> Gather<'_, N, D> {
         self.relative(coordinates(&point.coords))
     }
 
-    /// Reserves space for `count` more instances, which are then added without a reallocation.
+    /// Reserves space for `count` more instances, so that adding them does not reallocate.
     pub(crate) fn reserve(&mut self, count: usize) {
         let Instances { mesh, object, color, pose, scale, flags } = &mut self.buffers.instances;
         for words in [mesh, object, color, flags] {
@@ -120,9 +120,9 @@ impl<N: Viewed<D>, const D: usize> Gather<'_, N, D> {
     pub(crate) fn instance(&mut self, instance: Instance, position: &N::Isometry) {
         let Some(center) = self.meshes.keep(instance.mesh) else { return };
         let mut translation = coordinates(&N::translation(position));
-        // Only a mesh without a scale has a centre other than the origin of its shape.
+        // Only unscaled meshes have a centre other than the origin of the shape.
         if center != [0.0; 3] {
-            // Rotated with the shape, then added to its translation.
+            // The centre is rotated with the shape, then added to its translation.
             let center =
                 N::pose(position).vector(&Vector::<N, D>::from_fn(|axis, _| N::lit(center[axis])));
             let turned = coordinates(&center);
@@ -140,14 +140,14 @@ impl<N: Viewed<D>, const D: usize> Gather<'_, N, D> {
     }
 }
 
-/// Whether a coordinate is NaN or beyond [`FAR`].
+/// Returns `true` if a coordinate is NaN or beyond [`FAR`].
 fn is_nowhere<const COUNT: usize>(numbers: &[[f32; 3]; COUNT]) -> bool {
     !numbers.as_flattened().iter().all(|x| f64::from(x.abs()) <= FAR)
 }
 
 impl<N: Viewed<D>, const D: usize> DebugRender<N, D> for Gather<'_, N, D> {
     fn line(&mut self, ends: [Point<N, D>; 2], color: Color, what: Drawn) {
-        // Invisible layers need no conversion.
+        // For an invisible layer nothing needs to be converted.
         let Some(layer) = self.layer(what) else { return };
         let ends = ends.map(|end| self.at(&end));
         if !is_nowhere(&ends) {
@@ -186,7 +186,7 @@ impl<N: Viewed<D>, const D: usize> DebugRender<N, D> for Gather<'_, N, D> {
             return;
         }
         let mesh = self.meshes.number(mesh);
-        // Transparent, so that the shape of a query hides no object.
+        // The colour is transparent, so that the shape of a query hides no object.
         let color = word(color.with_alpha(color.alpha.min(96)));
         let (scale, object, flags) = (UNSCALED, NO_OBJECT, ASKED);
         self.instance(Instance { mesh, scale, object, color, flags }, pose);
@@ -230,7 +230,7 @@ struct PointSections {
     layer: Section,
 }
 
-/// The sections of a payload, and the texts.
+/// The sections of a payload, and the texts of a frame.
 #[derive(Debug, Serialize)]
 pub(crate) struct Sections {
     instances: InstanceSections,
@@ -241,7 +241,7 @@ pub(crate) struct Sections {
 }
 
 impl Buffers {
-    /// Writes all buffers.
+    /// Writes all buffers to the payload and returns their sections.
     pub(crate) fn write(self, payload: &mut Payload) -> Sections {
         let Self { instances, lines, triangles, points, labels } = self;
         Sections {

@@ -1,4 +1,4 @@
-//! The meshes of a stage, by id.
+//! The meshes of a stage and their ids.
 
 use std::collections::BTreeMap;
 
@@ -12,13 +12,13 @@ use crate::space::coordinates;
 /// The number of frames after which an unused mesh is dropped.
 const PATIENCE: u64 = 120;
 
-/// A mesh in `f32`, as the page has it.
+/// A mesh in `f32`, as the page receives it.
 #[derive(Clone, Debug)]
 struct Buffers {
-    /// [`ShapeMesh::id`].
+    /// The [`ShapeMesh::id`] of the mesh.
     hash: u64,
-    /// The origin of the vertices, in the frame of the shape: the vertices of a mesh far from the origin of its
-    /// shape would coincide in `f32`.
+    /// The origin of the vertices, in the frame of the shape. If a mesh were far from this origin,
+    /// its vertices would coincide in `f32`.
     center: [f64; 3],
     vertices: Vec<f32>,
     triangles: Vec<u32>,
@@ -36,10 +36,10 @@ pub(crate) struct MeshSections {
     lines: Section,
 }
 
-/// Meshes by id. Ids increase and are not reused.
+/// The meshes of a stage by id. Ids increase and are not reused.
 #[derive(Debug, Default)]
 pub(crate) struct MeshTable {
-    /// For each [`ShapeMesh::id`], the id of the mesh.
+    /// The id of the mesh for each [`ShapeMesh::id`].
     numbers: BTreeMap<u64, u32>,
     meshes: BTreeMap<u32, Buffers>,
     /// The id of the next new mesh.
@@ -48,7 +48,8 @@ pub(crate) struct MeshTable {
 }
 
 impl MeshTable {
-    /// Begins a frame: drops the meshes that no recent frame has used, and returns their ids.
+    /// Begins a frame. Drops the meshes that were not used in the last [`PATIENCE`] frames, and
+    /// returns their ids.
     pub(crate) fn begin(&mut self) -> Vec<u32> {
         self.frame += 1;
         let (frame, numbers, mut dropped) = (self.frame, &mut self.numbers, Vec::new());
@@ -74,8 +75,8 @@ impl MeshTable {
         number
     }
 
-    /// Marks a mesh as used by this frame, and returns the centre that its vertices are relative
-    /// to; `None` if the mesh was dropped.
+    /// Marks a mesh as used in this frame. Returns the centre to which its vertices are relative;
+    /// `None` if the mesh was dropped.
     pub(crate) fn keep(&mut self, number: u32) -> Option<[f64; 3]> {
         let mesh = self.meshes.get_mut(&number)?;
         mesh.used = self.frame;
@@ -113,8 +114,8 @@ impl Buffers {
     }
 }
 
-/// Returns the origin, or the centre of the points if that is more than 16 times their extent away: then `f32` would
-/// lose more than 4 of its 24 bits.
+/// Returns the centre of the points if its distance from the origin exceeds 16 times their extent,
+/// otherwise the origin. Beyond that distance `f32` would lose more than 4 of its 24 bits.
 fn far_center(points: &[[f64; 3]]) -> [f64; 3] {
     let ends = |axis: usize| {
         let on_axis = points.iter().map(|point| point[axis]);
@@ -131,7 +132,7 @@ fn far_center(points: &[[f64; 3]]) -> [f64; 3] {
     if distance > 16.0 * extent { center } else { [0.0; 3] }
 }
 
-/// Returns the nearest `f32`, within the range of the page's computations.
+/// Converts to the nearest `f32`, clamped to ±1e30, the range in which the page computes.
 #[expect(clippy::cast_possible_truncation, reason = "rounds, as documented")]
 pub(crate) const fn single(x: f64) -> f32 {
     x.clamp(-1e30, 1e30) as f32

@@ -1,8 +1,9 @@
 //! Frames: the drawing of a stage, as buffers of numbers that the page uploads unchanged.
 //!
-//! `picture` draws a frame by the back end in `gather`, with meshes by number (`mesh`), most of them of unit shapes
-//! (`unit_shapes`), relative to the origin of the stage (`framing`), in the colours and layers of `color`; `queries` draws
-//! the queries of recordings. `payload` has the layout in bytes.
+//! `picture` draws a frame with the back end in `gather`. Meshes have ids (`mesh`), and most of
+//! them are those of unit shapes (`unit_shapes`). Positions are relative to the origin of the stage
+//! (`framing`). `color` has the colours and layers, `queries` draws the queries of recordings, and
+//! `payload` defines the layout in bytes.
 
 pub(crate) mod color;
 pub(crate) mod framing;

@@ -6,7 +6,7 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct Section(usize, usize);
 
-/// Sections of numbers of four bytes, little-endian.
+/// Sections of numbers with four bytes each, little-endian.
 #[derive(Debug, Default)]
 pub(crate) struct Payload(pub(crate) Vec<u8>);
 
@@ -24,7 +24,7 @@ impl Payload {
     fn section(&mut self, count: usize, numbers: impl Iterator<Item = [u8; 4]>) -> Section {
         let start = self.0.len();
         self.0.resize(start + 4 * count, 0);
-        // Copied in place: appending four bytes at a time would check the capacity each time.
+        // Copied in place: appending four bytes at a time would check the capacity for each number.
         for (into, bytes) in self.0[start..].chunks_exact_mut(4).zip(numbers) {
             into.copy_from_slice(&bytes);
         }

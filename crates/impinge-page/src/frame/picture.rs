@@ -1,4 +1,5 @@
-//! Frames of a stage, and the state that is kept between them: meshes, the shapes of objects, the origin.
+//! Draws the frames of a stage, and keeps state between them: meshes, the shapes of objects, the
+//! origin.
 
 use core::marker::PhantomData;
 
@@ -28,30 +29,30 @@ struct KnownShape<N: Real, const D: usize> {
     shape: ShapeHandle<N, D>,
     kind: ShapeKind,
     mesh: u32,
-    /// [`Instance::scale`].
+    /// The scale of the instance; see [`Instance::scale`].
     scale: [f32; 3],
 }
 
-/// Draws frames of one stage.
+/// Draws the frames of one stage.
 ///
-/// A frame has every pose, since comparing them with earlier ones would cost as much. Meshes are
-/// looked up only for objects with a new shape. Touching objects are computed again only after a
-/// change of the world.
+/// A frame contains every pose, since a comparison with the poses of the previous frame would cost
+/// as much as writing them. Meshes are looked up only for objects with a new shape. The touching
+/// objects are computed again only after a change of the world.
 #[derive(Debug)]
 pub(crate) struct Picture<N: Viewed<D>, const D: usize> {
     drawing: DebugDrawing<N, D>,
     units: UnitShapes<N, D>,
     meshes: MeshTable,
-    /// For each index of a handle, the last shape. The slot of a removed object keeps its shape
+    /// The last shape for each index of a handle. The slot of a removed object keeps its shape
     /// until the index is reused.
     shapes: Vec<Option<KnownShape<N, D>>>,
-    /// The origin and size of the stage; `None` before the first object.
+    /// The origin and the size of the stage; `None` before the first object.
     framing: Option<Framing>,
-    /// For each index of a handle, whether the object touches another; `None` after a change.
+    /// For each index of a handle, whether the object touches another one; `None` after a change.
     touching: Option<Vec<bool>>,
 }
 
-/// The text of a frame.
+/// The JSON text of a frame.
 #[derive(Debug, Serialize)]
 struct FrameText {
     origin: [f64; 3],
@@ -79,14 +80,14 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
         self.touching = None;
     }
 
-    /// Draws a world, and then calls `beside` for additions.
+    /// Draws a world, then calls `beside` for additional elements.
     pub(crate) fn frame<T>(
         &mut self,
         world: &CollisionWorld<N, D, T>,
         asked: &FrameRequest,
         beside: impl FnOnce(&mut DebugDrawing<N, D>, &mut dyn DebugRender<N, D>),
     ) -> Result<Frame, EngineError> {
-        // The framing determines the mesh of half-spaces, and the sizes of styles.
+        // The mesh of half-spaces and the sizes of styles depend on the framing.
         let framing = self.framing(world);
         let is_shown = LAYERS.map(|(name, _)| asked.layers.iter().any(|layer| layer == name));
         self.set_options(&framing, &is_shown);
@@ -100,7 +101,8 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
             origin: framing.origin,
             scalar: PhantomData,
         };
-        // Objects are instances of meshes and bypass the drawing, which draws all other layers.
+        // Objects become instances of meshes directly. The drawing has no style for them; it draws
+        // all other layers.
         if is_shown[0] {
             let mut objects = Objects { drawing, units, shapes, touching: &touching, asked };
             objects.draw(world, &mut gather);
@@ -111,7 +113,7 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
         let buffers = gather.buffers;
         self.touching = Some(touching);
 
-        // The meshes are written after all drawing, which adds new ones.
+        // The meshes are written after all drawing, which may add new meshes.
         let mut payload = Payload::default();
         let text = FrameText {
             origin: framing.origin,
@@ -123,7 +125,8 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
         Ok(Frame { text: serde_json::to_string(&text)?, payload: payload.0 })
     }
 
-    /// Begins a frame, and drops the shapes whose meshes are dropped.
+    /// Begins a frame. Drops the shapes whose meshes were dropped, and returns the ids of these
+    /// meshes.
     fn begin(&mut self) -> Vec<u32> {
         let dropped = self.meshes.begin();
         if !dropped.is_empty() {
@@ -134,7 +137,8 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
         dropped
     }
 
-    /// Returns the framing of the first frame with an object, for the whole stage: later frames keep their coordinates.
+    /// Returns the framing, which is that of the first frame with an object: later frames must not
+    /// change their coordinates.
     fn framing<T>(&mut self, world: &CollisionWorld<N, D, T>) -> Framing {
         self.framing = self.framing.or_else(|| Framing::of(world));
         self.framing.unwrap_or(Framing::UNKNOWN)
@@ -146,7 +150,8 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
         self.drawing.set_options(options(mesh, N::lit(framing.size), is_shown));
     }
 
-    /// Returns a box for the camera: around the bounded objects, else around the drawn part of an unbounded one.
+    /// Returns a box for the camera: the box around the bounded objects; if there are none, the box
+    /// around the drawn part of an unbounded object.
     pub(crate) fn bounds<T>(&self, world: &CollisionWorld<N, D, T>) -> [[f64; 3]; 2] {
         if let Some(bounds) = bounds(world) {
             return [bounds.mins, bounds.maxs];
@@ -157,7 +162,7 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
     }
 }
 
-/// The data for the loop over all objects.
+/// The data that drawing all objects needs.
 struct Objects<'a, N: Viewed<D>, const D: usize> {
     drawing: &'a mut DebugDrawing<N, D>,
     units: &'a UnitShapes<N, D>,
@@ -182,7 +187,8 @@ impl<N: Viewed<D>, const D: usize> Objects<'_, N, D> {
         }
     }
 
-    /// Returns the mesh and the kind of an object's shape, which are computed if the shape has changed.
+    /// Returns the kind and the mesh of an object's shape. They are computed only if the shape has
+    /// changed.
     fn known(
         &mut self,
         index: usize,
@@ -194,7 +200,8 @@ impl<N: Viewed<D>, const D: usize> Objects<'_, N, D> {
         }
         let Self { drawing, units, shapes, .. } = self;
         let slot = &mut shapes[index];
-        // By identity: an equal but different shape costs a mesh look-up with the same number.
+        // Shapes are compared by identity. An equal shape at another address only costs a look-up,
+        // which finds the same mesh.
         let _ = slot.take_if(|known| !known.shape.is_same(shape));
         slot.get_or_insert_with(|| {
             let (drawn, scale) = units.scaled(shape);
@@ -211,9 +218,9 @@ impl<N: Viewed<D>, const D: usize> Objects<'_, N, D> {
     }
 }
 
-/// Returns, for each index of a handle, whether the object has a contact or intersects another. The
-/// loop over all manifolds takes most of the time of a frame; the result is therefore kept until
-/// the world changes.
+/// Returns, for each index of a handle, whether the object has a contact or intersects another
+/// object. The loop over all manifolds takes most of the time of a frame; therefore the result is
+/// kept until the world changes.
 fn touching<N: Viewed<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) -> Vec<bool> {
     let last = world.collision_objects().map(|object| object.handle().uid()).max();
     let mut touching = vec![false; last.map_or(0, |last| last + 1)];
@@ -229,8 +236,9 @@ fn touching<N: Viewed<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) ->
     touching
 }
 
-/// Draws boxes and contacts of selected objects, except in visible layers, which have them already. Meanwhile the back
-/// end shows the invisible layers, and the drawing has the styles of all.
+/// Draws boxes and contacts of the selected objects in the layers that are invisible; visible
+/// layers contain them already. For this the visibility of all layers is inverted, and the drawing
+/// has the styles of all layers.
 fn draw_selected<N: Viewed<D>, const D: usize, T>(
     drawing: &mut DebugDrawing<N, D>,
     world: &CollisionWorld<N, D, T>,
@@ -242,7 +250,7 @@ fn draw_selected<N: Viewed<D>, const D: usize, T>(
         return;
     }
     let (before, own) = (gather.is_shown, *drawing.options());
-    // Meshes are kept only under equal mesh options.
+    // The drawing keeps its meshes only if the mesh options stay equal.
     let all = options(own.mesh, N::lit(framing.size), &[true; LAYERS.len()]);
     gather.is_shown = before.map(|is_shown| !is_shown);
     drawing.set_options(all);
@@ -268,7 +276,7 @@ fn draw_selected<N: Viewed<D>, const D: usize, T>(
     gather.is_shown = before;
 }
 
-/// Returns the edges of a box: from each corner along each axis on which it has the lowest coordinate.
+/// Returns the edges of a box: for each axis, those from the corners that are at its lower end.
 fn edges<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> impl Iterator<Item = [Point<N, D>; 2]> {
     let [mins, maxs] = [*aabb.mins(), *aabb.maxs()];
     let corner = move |number: usize| {

@@ -1,5 +1,5 @@
-//! Draws recorded queries, each with the result in the replayed world, by the methods of the library where it has one
-//! for the query.
+//! Draws the recorded queries, each with its result in the replayed world. The library draws those
+//! for which it has a method.
 
 use core::fmt;
 
@@ -8,7 +8,7 @@ use impinge::math::{Point, Space};
 use impinge::query::{ClosestPoints, Impact, RayIntersection};
 use impinge_record::{Asked, CastQuestion, Detail, PlacedShape, Question};
 
-/// Draws queries.
+/// Draws queries with a drawing and a renderer.
 pub(crate) struct QueryPen<'a, N: Space<D>, const D: usize> {
     pub(crate) drawing: &'a mut DebugDrawing<N, D>,
     pub(crate) renderer: &'a mut dyn DebugRender<N, D>,
@@ -21,9 +21,9 @@ impl<N: Space<D>, const D: usize> fmt::Debug for QueryPen<'_, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> QueryPen<'_, N, D> {
-    /// Draws a query and its answer.
+    /// Draws a query and its results.
     pub(crate) fn draw(&mut self, asked: &Asked<N, D>) {
-        // The details of the found objects; their kind follows from the kind of the query.
+        // The variants of the details correspond to the kind of the query.
         let details = asked.answer.iter().map(|found| &found.detail);
         match &asked.query.question {
             Question::FirstRayHit(ray) | Question::RayHits(ray) => {
@@ -56,7 +56,8 @@ impl<N: Space<D>, const D: usize> QueryPen<'_, N, D> {
         }
     }
 
-    /// Draws the shape of a query, unless its pose is not finite: queries are recorded with any arguments.
+    /// Draws the shape of a query. It is omitted if its pose is not finite, since queries are
+    /// recorded with any arguments.
     fn shape(&mut self, placed: &PlacedShape<N, D>) {
         let style = self.drawing.options().query;
         if let Some(style) = style.filter(|_| N::pose(&placed.position).is_finite()) {
@@ -73,7 +74,8 @@ impl<N: Space<D>, const D: usize> QueryPen<'_, N, D> {
         }
     }
 
-    /// Draws the sweep once, with the first hit; for later hits a line between the points in contact.
+    /// Draws the sweep of a shape and its first hit. Of each later hit it draws a line between the
+    /// points in contact.
     fn cast<'a>(
         &mut self,
         cast: &CastQuestion<N, D>,

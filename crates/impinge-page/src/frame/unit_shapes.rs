@@ -1,4 +1,5 @@
-//! Unit shapes: the mesh of a ball, box, ellipsoid, cylinder or cone is that of a unit shape, scaled along the axes.
+//! Unit shapes: balls, boxes, ellipsoids, cylinders and cones share the mesh of a unit shape, which
+//! is scaled along the axes.
 
 use impinge::math::{Space, Vector};
 use impinge::shape::{Ball, Cuboid, Ellipsoid, ShapeHandle, ShapeKind};
@@ -9,20 +10,21 @@ use crate::frame::mesh::single;
 /// The scale of an unscaled mesh.
 pub(crate) const UNSCALED: [f32; 3] = [1.0; 3];
 
-/// A shape of each kind, with radii, half extents and half heights of 1.
+/// A unit shape of each kind, with radii, half extents and half heights of 1.
 #[derive(Debug)]
 pub(crate) struct UnitShapes<N: Space<D>, const D: usize> {
     ball: ShapeHandle<N, D>,
     cuboid: ShapeHandle<N, D>,
-    /// `None` in 2D.
+    /// The cylinder; `None` in 2D.
     cylinder: Option<ShapeHandle<N, D>>,
-    /// `None` in 2D.
+    /// The cone; `None` in 2D.
     cone: Option<ShapeHandle<N, D>>,
 }
 
 impl<N: Recordable<D>, const D: usize> UnitShapes<N, D> {
     pub(crate) fn new() -> Self {
-        // Generic code cannot name the solids of 3D, but can use their data.
+        // Generic code cannot name the shapes that exist in 3D only, but can create them from their
+        // data.
         let sizes = [N::ONE; 2];
         Self {
             ball: ShapeHandle::new(Ball::new(N::ONE)),
@@ -32,9 +34,9 @@ impl<N: Recordable<D>, const D: usize> UnitShapes<N, D> {
         }
     }
 
-    /// Returns the unit shape and the scale whose product has the mesh of a shape, up to rounding. A shape of another
-    /// kind, or with extent zero along an axis, is returned unscaled: its mesh omits edges without length, which a
-    /// scale of 0 would not.
+    /// Returns a unit shape and the scale with which its mesh is that of `shape`, up to rounding. A
+    /// shape of another kind, or with extent zero along an axis, is returned unscaled: its mesh
+    /// omits edges of length zero, which a scale of 0 would not do.
     pub(crate) fn scaled<'a>(
         &'a self,
         shape: &'a ShapeHandle<N, D>,
@@ -50,7 +52,8 @@ impl<N: Recordable<D>, const D: usize> UnitShapes<N, D> {
         usable.unwrap_or((shape, UNSCALED))
     }
 
-    /// Returns the unit shape of the kind, and the lengths of a shape along the axes.
+    /// Returns the unit shape of the same kind, and the half extents of `shape` along the axes;
+    /// `None` if the kind has no unit shape.
     fn unit_of(&self, shape: &ShapeHandle<N, D>) -> Option<(&ShapeHandle<N, D>, Vector<N, D>)> {
         match shape.geometry().kind() {
             ShapeKind::Ball => {
@@ -69,7 +72,7 @@ impl<N: Recordable<D>, const D: usize> UnitShapes<N, D> {
                     ShapeData::Cone(sizes) => (self.cone.as_ref()?, sizes),
                     _ => return None,
                 };
-                // The axis of both is y.
+                // Both have their axis along y.
                 let along = |axis, _| if axis == 1 { half_height } else { radius };
                 Some((unit, Vector::<N, D>::from_fn(along)))
             }

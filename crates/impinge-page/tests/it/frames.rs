@@ -1,4 +1,4 @@
-//! Frames: their content and cost.
+//! Tests the content and the size of frames.
 
 use impinge::bounding_volume::Ray;
 use impinge::math::Vector;
@@ -17,7 +17,8 @@ fn frame(asker: &mut Asker, layers: &Value, selected: &[u32]) -> (Value, Vec<u8>
     asker.ask_with(&asked.to_string(), &[])
 }
 
-/// Two overlapping boxes of one shape, the second rotated by a quarter turn, and a sensor around both.
+/// Records two overlapping boxes of one shape, the second rotated by a quarter turn, and a sensor
+/// beside them.
 fn scene<N: Viewed<D>, const D: usize>(at: f64) -> Asker {
     let mut scene = Scene::<N, D>::new(Registry::new());
     let cube = scene.add([at, 0.0, 0.0], Cuboid::new(all::<N, D>(1.0)));
@@ -174,7 +175,8 @@ fn recorded_queries_are_drawn_where_they_were_asked() {
     recorded_queries::<f64, 3>();
 }
 
-/// Balls, boxes and ellipsoids of any sizes are instances of two meshes, each with its sizes as its scale.
+/// Tests that balls, boxes and ellipsoids of any size are instances of two meshes, with their sizes
+/// as scale.
 fn sizes<N: Viewed<D>, const D: usize>() {
     let mut scene = Scene::<N, D>::new(Registry::new());
     let lengths = Vector::<N, D>::from_fn(|axis, _| N::lit([0.5, 2.0, 3.0][axis]));

@@ -1,4 +1,5 @@
-//! Samples: each opens, runs and is drawn; controls accept valid and reject invalid values.
+//! Tests that each sample opens, runs and is drawn, and that controls accept valid and reject
+//! invalid values.
 
 use impinge_samples::entries;
 use serde_json::{Value, json};

@@ -1,4 +1,4 @@
-//! Messages of any bytes have a response.
+//! Tests that any bytes, as a message, have a response.
 
 use impinge::shape::Ball;
 use impinge_page::{Engine, message, parts};
@@ -16,8 +16,8 @@ fn recording() -> Vec<u8> {
     scene.finish()
 }
 
-/// Returns the text of a response, which has the layout of responses and JSON with or without an
-/// error.
+/// Checks that a response has the layout of responses and contains JSON, possibly an error. Returns
+/// the JSON.
 fn answered(engine: &mut Engine, bytes: &[u8]) -> Value {
     let answer = engine.call(bytes);
     let (text, payload) = parts(&answer).expect("an answer has the layout of a message");
@@ -27,7 +27,7 @@ fn answered(engine: &mut Engine, bytes: &[u8]) -> Value {
     answer
 }
 
-/// A generator of the family of Marsaglia's xorshift.
+/// A random number generator of the xorshift family (Marsaglia, 2003).
 struct Random(u64);
 
 impl Random {
@@ -157,7 +157,8 @@ fn random_bytes_are_answered() {
     }
 }
 
-/// The bytes of a header: its margin has four bytes, and its checksum as many.
+/// Returns the length of a header. After the part that `Header::read` needs follow a margin and a
+/// checksum of four bytes each.
 fn header_bytes(bytes: &[u8]) -> usize {
     let is_whole = |length: &usize| Header::read(&bytes[..*length]).is_ok();
     (0..).find(is_whole).expect("the header of a recording is whole") + 8
@@ -179,7 +180,7 @@ fn damaged_recordings_open_up_to_the_damage() {
         assert_eq!(answer["complete"], false, "byte {place}");
         answer["steps"].as_u64()
     };
-    // Two updates: none, one or both of them remain, more if the damage is later.
+    // The recording has two updates. The later the damage is, the more of them remain.
     let truncated = (0..bytes.len()).filter_map(|length| check(&bytes[..length], length));
     let mut truncated: Vec<_> = truncated.collect();
     assert!(truncated.is_sorted(), "{truncated:?}");

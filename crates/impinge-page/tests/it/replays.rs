@@ -1,4 +1,4 @@
-//! Recordings: forwards, backwards, changed by hand, packed and growing.
+//! Tests recordings: played forwards and backwards, changed by hand, packed, and growing.
 
 use impinge::shape::Ball;
 use impinge_page::Viewed;
@@ -23,7 +23,7 @@ fn scene<N: Viewed<D>, const D: usize>() -> Vec<u8> {
     scene.finish()
 }
 
-/// The position of the ball at a step.
+/// Returns the x coordinate of the ball at a step.
 fn x_at(step: usize) -> f64 {
     f64::from(u32::try_from(step).expect("a small step")) - 6.0
 }
@@ -146,7 +146,8 @@ fn packed_recordings_open() {
 fn a_recording_of_a_program_that_died_is_played_to_its_last_update() {
     let bytes = scene::<f64, 3>();
     let whole = seek(&mut Asker::of(&bytes), STEPS);
-    // The last record is removed: its kind, its length, a number of eight bytes, and a checksum.
+    // Removes the last record: a kind of 1 byte, a length of 4, a number of 8, and a checksum of 4
+    // bytes.
     let end = bytes.len() - (1 + 4 + 8 + 4);
     let lossless = "The recording has no end: its program did not finish it.";
     let last = format!(

@@ -1,4 +1,4 @@
-//! Helpers that make recordings, and an engine with requests in JSON.
+//! Helpers: they make recordings, and send requests in JSON to an engine.
 
 use impinge::math::{Pose, Vector};
 use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
@@ -8,7 +8,7 @@ use impinge_page::{Engine, message, parts};
 use impinge_record::{Recordable, Recorder, Registry};
 use serde_json::Value;
 
-/// An engine, with its requests and responses.
+/// An engine that takes requests as JSON.
 #[derive(Default)]
 pub(crate) struct Asker(pub(crate) Engine);
 
@@ -28,7 +28,7 @@ impl Asker {
         (value, payload.to_vec())
     }
 
-    /// Returns a response without its payload.
+    /// Sends a request, and returns the response without its payload.
     pub(crate) fn ask(&mut self, text: &str) -> Value {
         self.ask_with(text, &[]).0
     }

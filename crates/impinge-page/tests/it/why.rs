@@ -1,4 +1,4 @@
-//! Tests each of the four reasons for which two objects do not touch.
+//! Tests each of the four conditions for two objects to touch.
 
 use impinge::dim2;
 use impinge::dim3;
@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use crate::support::{Asker, Scene, all};
 
-/// The conditions of a pair by name: whether they are satisfied, and their texts.
+/// The explanation of a pair: the conditions, whether they are satisfied, and their texts.
 struct Reasons(Value);
 
 impl Reasons {
@@ -23,7 +23,8 @@ impl Reasons {
         Self(why)
     }
 
-    /// Asserts that one condition alone is not satisfied, and that its text is the text of the result.
+    /// Asserts that exactly one condition is not satisfied, and that its text is the reason of the
+    /// result.
     fn assert_only(&self, name: &str, text: &str) {
         let tests = self.0["tests"].as_array().expect("a list");
         let failing: Vec<_> = tests.iter().filter(|test| test["passes"] == false).collect();
@@ -38,8 +39,8 @@ impl Reasons {
     }
 }
 
-/// Returns the recording of objects at one position, except the last three. The filter rejects
-/// pairs of objects with equal data.
+/// Records objects of which all but the last three are at the origin. The filter rejects pairs of
+/// objects with equal data.
 fn scene<N: Recordable<D>, const D: usize>(registry: Registry<N, D, Vec<u8>>) -> Vec<u8> {
     let [mut shy, mut other] = [CollisionGroups::new(); 2];
     shy.set_membership(&[2]);
@@ -77,7 +78,7 @@ fn reasons<N: Viewed<D>, const D: usize>(registry: Registry<N, D, Vec<u8>>) {
     let text = "0.1213 apart; contacts are kept up to 0";
     Reasons::of(&mut asker, 2, 3).assert_only("distance", text);
 
-    // Boxes that do not overlap are of shapes that are apart.
+    // If the boxes do not overlap, the shapes are apart too, so that two conditions fail.
     let far = Reasons::of(&mut asker, 2, 4).0;
     let [boxes, distance] = [2, 3].map(|test| &far["tests"][test]);
     assert_eq!((&boxes["passes"], &distance["passes"]), (&false.into(), &false.into()), "{far}");
@@ -130,7 +131,7 @@ fn what_lacks_in_a_page_is_stood_in_for() {
         status["diverged"].as_str().is_some_and(|text| text.starts_with("step 1: ")),
         "{status}"
     );
-    // A loss is noted beside the stand-in for which the recording is read again.
+    // The note about a lost part remains when the recording is read again for a stand-in.
     let bytes = scene::<f64, 2>(registry2());
     for (length, notes) in [(bytes.len(), 1), (bytes.len() - 1, 2)] {
         let open = r#"{"do": "open", "kind": "recording"}"#;

@@ -1,5 +1,5 @@
-// The axes of the world in a corner of the picture, turned with the camera, so that coordinates in panels can be
-// located.
+// The axes of the world in a corner of the picture, rotated with the camera. They show the directions of the
+// coordinates in the panels.
 
 import { Vector3 } from "three";
 import type { StageCamera } from "./camera";

@@ -21,10 +21,10 @@ export function grown(capacity: number, count: number): number {
 /** The attributes of a geometry without indices. */
 export class Buffers {
   readonly geometry = new BufferGeometry();
-  /** In vertices. */
+  /** The number of vertices for which the buffers have space. */
   private capacity = 0;
 
-  /** `sizes` gives the number of components of each attribute. */
+  /** `sizes` has the number of components of each attribute. */
   constructor(private readonly sizes: Record<string, number>) {
     this.reserve(1);
   }

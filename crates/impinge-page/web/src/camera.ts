@@ -55,12 +55,12 @@ export class StageCamera {
   readonly sphere = new Sphere();
   /** The box that `fit` framed: the bounds and some of the drawn points around them. */
   private readonly framed = new Box3();
-  /** Whether the camera was not moved since it was aimed. */
+  /** Whether the camera has not been moved by hand since it was aimed. */
   private isFitted = false;
   private readonly caster = new Raycaster();
-  /** Width over height of the canvas. */
+  /** The width of the canvas divided by its height. */
   private aspect = 1;
-  /** Half the height of what the orthographic camera covers at zoom 1. */
+  /** Half the height of the area that the orthographic camera shows at zoom 1. */
   private halfHeight = 1;
 
   constructor(
@@ -90,8 +90,8 @@ export class StageCamera {
   }
 
   /**
-   * Frames the bounds, and those of `points` that are not far outside of them, such as the end of a cast: a ray may be
-   * endless. In 3D the view direction is between the front, the right and the top.
+   * Frames the bounds and those of `points` that are near them. Far points, such as the end of an unbounded ray, are
+   * ignored. In 3D the view direction is between the front, the right and the top.
    */
   fit(points: Iterable<Vector3>): void {
     const { center, radius } = this.sphere;
@@ -231,12 +231,12 @@ export class StageCamera {
   }
 
   /**
-   * The nearest position from which the box is within the view, in the middle of it.
+   * Moves the camera to the nearest position from which the box is inside the view, and in the middle of it.
    *
-   * Let p be a corner relative to the centre, b the unit vector back to the camera, a an axis of the screen, t the tangent
-   * of half the field along a. From a distance d, shifted by s along a, the corner is visible where
-   * |p·a - s| <= t (d - p·b). With plus = max(p·a + t p·b) and minus = max(-p·a + t p·b) over the corners, the least d
-   * is (plus + minus) / 2t, where s = (plus - minus) / 2 puts a corner at either edge of the view.
+   * Let p be a corner relative to the centre, b the unit vector back to the camera, a an axis of the screen, t the
+   * tangent of half the field along a. From a distance d, shifted by s along a, the corner is visible where |p·a - s|
+   * <= t (d - p·b). With plus = max(p·a + t p·b) and minus = max(-p·a + t p·b) over the corners, the least d is (plus +
+   * minus) / 2t, where s = (plus - minus) / 2 puts a corner at either edge of the view.
    */
   private fitPerspective(camera: PerspectiveCamera): void {
     const back = viewDirection(camera.up);

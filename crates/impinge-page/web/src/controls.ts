@@ -6,13 +6,13 @@ import type { Control } from "./protocol";
 
 /** The value that a control sends; null for a button. */
 export type Value = number | string | boolean | null;
-/** Sends a control's new value to the engine, which may reject it. */
+/** A function that sends a control's new value to the engine, which may reject it. */
 type Send = (name: string, value: Value) => void;
 
 /** The form of a sample. `update` writes values that the sample changed by itself. */
 export class ControlForm {
   readonly element = make("form", { class: "controls" });
-  /** A function for each control, by its name, that shows a value. */
+  /** For each control, by its name, a function that shows a value. */
   private readonly writers = new Map<string, (control: Control) => void>();
 
   constructor(controls: Control[], send: Send) {
@@ -20,7 +20,7 @@ export class ControlForm {
     for (const control of controls) this.element.append(this.row(control, send));
   }
 
-  /** Shows new values. Controls that the form does not have and buttons are skipped. */
+  /** Shows new values. Buttons, and controls that the form does not have, are skipped. */
   update(controls: Control[]): void {
     for (const control of controls) this.writers.get(control.name)?.(control);
   }
@@ -39,7 +39,7 @@ export class ControlForm {
     }
   }
 
-  /** A slider. A step of 0 allows any number between the bounds. */
+  /** Returns a slider. A step of 0 allows any number between the bounds. */
   private slider(control: Control & { kind: "number" }, send: Send): HTMLElement {
     const { name, label, value, min, max, step } = control;
     const input = make("input", { type: "range", min, max, step: step > 0 ? step : "any", value });
@@ -56,7 +56,7 @@ export class ControlForm {
     return make("label", { class: "slider" }, make("span", {}, label), shown, input);
   }
 
-  /** A choice. Its words come from the engine and are shown unchanged. */
+  /** Returns a selection. Its words come from the engine and are shown unchanged. */
   private choice(control: Control & { kind: "choice" }, send: Send): HTMLElement {
     const select = make("select");
     for (const choice of control.choices) select.append(make("option", { value: choice }, choice));
@@ -68,7 +68,7 @@ export class ControlForm {
     return make("label", { class: "choice" }, make("span", {}, control.label), select);
   }
 
-  /** A check box. */
+  /** Returns a check box. */
   private flag(control: Control & { kind: "flag" }, send: Send): HTMLElement {
     const box = make("input", { type: "checkbox", checked: control.value });
     box.addEventListener("change", () => send(control.name, box.checked));

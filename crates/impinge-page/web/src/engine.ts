@@ -18,7 +18,7 @@ import {
 /** The exports of the module. Addresses and lengths are in bytes. */
 export interface Exports {
   memory: { buffer: ArrayBufferLike };
-  /** Returns 0 if there is not enough memory. */
+  /** Returns the address of a buffer for a message; 0 if there is not enough memory. */
   reserve(bytes: number): number;
   call(bytes: number): number;
   answer_bytes(): number;
@@ -47,7 +47,7 @@ export async function loadEngine(bytes: Uint8Array<ArrayBuffer>): Promise<Engine
   return new Engine(instance.exports as unknown as Exports);
 }
 
-/** Most messages have no payload. */
+/** The payload of messages without one. */
 const NO_BYTES = new Uint8Array(0);
 
 /**

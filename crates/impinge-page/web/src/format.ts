@@ -1,8 +1,8 @@
-// Numbers and vectors as texts.
+// Formats numbers and vectors as texts.
 
 import type { Vec3 } from "./protocol";
 
-/** Formats a number with four significant digits; very large and very small numbers have an exponent. */
+/** Formats a number with at least four significant digits; very large and very small numbers have an exponent. */
 export function number(value: number | null | undefined): string {
   if (value === null || value === undefined) return "–";
   if (!Number.isFinite(value)) return String(value);

@@ -1,12 +1,12 @@
 // The grid: a plane whose shader draws lines where a coordinate is a multiple of the cell.
 //
-// Lines of a shader stay thin and smooth at any distance, and fade where their distance is below a pixel.
+// The lines stay thin and smooth at any distance. They fade where the distance between them is below a pixel.
 
 import { Color, DoubleSide, Mesh, PlaneGeometry, ShaderMaterial, Vector3 } from "three";
 import { ORDER } from "./order";
 import type { StageCamera } from "./camera";
 
-/** The plane extends this many radii of the world in each direction. */
+/** The plane extends by this multiple of the world's radius in each direction. */
 const EXTENT = 6;
 
 /** The grid, below the world in 3D and behind it in 2D. */
@@ -55,7 +55,7 @@ const VERTEX = `
     gl_Position = projectionMatrix * modelViewMatrix * vec4(cells, 0.0, 1.0);
   }`;
 
-// `lines` is 1 on a line and 0 half a pixel beside it; lines at tenths of a cell are fainter.
+// The function `lines` is 1 on a line and 0 from half a pixel beside it. Lines at tenths of a cell are fainter.
 const FRAGMENT = `
   uniform vec3 tint;
   uniform float extent;

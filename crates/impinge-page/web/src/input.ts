@@ -1,4 +1,4 @@
-// Pointer and keyboard: translates gestures and keys to calls, without carrying them out.
+// Pointer and keyboard: translates gestures and keys to calls of their actions.
 
 import { button, make } from "./dom";
 
@@ -12,7 +12,7 @@ const MODES: { mode: Mode; label: string; hint: string; key: string }[] = [
   { mode: "ray", label: "Ray", hint: "Draw a ray: drag in 2D, click in 3D", key: "r" },
   { mode: "move", label: "Move", hint: "Drag an object; also Alt-drag in any mode", key: "m" },
 ];
-/** The precision of a pointer, in CSS pixels. */
+/** The tolerance of a pointer's position, in CSS pixels. */
 const PRECISION = { mouse: 6, touch: 14 };
 
 /** A point of the window in CSS pixels. */
@@ -25,19 +25,19 @@ export interface At {
 
 /** The calls that gestures make. */
 export interface Gestures {
-  /** A click. If `second`, the object is added to the selection. */
+  /** Called for a click. If `second`, the object is added to the selection. */
   click(at: At, second: boolean): void;
-  /** A ray from one point to another, in 2D: called while it is drawn and when it ends. */
+  /** Called in 2D while a ray is drawn from one point to another, and when it ends. */
   drawRay(from: At, to: At): void;
-  /** Returns whether there is an object to move. */
+  /** Called when a drag may begin. Returns whether there is an object to move. */
   grab(at: At): boolean;
   /** Moves the grabbed object. */
   move(to: At): void;
-  /** The gesture ended. */
+  /** Called when the drag has ended. */
   drop(): void;
-  /** Tells whether the camera may use the drag. */
+  /** Allows or forbids the camera to use the drag. */
   free(camera: boolean): void;
-  /** Returns whether rays are drawn by a drag instead of a click. */
+  /** Returns whether rays are drawn by a drag, as in 2D, instead of a click. */
   dragsRays(): boolean;
 }
 
@@ -47,7 +47,7 @@ export class Pointer {
   private readonly buttons = new Map<Mode, HTMLButtonElement>();
   /** The place where the button or the first finger went down; null if none is down. */
   private start: At | null = null;
-  /** The gesture that a movement would begin. */
+  /** The gesture to which a movement of the pointer belongs. */
   private action: "click" | "ray" | "move" = "click";
   /** Whether the press moved, so that it is not a click. */
   private moved = false;
@@ -58,8 +58,9 @@ export class Pointer {
     private readonly gestures: Gestures,
     signal: AbortSignal,
   ) {
-    // A second finger belongs to the camera from its start, so this listener runs before the camera's. The first finger
-    // reaches this class after the camera: the camera tracks it even while disabled, and can take over the pinch.
+    // A second finger belongs to the camera from its start. So this listener runs before that of the camera. The first
+    // finger reaches this class after the camera: the camera tracks it even while disabled, and can take over the
+    // pinch.
     canvas.addEventListener("pointerdown", (event) => this.interrupt(event), { signal, capture: true });
     canvas.addEventListener("pointerdown", (event) => this.down(event), { signal });
     canvas.addEventListener("pointermove", (event) => this.drag(event), { signal });
@@ -93,7 +94,9 @@ export class Pointer {
     if (!event.isPrimary && this.start) this.finish();
   }
 
-  /** Only the first finger and the main button draw and move; all else belongs to the camera. */
+  /**
+   * Begins a gesture. Only the first finger and the main button draw and move; all other presses belong to the camera.
+   */
   private down(event: PointerEvent): void {
     if (event.button !== 0 || !event.isPrimary) return;
     this.hint.hidden = true;
@@ -103,7 +106,7 @@ export class Pointer {
     this.gestures.free(this.action === "click");
   }
 
-  /** Returns the action of a press. Without an object under the pointer the camera takes the drag of mode `move`. */
+  /** Returns the action of a press. In the mode `move`, a drag that begins beside all objects belongs to the camera. */
   private actionOf(event: PointerEvent): "click" | "ray" | "move" {
     if (this.mode === "ray" && this.gestures.dragsRays() && !event.altKey) return "ray";
     if ((this.mode === "move" || event.altKey) && this.gestures.grab(pointOf(event))) return "move";
@@ -141,7 +144,7 @@ function pointOf({ clientX, clientY, pointerType }: PointerEvent): At {
   return { x: clientX, y: clientY, radius: pointerType === "touch" ? PRECISION.touch : PRECISION.mouse };
 }
 
-/** A key, its action, and the words for it in the list of keys. */
+/** A key or several, the action, and the description in the list of keys. */
 export interface Key {
   keys: string[];
   text: string;
@@ -187,7 +190,7 @@ export function fillHelp(dialog: HTMLDialogElement, keys: Key[]): void {
   );
 }
 
-/** Returns the names of keys as on a keyboard; of a long list the first and the last. */
+/** Returns the names of keys as on a keyboard. A long list is shortened to its first and its last key. */
 function keyNames(keys: string[]): string[] {
   const names = keys.map((key) => (key === " " ? "Space" : key.replace("Arrow", "").replace("Escape", "Esc")));
   if (names.length <= 2) return names;

@@ -1,4 +1,4 @@
-// The reader's questions: the selected objects or the drawn ray, and the answers in the panel and the picture.
+// The reader's question: the selected objects or the drawn ray. The answers are shown in the panel and the picture.
 
 import { type Engine, EngineError } from "./engine";
 import { number } from "./format";
@@ -11,19 +11,19 @@ import type { AnswerLine } from "./view";
 interface Ray {
   from: Vec3;
   direction: Vec3;
-  /** A length; null for an endless ray. */
+  /** The length of the ray; null if it is unbounded. */
   longest: number | null;
 }
 
 /** The number of neighbours in the panel of an object, including the object itself. */
 const NEIGHBOURS = 4;
 
-/** The present question: selected objects, or a ray. */
+/** The current question: one or two selected objects, or a ray. */
 export class Inquiry {
-  /** At most two objects. */
+  /** The indices of the selected objects, at most two. */
   selected: number[] = [];
   private ray: Ray | null = null;
-  /** The key of the content of the panel. */
+  /** A text that identifies the content of the panel; it is rewritten only if this text changes. */
   private written = "";
 
   constructor(
@@ -39,7 +39,7 @@ export class Inquiry {
     pair: (a, b) => this.set([a, b], null),
   };
 
-  /** Whether there is no question. */
+  /** Returns `true` if there is no question. */
   get empty(): boolean {
     return this.selected.length === 0 && this.ray === null;
   }
@@ -65,8 +65,8 @@ export class Inquiry {
   }
 
   /**
-   * Computes the answers again after time or objects moved. Returns the lines to draw. If an object is gone, the panel
-   * tells so.
+   * Computes the answers again after a step or a move of objects. Returns the lines to draw. If an object is gone, the
+   * panel says so.
    */
   answer(): AnswerLine[] {
     try {
@@ -114,7 +114,7 @@ export class Inquiry {
     const hits = this.engine.ray(from, direction, longest);
     this.write(JSON.stringify(hits), () => rayPanel(hits, this.info.dimension, this.links));
     const last = hits.at(-1);
-    // An endless ray is drawn to 1.1 times the time of its last hit.
+    // An unbounded ray is drawn up to 1.1 times the time of its last hit.
     const drawn = longest ?? (last?.time ?? 1) * 1.1;
     const end = from.map((part, index) => part + (direction[index] ?? 0) * drawn) as Vec3;
     const ticks = hits.slice(0, 50).map((hit): AnswerLine => normalTick(hit.point, hit.normal, drawn, hit.object));

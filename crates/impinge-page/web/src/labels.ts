@@ -1,7 +1,8 @@
-// Texts in the picture: elements above the canvas, so that they are sharp and in any script.
+// Texts in the picture: elements above the canvas, so that they are sharp and can be in any script.
 //
-// Texts are hidden if they would overlap another text or come near to its point. Answers to the reader come first, then
-// texts nearer to the camera, then earlier texts of the engine. So the same picture always shows the same texts.
+// A text is hidden if it would overlap another text or come near the point of another text. Answers to the reader have
+// precedence, then texts nearer to the camera, then earlier texts of the engine. So the same picture always shows the
+// same texts.
 
 import type { Vector3 } from "three";
 import type { CanvasPoint, StageCamera } from "./camera";
@@ -15,11 +16,14 @@ export interface PlacedText {
   color: string;
 }
 
-/** The largest number of texts in a picture; each is an element. */
+/** The maximum number of texts in a picture; each of them is an element. */
 const MAX_TEXTS = 150;
 /** The distances between a point and its text, and between two texts, in CSS pixels. */
 const [OFFSET, GAP] = [8, 2];
-/** The least distance of a text from the point of another text, in CSS pixels: the named thing has some size. */
+/**
+ * The minimum distance of a text from the point of another text, in CSS pixels. It leaves space for the labelled
+ * object.
+ */
 const CLEARANCE = 14;
 
 /** A text whose point is on the canvas. */
@@ -96,7 +100,10 @@ export class Labels {
     return element;
   }
 
-  /** Returns the rectangle at the height of the point: to its right, or to its left if that would leave the canvas. */
+  /**
+   * Returns the rectangle of a text at the height of its point: to the right of the point, or to the left if it would
+   * leave the canvas.
+   */
   private beside({ x, y }: CanvasPoint, { offsetWidth: width, offsetHeight: height }: HTMLElement): Rectangle {
     const { clientWidth, clientHeight } = this.layer;
     const isInside = x + OFFSET + width < clientWidth;

@@ -1,5 +1,5 @@
 // The layers of a frame as check boxes, with their colours as a legend. The colours are those of the engine. The style
-// sheet repeats them, since a frame has only the colours of visible layers.
+// sheet repeats them, since a frame contains only the colours of visible layers.
 
 import { make } from "./dom";
 
@@ -31,7 +31,7 @@ export class Layers {
     this.element.addEventListener("change", changed);
   }
 
-  /** The names of the visible layers. */
+  /** Returns the names of the visible layers. */
   get shown(): string[] {
     return LAYER_NAMES.filter((_, index) => this.boxes[index]?.checked);
   }

@@ -15,7 +15,7 @@ import { Viewer } from "./viewer";
 /** The open stage. The engine has one stage, so that there is at most one viewer. */
 class Page {
   private viewer: Viewer | null = null;
-  /** Created when the first stage opens: the gallery needs no graphics. */
+  /** The renderer. It is created when the first stage opens, since the gallery needs no graphics. */
   private renderer: WebGLRenderer | null = null;
 
   constructor(
@@ -72,7 +72,10 @@ class Page {
     return viewer;
   }
 
-  /** Reads a live recording. The stage is shown when the first step has arrived: then the dimension is known. */
+  /**
+   * Reads a live recording. The stage is shown when the first step has arrived, because before that its dimension is
+   * unknown.
+   */
   private watch(address: string): void {
     this.engine.open({ kind: "stream" });
     const take = (bytes: Uint8Array): void =>
@@ -88,7 +91,7 @@ class Page {
   }
 }
 
-/** Returns the facts of a stage in a line: dimension, scalar, length and the program that wrote it. */
+/** Returns a line with the facts of a stage: dimension, scalar, number of steps, and the program that wrote it. */
 function facts(info: Info): string {
   const steps = info.steps === null || info.kind === "stream" ? [] : [`${info.steps} steps`];
   return [`${info.dimension}D`, info.scalar, ...steps, info.written_by].filter(Boolean).join(" · ");

@@ -1,4 +1,4 @@
-// Sentences for readers about errors. The engine's own texts are for authors of pages.
+// Sentences about errors for readers. The texts of the engine are for authors of pages.
 
 import { EngineError } from "./engine";
 

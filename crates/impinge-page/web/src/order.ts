@@ -1,9 +1,9 @@
-// The order in which the parts of a picture are drawn. Depth decides between parts that are tested for it; each other
-// part covers the earlier ones.
+// The order in which the parts of a picture are drawn. Parts that are tested for depth hide each other by depth. Each
+// of the other parts covers all earlier parts.
 
 /**
- * Opaque solids write depth. Transparent solids and lines are drawn after them and write none, so that all of these
- * remain visible. In 2D nothing has depth, and the order is that of the layers of a drawing.
+ * Opaque solids write depth. Transparent solids and lines are drawn after them and write no depth, so that all of these
+ * remain visible. In 2D there is no depth, and the order is that of the layers of a drawing.
  */
 export const ORDER = {
   grid: 0,

@@ -1,4 +1,4 @@
-// Answers as text: the description of an object, the state of a pair with its reasons, the hits of a ray.
+// The answers as text: the description of an object, the state of a pair with its reasons, the hits of a ray.
 
 import { button, make, terms } from "./dom";
 import { counted, number, vector } from "./format";
@@ -14,7 +14,7 @@ import type {
   Status,
 } from "./protocol";
 
-/** The largest number of events in a panel. */
+/** The maximum number of events in a panel. */
 const MAX_EVENTS = 60;
 
 /** The actions of links in the panels. */
@@ -148,7 +148,7 @@ function near(object: number, nearest: NearAnswer["nearest"], links: Links): Nod
   return [subheading("Nearest objects"), list(rows)];
 }
 
-/** Returns all tests with their results, also those after a test that fails. */
+/** Returns all tests with their results, including those after a test that fails. */
 function tests({ why }: PairAnswer): HTMLElement {
   const rows = why.tests.map(({ name, passes, text }) => {
     const mark = make("b", { role: "img", "aria-label": passes ? "passes" : "fails" }, passes ? "✓" : "✗");

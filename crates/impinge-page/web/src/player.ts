@@ -1,23 +1,25 @@
-// Time: the shown step, whether time runs, and its speed.
+// The player: the shown step, whether time runs, and its speed.
 
 import type { Engine } from "./engine";
 import type { Info, Status } from "./protocol";
 
 /** The speeds that the reader can choose. */
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 8];
-/** The largest number of steps that are made before one picture, to catch up after a late one. */
+/** The maximum number of steps before one picture, with which a late picture catches up. */
 const MAX_STEPS = 16;
-/** The longest time that counts between two pictures, in seconds: a suspended page does not jump. */
+/** The maximum time between two pictures that counts, in seconds: after a pause of the page the world does not jump. */
 const MAX_PAUSE = 0.1;
 
 /** Converts the reader's time to steps of the world. */
 export class Player {
   playing = false;
-  /** Seconds of the world in a second of the reader. */
+  /** The speed: seconds of the world per second of the reader. */
   speed = 1;
-  /** Whether the end of a live recording is followed. Ends when the reader chooses another step. */
+  /**
+   * Whether the player follows the end of a live recording. It stops following when the reader chooses another step.
+   */
   following: boolean;
-  /** The number of due steps, with a fraction. */
+  /** The number of steps that are due, including a fraction. */
   private owed = 0;
   /** The step that the reader chose last, until it is shown. */
   private wanted: number | null = null;
@@ -34,22 +36,22 @@ export class Player {
     this.first = info.kind === "stream" ? 1 : info.step;
   }
 
-  /** The shown step, or the step of the next picture. */
+  /** Returns the shown step, or the step of the next picture. */
   get step(): number {
     return this.wanted ?? this.status.step;
   }
 
-  /** Whether the time can go back; samples only go forward. */
+  /** Returns `true` if the time can go back; samples only go forward. */
   get canSeek(): boolean {
     return this.info.kind !== "sample";
   }
 
-  /** Whether no later step is known. */
+  /** Whether the shown step is the last one that is known. */
   get atEnd(): boolean {
     return this.info.steps !== null && this.step >= this.info.steps;
   }
 
-  /** Starts or stops time. At its end a recording starts again. */
+  /** Starts or stops time. A recording at its end starts again from its beginning. */
   toggle(): void {
     if (!this.playing && this.atEnd) this.reset();
     this.following = false;
@@ -71,7 +73,9 @@ export class Player {
     else if (steps > 0) this.take(this.engine.advance(steps));
   }
 
-  /** Chooses the step of the next picture. Of several calls before that picture only the last counts. */
+  /**
+   * Chooses the step of the next picture. If it is called several times before that picture, only the last call counts.
+   */
   seek(step: number): void {
     if (!this.canSeek) return;
     const last = this.info.steps ?? 0;

@@ -13,7 +13,10 @@ export interface SampleEntry {
   dimension: 2 | 3;
 }
 
-/** The events of a step; or the sum of several steps from this one on, if there would be too many marks. */
+/**
+ * The changes at a step. If there would be too many marks, the changes of several consecutive steps are added up at the
+ * first of them.
+ */
 export interface Mark {
   step: number;
   started: number;
@@ -26,7 +29,7 @@ export interface Mark {
   queries: number;
 }
 
-/** A control of a sample; its kind tells how it is operated. */
+/** A control of a sample; `kind` selects its element. */
 export type Control = { name: string; label: string } & (
   | { kind: "number"; value: number; min: number; max: number; step: number }
   | { kind: "choice"; value: string; choices: string[] }
@@ -46,9 +49,9 @@ export interface Info {
   written_by: string;
   /** The last step; null for samples, which have no end. */
   steps: number | null;
-  /** Whether the end of a recording was read. */
+  /** Whether the last record of a recording was read. */
   complete: boolean;
-  /** Seconds from a step to the next. */
+  /** The time between two steps, in seconds. */
   time_step: number;
   /** The least and the greatest corner of the box that the camera frames. */
   bounds: [Vec3, Vec3];
@@ -58,7 +61,7 @@ export interface Info {
   controls: Control[];
 }
 
-/** An event of the last update; `a` and `b` are objects. */
+/** An event of the last update; `a` and `b` are the indices of objects. */
 export type PairEvent =
   | { kind: "contact"; started: boolean; a: number; b: number }
   | { kind: "proximity"; a: number; b: number; before: string; after: string };
@@ -75,19 +78,19 @@ export interface Status {
   objects: number;
   pairs: number;
   contacts: number;
-  /** The difference of a replay from its recording, in words. */
+  /** The difference of a replay from its recording, in words; null if there is none. */
   diverged: string | null;
-  /** The first events of the step; `event_count` in all. */
+  /** The events of the step, up to a limit; `event_count` is the number of all of them. */
   events: PairEvent[];
   event_count: number;
   controls: Control[];
   readouts: Readout[];
 }
 
-/** Byte offset in the payload, and the number of elements. */
+/** The byte offset in the payload, and the number of elements. */
 export type Section = [number, number];
 
-/** A mesh in its own frame: numbers of its vertices, indices of triangles and of edges. */
+/** A mesh in its own frame: the coordinates of its vertices, and the vertex indices of its triangles and edges. */
 export interface FrameMesh {
   id: number;
   vertices: Section;
@@ -116,7 +119,7 @@ export interface FrameText {
     scale: Section;
     flags: Section;
   };
-  /** Ids of meshes that will not be used again. */
+  /** Ids of meshes that are not used any more. */
   dropped: number[];
   lines: { count: number; ends: Section; color: Section; layer: Section };
   triangles: { count: number; corners: Section; color: Section; layer: Section };
@@ -185,7 +188,10 @@ export interface ObjectAnswer {
   pairs: ObjectPair[];
 }
 
-/** The points on both objects, the unit normal from the first to the second, and the depth, positive for an overlap. */
+/**
+ * A contact: the points on both objects, the unit normal from the first to the second, and the depth, which is positive
+ * for an overlap.
+ */
 export interface ContactPoint {
   a: Vec3;
   b: Vec3;
@@ -194,7 +200,7 @@ export interface ContactPoint {
   features?: string;
 }
 
-/** A test for the contact of two objects, with its result. */
+/** One of the conditions for two objects to touch, and its result. */
 export interface Test {
   name: string;
   passes: boolean;
@@ -221,7 +227,7 @@ export interface PickAnswer {
   time: number | null;
 }
 
-/** A hit; its time is in units of the length of the direction. */
+/** A hit of a ray; its time is the distance divided by the length of the direction. */
 export interface RayHit {
   object: number;
   point: Vec3;

@@ -24,18 +24,20 @@ import { LINEAR } from "./color";
 import { ORDER } from "./order";
 import type { Frame } from "./protocol";
 
-/** Faces that meet at a smaller angle than this, in radians, are shaded as one surface. */
+/** The maximum angle in radians between faces that are shaded as one smooth surface. */
 const CREASE = 0.6;
-/** Batches that had no instances for this number of frames are released. Samples that alternate keep their batches. */
+/**
+ * The number of frames without instances after which a batch is released. Samples that alternate keep their batches.
+ */
 const MAX_IDLE_FRAMES = 240;
 /** The alpha of opaque objects, and the number of values of alpha. */
 const [OPAQUE, ALPHAS] = [255, 256];
-/** The number of an instance that is not an object. */
+/** The object index of an instance that is not an object. */
 const NO_OBJECT = 0xffffffff;
-/** With more instances than this there are no shadows. */
+/** The maximum number of instances with which shadows are drawn. */
 const MAX_SHADOWS = 3000;
 
-// Values of one instance at a time, so that none is allocated per instance.
+// Scratch values for one instance, so that nothing is allocated per instance.
 const translation = new Vector3();
 const rotation = new Quaternion();
 const scale = new Vector3();
@@ -65,10 +67,10 @@ export class Solids {
   private readonly batches = new Map<number, Batch>();
   /** The number of frames so far, to find idle batches. */
   private frames = 0;
-  /** Opposite corners of the boxes of shapes that are not objects, such as those at the end of a cast. */
+  /** Opposite corners of the boxes of instances that are not objects, such as the shape at the end of a cast. */
   private readonly corners: Vector3[] = [];
 
-  /** Meshes with smaller ids than this number were received. */
+  /** The number of mesh ids that were received: meshes with smaller ids are known. */
   known = 0;
 
   constructor(private readonly flat: boolean) {}
@@ -90,7 +92,7 @@ export class Solids {
     }
   }
 
-  /** Returns points around the objects that the camera frames too. */
+  /** Returns points that the camera frames in addition to the objects. */
   points(): Vector3[] {
     return this.corners;
   }

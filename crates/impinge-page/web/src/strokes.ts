@@ -1,4 +1,4 @@
-// Lines, points and triangles of a frame: a buffer for each, refilled for each frame.
+// Lines, points and triangles of a frame, each in a buffer that is refilled for each frame.
 
 import {
   type BufferGeometry,
@@ -22,14 +22,14 @@ import { ORDER } from "./order";
 import type { Frame } from "./protocol";
 
 /**
- * Layers that nearer solids cover. The other layers are on the surfaces of solids, where rounding would decide which is
- * nearer, so that they are drawn over all solids.
+ * The layers that solids in front of them hide. The other layers lie on the surfaces of solids, where rounding would
+ * decide which is nearer. They are drawn over all solids.
  */
 const IN_DEPTH = new Set(["object", "tight box", "loosened box", "tree"]);
 
 /**
- * The least diameter of a dot, in CSS pixels, and the number of dots above which it is halved, so that they do not hide
- * all else.
+ * The minimum diameter of a dot, in CSS pixels, and the number of dots above which it is halved, so that dots do not
+ * cover the picture.
  */
 const [MIN_DOT, CROWD] = [5, 1000];
 
@@ -107,7 +107,7 @@ export class Lines {
   }
 }
 
-/** Discs with a least and a greatest size on the screen, and a light rim that separates them from solids. */
+/** Discs with a minimum and a maximum size on the screen, and a light rim that separates them from solids. */
 export class Dots {
   readonly object: Points<BufferGeometry, ShaderMaterial>;
   private readonly buffers = new Buffers({ position: 3, size: 1, color: 3 });
@@ -202,7 +202,7 @@ export class Strokes {
     this.group.add(this.behind.object, this.above.object, this.dots.object, this.faces.object);
   }
 
-  /** See `Dots.scale`. */
+  /** Sets the scale of the dots, see `Dots.scale`. */
   scale(pixels: number, density: number): void {
     this.dots.scale(pixels, density);
   }
@@ -236,7 +236,10 @@ function* pointsOf(numbers: Float32Array, count: number): Generator<Vector3> {
   for (let point = 0; point < count; point += 1) yield new Vector3().fromArray(numbers, 3 * point);
 }
 
-/** Returns the material of points. Their size is in the world's unit, limited to `least` to 11 CSS pixels. */
+/**
+ * Returns the material of points. Their size is a length in the world, limited to `least` to 11 CSS pixels on the
+ * screen.
+ */
 function dotMaterial(): ShaderMaterial {
   return new ShaderMaterial({
     vertexShader: `

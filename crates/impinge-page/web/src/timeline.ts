@@ -1,7 +1,7 @@
-// The time line: a slider over the steps, in front of marks at the steps at which something happened.
+// The time line: a slider over the steps, in front of marks at the steps that have changes.
 //
-// The slider is the browser's own, with its pointer, touch and assistive technology. Its thumb is as wide as both
-// margins of the marks together, so that its middle is above the mark of its step.
+// The slider is that of the browser, with its support of pointer, touch and assistive technology. Its thumb is as wide
+// as both margins of the marks together, so that its middle is above the mark of its step.
 
 import { make } from "./dom";
 import type { Mark } from "./protocol";
@@ -12,14 +12,17 @@ const BIN = 4;
 const PAD = 10;
 /** The height in CSS pixels; the style sheet has the same value. */
 const HEIGHT = 58;
-/** Positions from top to bottom: added, removed and changed; started; the track; stopped; proximities and queries. */
+/**
+ * The positions of the rows from top to bottom: added, removed and changed; started; the track; stopped; proximities
+ * and queries.
+ */
 const ROWS = { changed: 8, track: HEIGHT / 2, queries: 50 };
 /** The length of the longest bar. */
 const BAR = 13;
 
 /** The kinds of marks in the order of the legend. */
 const KINDS = ["started", "stopped", "proximities", "added", "removed", "changed", "queries"] as const;
-/** The count of each kind. */
+/** The number of changes of each kind. */
 type Counts = Record<(typeof KINDS)[number], number>;
 const NOTHING = Object.fromEntries(KINDS.map((kind) => [kind, 0])) as Counts;
 
@@ -28,7 +31,7 @@ export class Timeline {
   private readonly canvas = make("canvas", { "aria-hidden": "true" });
   private readonly slider = make("input", { type: "range", min: 0, step: 1, value: 0, "aria-label": "Step" });
   private readonly tip = make("span", { class: "tip", "aria-hidden": "true", hidden: true });
-  /** The sums of marks in each bin of the track. */
+  /** The sum of the marks in each bin of the track. */
   private bins = new Map<number, Counts>();
   /** The marks in order of the steps. */
   private marks: Mark[] = [];
@@ -94,7 +97,7 @@ export class Timeline {
     return Math.floor(this.x(step) / BIN);
   }
 
-  /** Sums the marks in each bin, so that the cost of drawing depends on the width alone. */
+  /** Adds up the marks in each bin, so that the cost of drawing depends only on the width. */
   private layout(): void {
     const density = window.devicePixelRatio;
     this.canvas.width = Math.round(this.width * density);
@@ -134,11 +137,11 @@ function describe(kind: (typeof KINDS)[number], count: number): string {
   return `${count} ${kind}`;
 }
 
-/** Draws the signs of a bin, which differ in form and place, not only in colour. */
+/** Draws the signs of a bin. They differ in form and place, not only in colour. */
 function drawMark(context: CanvasRenderingContext2D, x: number, counts: Counts, color: (name: string) => string): void {
   context.lineCap = "butt";
   context.lineWidth = BIN - 1;
-  // The length is logarithmic in the count, so that one and a thousand can both be seen.
+  // The length is logarithmic in the count, so that both one and a thousand are visible.
   const length = (count: number): number => Math.min(BAR, 4 + 3 * Math.log2(count));
   if (counts.started > 0)
     stroke(context, [x, ROWS.track - 4, x, ROWS.track - 4 - length(counts.started)], color("started"));

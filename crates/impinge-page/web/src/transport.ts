@@ -5,7 +5,7 @@ import { type Player, SPEEDS } from "./player";
 import { legend, Timeline } from "./timeline";
 
 export class Transport {
-  /** Hidden for samples, which have no length. */
+  /** The time line; hidden for samples, which have no length. */
   readonly timeline: Timeline;
   private readonly play: HTMLButtonElement;
   /** The button that is pressed while the end of a live recording is followed. */

@@ -19,7 +19,8 @@ export interface AnswerLine {
 }
 
 /**
- * Draws a stage. Positions of frames are in the stage's frame, those of answers in the world's: see `camera.ts`.
+ * Draws a stage. Positions in frames are in the stage's frame, positions in answers are in the world's frame; see
+ * `camera.ts`.
  *
  * The picture is drawn only after changes: call `update` after a frame, `answer` after a question, then `render`.
  */
@@ -34,9 +35,9 @@ export class View {
   private readonly axes: Axes | null;
   private readonly light = new DirectionalLight(0xffffff, 2);
   private readonly grid = new Grid();
-  /** The lines of answers, kept to draw them again in another colour scheme. */
+  /** The lines of the current answer, kept so that they can be drawn again in another colour scheme. */
   private lines: AnswerLine[] = [];
-  /** The largest number of pixels of the screen per CSS pixel. */
+  /** The maximum number of pixels of the screen per CSS pixel. */
   private density = 2;
   private readonly up: Vector3;
   /** The bounds for which camera, light and grid were placed. */
@@ -75,7 +76,7 @@ export class View {
     this.camera.fit([...this.solids.points(), ...this.strokes.points()]);
   }
 
-  /** Takes over another frame, which `render` will draw. */
+  /** Replaces the content by that of another frame, which `render` will draw. */
   update(frame: Frame): void {
     const hasMoved = frame.origin.some((part, axis) => part !== this.origin[axis]);
     this.origin = frame.origin;
@@ -130,7 +131,10 @@ export class View {
     this.answer(this.lines);
   }
 
-  /** Draws without shadows and grid, and with one pixel per CSS pixel, since drawing takes too long. */
+  /**
+   * Switches to a faster drawing without shadows and grid, and with one pixel per CSS pixel. Called if drawing takes
+   * too long.
+   */
   simplify(): void {
     this.light.castShadow = false;
     this.grid.visible = false;
@@ -171,8 +175,8 @@ export class View {
     this.light.target.position.copy(center);
     this.light.position.copy(center).addScaledVector(side.add(this.up), 2 * radius);
     const { shadow } = this.light;
-    // About two texels of the shadow map, as a length in the world: without it surfaces cast stripes of shadow on
-    // themselves.
+    // About two texels of the shadow map, as a length in the world. Without this bias surfaces cast stripes of shadow
+    // on themselves.
     shadow.normalBias = radius * 2e-3;
     // The box is aligned with the light and contains the ball around the world, from before the lamp to behind the
     // world.

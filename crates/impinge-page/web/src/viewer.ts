@@ -14,19 +14,19 @@ import type { Info, Status } from "./protocol";
 import { Transport } from "./transport";
 import { View } from "./view";
 
-/** The least time between two updates of the panels while time runs, in milliseconds. */
+/** The minimum time between two updates of the panels while time runs, in milliseconds. */
 const PANEL_PAUSE = 120;
-/** The least time between two updates of the summary for assistive technology, in milliseconds. */
+/** The minimum time between two updates of the summary for assistive technology, in milliseconds. */
 const SUMMARY_PAUSE = 1500;
-/** If pictures take longer than this on average, in milliseconds, they are simplified. */
+/** The average time per picture, in milliseconds, above which pictures are simplified. */
 const SLOW = 60;
 
-/** The parts that a change of the world makes out of date. */
+/** The parts that are out of date after a change of the world. */
 const ALL = { frame: true, picture: true, panels: true };
 
 /** Owns the parts of a stage until `close`. Nothing is drawn while nothing changes. */
 export class Viewer {
-  /** Time. */
+  /** The player, which controls the shown step. */
   readonly player: Player;
   readonly view: View;
   /** The reader's question: the selected objects, or a ray. */
@@ -45,7 +45,7 @@ export class Viewer {
   private stale = { ...ALL };
   /** The time of the last picture, in milliseconds; null before the first. */
   private time: number | null = null;
-  /** The times at which panels and summary were written last. */
+  /** The times at which the panels and the summary were last written, in milliseconds. */
   private last = { panels: -Infinity, summary: -Infinity };
 
   constructor(
@@ -74,7 +74,7 @@ export class Viewer {
     requestAnimationFrame((time) => this.loop(time));
   }
 
-  /** A signal that `close` aborts, so that listeners end. */
+  /** Returns a signal that `close` aborts, so that listeners end. */
   get signal(): AbortSignal {
     return this.controller.signal;
   }
@@ -96,7 +96,7 @@ export class Viewer {
     this.redraw();
   }
 
-  /** Goes to the next or previous step at which something happened. */
+  /** Goes to the next or previous step that has a mark. */
   toMark(direction: 1 | -1): void {
     const step = this.transport.timeline.neighbour(this.player.step, direction);
     if (step !== null) this.player.seek(step);
@@ -121,7 +121,7 @@ export class Viewer {
     this.transport.ended();
   }
 
-  /** Calls `act` and reports an error of the engine; other errors are bugs, and are not caught. */
+  /** Calls `act` and reports an error of the engine. Other errors are bugs, and are not caught. */
   attempt(act: () => void): void {
     try {
       act();
@@ -145,8 +145,8 @@ export class Viewer {
   }
 
   /**
-   * Runs before each picture of the screen, until the stage is closed. All times are those of pictures; other clocks
-   * may be ahead of them.
+   * Runs before each picture of the screen, until the stage is closed. All times are those of pictures, since other
+   * clocks may be ahead of them.
    */
   private loop(time: number): void {
     if (this.signal.aborted) return;
@@ -165,7 +165,7 @@ export class Viewer {
     if (this.pace > SLOW) this.view.simplify();
   }
 
-  /** Updates the frame before the picture; panels are last, since they may wait. */
+  /** Brings the parts up to date: the frame before the picture, and the panels last, since they may wait. */
   private bringUpToDate(time: number): void {
     if (this.stale.frame) {
       this.stale.frame = false;

@@ -49,7 +49,7 @@ test("boxes in 2D cover the pixels that the fitted bounds say", options, async (
   await until(page, /step 120/);
   await settle(page);
   const project = await projection2(page, BOUNDS2);
-  // The blue boxes are every fourth in rows of eight: columns 0 and 4, rows 0 to 7, 1 apart.
+  // The blue boxes are every fourth box in rows of eight: columns 0 and 4, rows 0 to 7, at a distance of 1.
   const [low, high] = [project([-0.5, 8, 0]), project([6.5, 0, 0])];
   const seen = await silhouette(page, "blue");
   for (const [one, other] of [
@@ -74,7 +74,7 @@ const BOUNDS3: [Vec3, Vec3] = [
   [5, 7, 5],
 ];
 
-/** Returns the distances of the solids from the projection of the fitted bounds: left, right, above, below. */
+/** Returns the gaps between the projection of the fitted bounds and the solids: left, right, above, below. */
 async function margins(page: Page): Promise<number[]> {
   const spots = corners(BOUNDS3).map(await projection3(page, BOUNDS3));
   const [xs, ys] = [spots.map(({ x }) => x), spots.map(({ y }) => y)];
@@ -124,7 +124,7 @@ test("texts that would overlap give way, always the same ones", options, async (
     }
     assert.ok(boxes.length >= 8 && boxes.length < 60, `${boxes.length} of 60 texts`);
     shown.push(boxes.map(({ text }) => text));
-    // After zooming in, the distances of the points are larger than the texts.
+    // After zooming in, the points are farther apart than the texts are large.
     for (const key of "++++++++++++") await page.keyboard.press(key as "+");
     await settle(page);
     assert.ok((await labels(page)).length > 2, "some remain");

@@ -1,6 +1,6 @@
-// A small engine of boxes without rotation, with the exports of the real one. With it the page's drawing can be seen
-// and measured without the cost of collision detection. All answers are in closed form. `texts2:60` is `boxes2:60` with
-// a text at each box.
+// A small engine of boxes without rotation, with the exports of the real engine. With it the page's drawing can be
+// tested and measured without the cost of collision detection. All answers are in closed form. `texts2:60` is
+// `boxes2:60` with a text at each box.
 
 import type { Exports } from "../src/engine";
 import type { Control, FrameText, Label, Section, Vec3 } from "../src/protocol";
@@ -19,7 +19,10 @@ interface Stage {
   boxes: (step: number) => Box[];
 }
 
-/** Returns boxes in a square or a cube; `name` is `boxes2:400` or `boxes3:10000`, with their number. */
+/**
+ * Returns boxes in a square or a cube. The name, such as `boxes2:400` or `boxes3:10000`, has the dimension and their
+ * number.
+ */
 function makeStage(name: string, steps: number | null): Stage {
   const isNamed = name.startsWith("texts");
   const dimension = name.includes("2:") ? 2 : 3;
@@ -36,7 +39,7 @@ function makeStage(name: string, steps: number | null): Stage {
   return { isNamed, dimension, steps, boxes };
 }
 
-/** Returns the gap between two boxes along each axis, negative if they overlap. */
+/** Returns the gap between two boxes along each axis; negative if they overlap. */
 function gaps(a: Box, b: Box): Vec3 {
   return a.at.map((part, axis) => Math.abs(part - b.at[axis]!) - a.half[axis]! - b.half[axis]!) as Vec3;
 }
@@ -123,7 +126,7 @@ class FakeEngine {
 
   private go(message: Record<string, unknown>): object {
     const steps = ((message.do === "seek" ? message.step : message.steps) as number) ?? 1;
-    // The module rejects these too.
+    // The real engine rejects these too.
     if (!(Number.isInteger(steps) && steps >= 0)) return { error: `invalid value: ${steps}`, code: "message" };
     this.step = message.do === "seek" ? steps : this.step + steps;
     this.step = Math.min(this.step, this.stage.steps ?? Infinity);
@@ -204,7 +207,7 @@ class FakeEngine {
     return boxes.map(({ at }, index) => ({ at, text: `number ${index}`, color: 0xff3cc8ff, layer: 0 }));
   }
 
-  /** Returns the first box on a ray, by the slabs of the boxes. */
+  /** Returns the first box that a ray hits, by the slab method. */
   private pick(from: Vec3, direction: Vec3): object {
     let best = { object: null as number | null, time: Infinity };
     this.boxes.forEach(({ at, half }, object) => {
@@ -330,7 +333,7 @@ class Writer {
   }
 }
 
-/** The address of messages: not 0, which means that there is no memory. */
+/** The address of messages; 0 would mean that there is no memory. */
 const ADDRESS = 8;
 
 /** Returns the exports of a module whose memory is replaced by each call. */

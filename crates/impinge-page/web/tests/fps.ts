@@ -1,6 +1,6 @@
-// Measures the pictures per second that the page draws of a moving world, with the engine of boxes, so that the cost is
-// that of drawing. The time of scripts, including the engine of boxes, is the cost of the page with a graphics card;
-// without one the remaining time is that of the rasterizer.
+// Measures how many pictures per second the page draws of a moving world. The engine of boxes is used, so that the cost
+// is that of drawing. The time of scripts, including that engine, is the cost of the page with a graphics card; without
+// one the remaining time is that of the rasterizer.
 
 import { findBrowser, launch, settle, until, visit, write } from "./support";
 

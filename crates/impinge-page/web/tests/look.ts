@@ -1,4 +1,4 @@
-// Takes pictures of the page for people to look at: light and dark, wide and narrow.
+// Takes screenshots of the page for visual inspection: light and dark, wide and narrow.
 
 import { mkdirSync } from "node:fs";
 import type { Page } from "puppeteer-core";

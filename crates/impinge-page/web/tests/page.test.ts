@@ -44,7 +44,7 @@ function recorded(dimension: 2 | 3): string {
   });
 }
 
-/** Returns the number that a panel lists beside a word. */
+/** Returns the number that the panel lists for a term. */
 async function listed(page: Page, term: string): Promise<number> {
   const text = await page.$$eval(
     ".selection dt",
@@ -96,7 +96,7 @@ test("recordings of every shape open and run to their end without an error", opt
     await until(page, /^step 1 of 10: \d+ objects/);
     await page.keyboard.press(" ");
     await until(page, /^step 10 of 10/);
-    // Stand-ins replace the shapes and pair filters of the recorded program, so that the replay differs and reports it.
+    // Stand-ins replace the shapes and pair filters of the recorded program. So the replay differs and reports it.
     const others = errors.filter((error) => !error.startsWith("banner: The replay differs from its recording (step "));
     assert.deepEqual(others, []);
     await page.close();
@@ -281,7 +281,7 @@ test(
     // Every eighth sample: a browser without a GPU draws slowly, and the engine's own tests run all of them.
     for (const name of names.filter((_, index) => index % 8 === 0)) {
       await page.evaluate((hash) => (location.hash = hash), name);
-      // Without waiting for a picture: rendering ten thousand objects in software is slow.
+      // The test does not wait for a picture: rendering ten thousand objects in software is slow.
       const summary = await until(page, /^step 0: /).catch(() => assert.fail(`${name} does not open`));
       // A picture of so many objects takes minutes in software, so the test only checks that the sample opens.
       if (/^step 0: \d+\s\d{3} objects/.test(summary)) continue;
@@ -303,7 +303,7 @@ test(
     const { page, errors } = await visit(browser, "about:blank", { motion: true, undrawn: true });
     for (const { name } of samples) {
       for (const way of ["link", "reload"]) {
-        // A change of the sample in the address of the same file would not load the page again.
+        // If only the sample in the address of the same file changed, the page would not be loaded again.
         if (way === "link") await page.goto("about:blank");
         await (way === "link" ? page.goto(`${address}#sample=${name}`) : page.reload());
         await until(page, /^step [1-9]/).catch(() => assert.fail(`${name} does not run by ${way}`));

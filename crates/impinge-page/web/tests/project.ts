@@ -1,4 +1,4 @@
-// Positions of points of a world on the screen, computed independently of the page's camera, which is tested against
+// Computes positions of points of a world on the screen, independently of the page's camera, which is tested against
 // them.
 
 import type { Page } from "puppeteer-core";
@@ -26,7 +26,7 @@ async function canvasOf(page: Page): Promise<Rectangle> {
 /** The fraction of the canvas that fitted bounds cover. */
 const FILL = 0.9;
 
-/** Returns the projection of a world in 2D whose bounds were fitted: they fill the height or the width. */
+/** Returns the projection of a 2D world whose bounds were fitted: they fill the height or the width. */
 export async function projection2(page: Page, [low, high]: [Vec3, Vec3]): Promise<Projection> {
   const { x, y, width, height } = await canvasOf(page);
   const scale = FILL * Math.min(width / (high[0] - low[0]), height / (high[1] - low[1]));
@@ -42,9 +42,9 @@ export function corners([low, high]: [Vec3, Vec3]): Vec3[] {
 }
 
 /**
- * Returns the projection of a world in 3D with y up: its bounds are in the middle of a field of 38 degrees and fill the
- * height or the width. The page solves for the camera. Here it is found by iteration: centred, then moved nearer or
- * farther.
+ * Returns the projection of a 3D world with y up. Its bounds are in the middle of a field of 38 degrees and fill the
+ * height or the width. The page solves for the camera in closed form; here it is found by iteration: centred, then
+ * moved nearer or farther.
  */
 export async function projection3(page: Page, bounds: [Vec3, Vec3]): Promise<Projection> {
   const { x, y, width, height } = await canvasOf(page);
@@ -76,14 +76,16 @@ export async function projection3(page: Page, bounds: [Vec3, Vec3]): Promise<Pro
   };
 }
 
-/** The box around pixels of the canvas that a test of their colours accepts, in CSS pixels, and their number. */
+/**
+ * The box around the pixels of the canvas whose colours a test accepts, in CSS pixels, and the number of these pixels.
+ */
 export interface Silhouette {
   low: Spot;
   high: Spot;
   pixels: number;
 }
 
-/** Reads the colours of a screenshot in the page, which can decode it. */
+/** Takes a screenshot and computes the silhouette in the page, which can decode the screenshot. */
 export async function silhouette(page: Page, kind: "blue" | "solid"): Promise<Silhouette> {
   const { x, y, width, height } = await canvasOf(page);
   await page.addStyleTag({ content: "#hint, #labels { display: none }" });
@@ -93,7 +95,10 @@ export async function silhouette(page: Page, kind: "blue" | "solid"): Promise<Si
   return { low: shift(found.low), high: shift(found.high), pixels: found.pixels };
 }
 
-/** Runs in the page. In blue pixels blue clearly exceeds red and green; solid pixels are darker than the background. */
+/**
+ * Runs in the page. In blue pixels the blue channel clearly exceeds red and green; solid pixels are darker than the
+ * background.
+ */
 async function readPicture(picture: string, kind: "blue" | "solid"): Promise<Silhouette> {
   const image = new Image();
   image.src = `data:image/png;base64,${picture}`;

@@ -11,7 +11,9 @@ import type { Scene } from "../src/embedded";
 
 /** The folder of the page's sources; `run.mjs` starts the tests there. */
 const WEB = process.cwd();
-/** The timeout in milliseconds: software rendering of ten thousand objects is slow on a busy machine. */
+/**
+ * The timeout in milliseconds. It is long, since software rendering of ten thousand objects is slow on a busy machine.
+ */
 const PATIENCE = 180_000;
 const FLAGS = [
   "--headless=new",
@@ -21,7 +23,7 @@ const FLAGS = [
   "--enable-unsafe-swiftshader",
 ];
 
-/** The contents of a file. */
+/** The parts with which the template is filled. */
 export interface Parts {
   scene: Scene;
   recording?: Uint8Array;
@@ -50,7 +52,7 @@ export function findModule(): Uint8Array | null {
   return path ? readFileSync(path) : null;
 }
 
-/** Returns the golden recording of worlds in 2D or 3D. */
+/** Returns the golden recording in 2D or 3D. */
 export function golden(dimension: 2 | 3): Uint8Array {
   return readFileSync(join(WEB, `../../impinge-record/tests/golden/scene${dimension}.rec`));
 }

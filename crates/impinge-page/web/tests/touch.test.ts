@@ -11,7 +11,7 @@ const path = findBrowser();
 if (!path) console.log("no browser: the tests of touches are skipped");
 const options = { skip: path === null, timeout: 120_000 };
 const samples = write({ scene: { open: "samples", title: "Samples" } });
-/** Points of the boxes 0 and 2 at the first step. Boxes are in rows of eight. */
+/** Points inside the boxes 0 and 2 at the first step. Boxes are in rows of eight. */
 const [FIRST, THIRD]: [Vec3, Vec3] = [
   [0.2, 0.6, 0],
   [3.2, 0.6, 0],
@@ -44,7 +44,7 @@ async function tap(page: Page, { x, y }: Spot): Promise<string> {
   return textOf(page, ".selection");
 }
 
-/** Moves two fingers around a point from one distance to another. */
+/** Moves two fingers symmetrically around a point; their distance from it changes from `from` to `to`. */
 async function pinch(page: Page, { x, y }: Spot, from: number, to: number): Promise<void> {
   const left = await page.touchscreen.touchStart(x - from, y);
   const right = await page.touchscreen.touchStart(x + from, y);
@@ -59,7 +59,7 @@ async function pinch(page: Page, { x, y }: Spot, from: number, to: number): Prom
   await settle(page);
 }
 
-/** Returns the position of a spot after all distances from a fixed spot were multiplied. */
+/** Returns the position of a spot after a magnification around a fixed spot. */
 function magnified(spot: Spot, fixed: Spot, factor: number): Spot {
   return { x: fixed.x + factor * (spot.x - fixed.x), y: fixed.y + factor * (spot.y - fixed.y) };
 }

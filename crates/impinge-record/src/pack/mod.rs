@@ -1,7 +1,7 @@
-//! Packed recordings: the same calls in about a tenth of the bytes.
+//! Packed recordings: the calls of a recording in about a tenth of its bytes.
 //!
-//! Records are split into streams, and poses are predicted from earlier ones: see `poses.rs`. The residuals are small
-//! numbers, which deflate compresses.
+//! Records are split into streams, and poses are predicted from earlier ones, as `poses.rs`
+//! describes. The residuals are small numbers, which deflate compresses well.
 
 mod poses;
 mod records;
@@ -18,30 +18,31 @@ const MAGIC: [u8; 8] = *b"\x89IPPAC\r\n";
 
 const PACKED_VERSION: u32 = 1;
 
-/// The largest number of bytes of a recording that is packed, or that results from unpacking.
+/// The maximum size in bytes of a recording that can be packed, or that results from unpacking.
 pub const MAX_UNPACKED: usize = 1 << 30;
 
-/// The largest number of bytes of the streams per byte of the recording: the smallest record that is split has one byte
-/// and its length.
+/// The maximum number of bytes of the streams per byte of the recording. It bounds the memory of
+/// unpacking.
 const STREAM_BYTES: usize = 2;
 
-/// Whether the bytes begin with the signature of a packed recording.
+/// Returns `true` if the bytes begin with the signature of a packed recording.
 #[must_use]
 pub fn is_packed(bytes: &[u8]) -> bool {
     bytes.starts_with(&MAGIC)
 }
 
-/// Packs a recording, or the beginning of one that ends with a complete record.
+/// Packs a recording. Its end may be missing, but it must end with a complete record.
 ///
-/// [`unpack`] returns the same recording to the bit, except for the hashes of objects in its updates. These are
-/// omitted, since random bits cannot be compressed: a differing replay is still detected at its step, by the hash of
-/// the state, but the object is not named. Updates of version 1 of the format keep them.
+/// [`unpack`] returns the same recording to the bit, except for the hashes of objects in its
+/// updates. These are omitted, since random bits cannot be compressed. A differing replay is still
+/// detected at its step, by the hash of the state, but the object is unknown. Updates of version 1
+/// of the format keep the hashes.
 ///
-/// Costs time in proportion to the bytes, and about three times their memory.
+/// Costs time in proportion to the number of bytes, and about three times their memory.
 ///
 /// # Errors
-/// If the bytes are no recording, a checksum is wrong, a record is incomplete, or the recording has more than
-/// [`MAX_UNPACKED`] bytes.
+/// If the bytes are no recording, a checksum is wrong, a record is incomplete, or the recording has
+/// more than [`MAX_UNPACKED`] bytes.
 ///
 /// ```
 /// use impinge_record::{Recorder, Registry, is_packed, pack, unpack, validate};
@@ -73,14 +74,14 @@ pub fn pack(bytes: &[u8]) -> Result<Vec<u8>, ReadError> {
     Ok(sink.bytes)
 }
 
-/// Returns the recording that was packed.
+/// Unpacks a recording.
 ///
-/// Costs time in proportion to the bytes of the recording, and about three times their memory. Errors in compressed data have
-/// the offset at which it begins.
+/// Costs time in proportion to the number of bytes of the recording, and about three times their
+/// memory. Errors in compressed data have the offset at which this data begins.
 ///
 /// # Errors
-/// If the bytes are no packed recording of a supported version, they were changed, or the recording would have more
-/// than [`MAX_UNPACKED`] bytes.
+/// If the bytes are no packed recording of a supported version, if they were changed, or if the
+/// recording would have more than [`MAX_UNPACKED`] bytes.
 pub fn unpack(bytes: &[u8]) -> Result<Vec<u8>, ReadError> {
     let mut source = Source::new(bytes, 0..bytes.len());
     let start = source.error(Problem::NotARecording);

@@ -1,8 +1,8 @@
-//! Poses as residuals: the difference of each number from a prediction.
+//! Encodes poses as residuals: the difference of each number from a prediction.
 //!
-//! The motion of a body is predictable. Each number of a pose is predicted from the last poses of
-//! the object in several ways. The way whose recent residuals of this number were the shortest is
-//! used. The reader computes the same choice from the earlier poses, so that the choice is not
+//! The motion of a body is predictable. Several candidates predict each number of a pose from the
+//! last poses of the object. The candidate whose recent residuals of this number were the shortest
+//! is used. The reader derives the same choice from the earlier poses, so the choice is not
 //! written. All predictions are sums, products and quotients of `f64` in a fixed order, so that
 //! every machine computes the same bits.
 
@@ -18,13 +18,13 @@ use crate::space::Recordable;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Layout {
     pub(super) scalar_bytes: usize,
-    /// The number of components of the translation; those of the rotation follow.
+    /// The number of components of the translation, which precede those of the rotation.
     pub(super) dimension: usize,
     pub(super) numbers: usize,
 }
 
 impl Layout {
-    /// Returns the layout of recordings with a scalar of `scalar_bytes` bytes and a dimension.
+    /// Returns the layout for a scalar of `scalar_bytes` bytes and a dimension.
     pub(super) const fn new(scalar_bytes: u8, dimension: u8) -> Result<Self, Problem> {
         let numbers = match dimension {
             2 => <f64 as Recordable<2>>::ISOMETRY_NUMBERS,
@@ -38,41 +38,42 @@ impl Layout {
         Ok(Self { scalar_bytes, dimension, numbers })
     }
 
-    /// The number of bytes of a pose.
+    /// Returns the number of bytes of a pose.
     pub(super) const fn pose_bytes(&self) -> usize {
         self.numbers * self.scalar_bytes
     }
 
-    /// A mask of the bits of a number.
+    /// Returns a mask of the bits of a number.
     const fn mask(&self) -> u64 {
         u64::MAX >> (64 - 8 * self.scalar_bytes)
     }
 
-    /// Maps bits to an integer, so that the order of numbers is the order of integers.
+    /// Maps the bits of a number to an integer, such that the order of integers is the order of
+    /// numbers.
     pub(super) const fn ordered(&self, bits: u64) -> u64 {
         let sign = self.mask() ^ (self.mask() >> 1);
         if bits & sign == 0 { bits | sign } else { !bits & self.mask() }
     }
 
-    /// The inverse of [`Self::ordered`].
+    /// Maps an integer of [`Self::ordered`] back to the bits of a number.
     const fn unordered(&self, integer: u64) -> u64 {
         let sign = self.mask() ^ (self.mask() >> 1);
         if integer & sign == 0 { !integer & self.mask() } else { integer ^ sign }
     }
 
-    /// Returns the difference of two ordered integers, modulo 2 to the number of bits, as an
-    /// unsigned number. Small differences of either sign give small numbers.
+    /// Returns the difference of two ordered integers, modulo 2^(bits of a number), in zigzag
+    /// encoding: small differences of either sign are small numbers.
     pub(super) const fn residual(&self, actual: u64, predicted: u64) -> u64 {
         let unused = 64 - 8 * self.scalar_bytes;
         zigzag((actual.wrapping_sub(predicted) << unused).cast_signed() >> unused)
     }
 
-    /// Returns the integer with this residual from a prediction.
+    /// Returns the integer that has this residual from the prediction.
     const fn with_residual(&self, predicted: u64, residual: u64) -> u64 {
         predicted.wrapping_add_signed(from_zigzag(residual)) & self.mask()
     }
 
-    /// Returns the bits of the numbers of a pose.
+    /// Converts the bytes of a pose to the bits of its numbers.
     pub(super) fn bits(&self, bytes: &[u8]) -> Bits {
         let mut bits = [0; MAX_NUMBERS];
         for (own, number) in bits.iter_mut().zip(bytes.chunks_exact(self.scalar_bytes)) {
@@ -83,23 +84,23 @@ impl Layout {
         bits
     }
 
-    /// Returns the bytes of the numbers of a pose.
+    /// Converts the bits of the numbers of a pose to bytes.
     pub(super) fn bytes(&self, bits: &Bits) -> Vec<u8> {
         let number = |bits: &u64| bits.to_le_bytes().into_iter().take(self.scalar_bytes);
         bits.iter().take(self.numbers).flat_map(number).collect()
     }
 }
 
-/// The event in the recording that gives an object a new pose.
+/// The kind of call that gives an object a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PoseKind {
-    /// Its position was set.
+    /// The position of the object was set.
     Moved,
-    /// The object was added, or it is in a key frame: its pose is most likely the last one.
+    /// The object was added, or is part of a key frame. Then its pose is most likely the last one.
     Placed,
 }
 
-/// The objects of a recording by index, up to the current record.
+/// The last poses of all objects by index, up to the current record.
 #[derive(Debug)]
 pub(super) struct Poses {
     layout: Layout,

@@ -1,4 +1,4 @@
-//! Splits records into streams, and rebuilds them.
+//! Splits records into streams, and rebuilds them from these.
 
 use std::collections::BTreeMap;
 
@@ -9,14 +9,14 @@ use crate::call::kinds;
 use crate::error::{Problem, ReadError};
 use crate::log::{Cursor, Header, Log, Raw};
 
-/// The bytes of an update before the flag of the hashes of objects.
+/// The number of bytes of an update before the flag that announces hashes of objects.
 const UPDATE_BYTES: usize = 28;
 
-/// Longer descriptions, in bytes, are written again each time. Otherwise a few packed bytes could
-/// unpack to many.
+/// The maximum length of a description, in bytes, that is not written again while it is unchanged.
+/// If longer ones were repeated, a few packed bytes could unpack to many.
 const REPEATED_BYTES: usize = 256;
 
-/// The bytes of the descriptions of objects by index: shape, groups, query type and data.
+/// The bytes that describe each object, by index: shape, groups, query type and data.
 type Descriptions = BTreeMap<u32, Vec<u8>>;
 
 /// A recording split into streams.
@@ -36,7 +36,7 @@ pub(super) struct Packer {
     streams: Streams,
     poses: Poses,
     descriptions: Descriptions,
-    /// The last index written.
+    /// The last index that was written.
     index: u32,
     checksum: crc32fast::Hasher,
     length: usize,
@@ -81,7 +81,8 @@ impl Packer {
         Ok(Packed { streams: self.streams, length, checksum })
     }
 
-    /// Counts bytes of the unpacked recording, before a checksum.
+    /// Adds the bytes of a record to the checksum and the length of the unpacked recording, and the
+    /// four bytes of its checksum to the length.
     fn count(&mut self, parts: &[&[u8]]) {
         for part in parts {
             self.checksum.update(part);
@@ -96,7 +97,7 @@ impl Packer {
         plain.bytes.extend(bytes);
     }
 
-    /// Adds an update without the hashes of objects.
+    /// Adds an update. `hashes` are the bytes before the hashes of objects, which are omitted.
     fn update(&mut self, hashes: &[u8]) {
         self.streams.sink(PLAIN).bytes.extend(hashes);
         let mut head = Sink::default();
@@ -130,7 +131,7 @@ impl Packer {
         source.finish()
     }
 
-    /// Adds the length of a list, whose elements follow.
+    /// Adds the length of a list and returns it; the elements are added by the caller.
     fn list(&mut self, source: &mut Source<'_>) -> Result<usize, ReadError> {
         let length = source.count(4)?;
         self.streams.sink(PLAIN).varint(length as u64);
@@ -140,7 +141,7 @@ impl Packer {
     fn object(&mut self, source: &mut Source<'_>) -> Result<(), ReadError> {
         let index = self.pose(source, PoseKind::Placed)?;
         let start = source.offset();
-        // The index of the shape, and the groups.
+        // The first bytes are the index of the shape (4) and the groups (13).
         source.take(4 + 13)?;
         let numbers = if source.choice(2, "the kind of a query type")? == 0 { 2 } else { 1 };
         source.take(numbers * self.layout.scalar_bytes)?;
@@ -184,9 +185,9 @@ pub(super) struct Unpacker {
     streams: Inflated,
     poses: Poses,
     descriptions: Descriptions,
-    /// The last index read.
+    /// The last index that was read.
     index: u32,
-    /// The number of bytes of the recording.
+    /// The number of bytes of the unpacked recording.
     limit: usize,
 }
 
@@ -213,7 +214,7 @@ impl Unpacker {
         Ok(log)
     }
 
-    /// Checks that the result does not exceed the length of the recording.
+    /// Checks that `length` does not exceed that of the unpacked recording.
     fn check(&self, length: usize) -> Result<(), ReadError> {
         let problem = Problem::BadValue { what: "the length of the recording" };
         if length <= self.limit { Ok(()) } else { Err(ReadError { offset: 0, problem }) }
@@ -262,7 +263,7 @@ impl Unpacker {
         Ok(())
     }
 
-    /// Reads the length of a list, whose elements follow.
+    /// Reads the length of a list, writes it and returns it; the elements are read by the caller.
     fn list(&mut self, sink: &mut Sink) -> Result<u32, ReadError> {
         let length = self.list_length()?;
         sink.word(length);

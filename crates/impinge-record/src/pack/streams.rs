@@ -6,19 +6,19 @@ use miniz_oxide::inflate::decompress_to_vec_with_limit;
 use crate::bytes::{Sink, Source};
 use crate::error::{Problem, ReadError};
 
-/// Kinds of records, lengths, and all fields without a stream of their own.
+/// The stream of record kinds, lengths, and all fields without a stream of their own.
 pub(super) const PLAIN: usize = 0;
-/// Differences of the indices of objects.
+/// The stream of the differences between consecutive indices of objects.
 pub(super) const INDICES: usize = 1;
-/// The low bits of residuals, which are nearly random.
+/// The stream of the low bits of residuals, which are nearly random.
 pub(super) const BITS: usize = 2;
-/// The stream of the symbols of a pose's first number; the streams of the other numbers follow it.
+/// The first of the streams of symbols: one for each number of a pose.
 pub(super) const SYMBOLS: usize = 3;
 
-/// The slowest level of deflate except the exhaustive one.
+/// The compression level of deflate: the slowest one except exhaustive search.
 const LEVEL: u8 = 9;
 
-/// Residuals below this are their own symbols.
+/// Residuals below this number are their own symbols.
 const SMALL: u64 = 16;
 /// The length in bits of the smallest residual that is not its own symbol.
 const SHORTEST: u32 = 5;
@@ -27,13 +27,13 @@ const SHORTEST: u32 = 5;
 #[derive(Debug)]
 pub(super) struct Streams {
     sinks: Vec<Sink>,
-    /// The last written bits, which do not fill a byte yet; the oldest bit is the lowest.
+    /// The bits that do not fill a word yet; the oldest bit is the lowest.
     open: u64,
     open_bits: u32,
 }
 
 impl Streams {
-    /// Creates streams for poses of `numbers` numbers.
+    /// Creates streams for poses of `numbers` numbers each.
     pub(super) fn new(numbers: usize) -> Self {
         Self { sinks: vec![Sink::default(); SYMBOLS + numbers], open: 0, open_bits: 0 }
     }
@@ -43,8 +43,8 @@ impl Streams {
     }
 
     /// Writes the residual of one number of a pose. A residual below [`SMALL`] is its own symbol.
-    /// For a larger one the symbol encodes the length and the two highest bits, and the other bits
-    /// go to the stream [`BITS`].
+    /// Otherwise the symbol encodes the length and the second-highest bit, and the lower bits go to
+    /// the stream [`BITS`].
     pub(super) fn residual(&mut self, number: usize, residual: u64) {
         let length = u64::BITS - residual.leading_zeros();
         let (symbol, low) = match length.checked_sub(SHORTEST) {
@@ -59,7 +59,7 @@ impl Streams {
         self.bits(residual, low);
     }
 
-    /// Writes the lowest `count` bits of a value; the first bit is the lowest of its byte.
+    /// Writes the lowest `count` bits of a value; the first bit becomes the lowest of its byte.
     fn bits(&mut self, value: u64, count: u32) {
         for bit in 0..count {
             self.open |= (value >> bit & 1) << self.open_bits;
@@ -71,7 +71,8 @@ impl Streams {
         }
     }
 
-    /// Compresses all streams and writes their number, then for each its length and the compressed bytes.
+    /// Compresses all streams and writes their number, then the length and the compressed bytes of
+    /// each.
     pub(super) fn write(mut self, sink: &mut Sink) {
         self.sinks[BITS].long(self.open);
         sink.count(self.sinks.len());
@@ -100,9 +101,9 @@ struct Stream {
 }
 
 impl Inflated {
-    /// Reads all streams; an error if they have more than `limit` bytes together.
+    /// Reads all streams; an error if they have more than `limit` bytes in total.
     pub(super) fn read(source: &mut Source<'_>, mut limit: usize) -> Result<Self, ReadError> {
-        // The last word of bits is padded to eight bytes.
+        // The last word of the bits may be padded by up to eight bytes.
         limit += 8;
         let streams = source.list(8, |source| {
             let large = source.offset();
@@ -118,7 +119,7 @@ impl Inflated {
         Ok(Self { streams, open: 0, open_bits: 0 })
     }
 
-    /// Reads from a stream; errors have the offset of its compressed bytes.
+    /// Reads from a stream. Errors have the offset of the stream's compressed bytes.
     pub(super) fn pull<'a, T>(
         &'a mut self,
         stream: usize,
@@ -132,12 +133,12 @@ impl Inflated {
         value.map_err(|error| ReadError { offset: *offset, ..error })
     }
 
-    /// Returns an error in a stream.
+    /// Returns an error with the offset of a stream.
     pub(super) fn error(&self, stream: usize, problem: Problem) -> ReadError {
         ReadError { offset: self.streams.get(stream).map_or(0, |stream| stream.offset), problem }
     }
 
-    /// Whether all bytes of the stream were read.
+    /// Returns `true` if all bytes of the stream were read.
     pub(super) fn is_read(&self, stream: usize) -> bool {
         self.streams.get(stream).is_none_or(|stream| stream.at == stream.bytes.len())
     }

@@ -1,10 +1,10 @@
-//! Predictions of the pose of one object.
+//! Predicts the pose of one object.
 
 use std::array;
 
 use super::poses::{Layout, PoseKind};
 
-/// The largest number of scalars of a pose.
+/// The maximum number of scalars of a pose.
 pub(super) const MAX_NUMBERS: usize = 7;
 
 /// The bits of the scalars of a pose; unused entries are 0.
@@ -12,29 +12,30 @@ pub(super) type Bits = [u64; MAX_NUMBERS];
 
 type Numbers = [f64; MAX_NUMBERS];
 
-/// The number of predictions of each scalar.
+/// The number of candidates that predict each scalar.
 const CANDIDATES: usize = 4;
 
-/// Predictions as ordered integers.
+/// The predictions of each candidate, as ordered integers.
 pub(super) type Predictions = [Bits; CANDIDATES];
 
-/// The number of stored poses.
+/// The number of poses that are stored for predictions.
 const HISTORY: usize = 5;
 
-/// The stored poses and costs of an object.
+/// The last poses of an object, and the costs of the candidates.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Track {
     last: Bits,
-    /// The last poses, the latest first. NaN and infinities are not used for predictions.
+    /// The last poses, the latest first. NaN and infinities in them give predictions that are not
+    /// used.
     history: [Numbers; HISTORY],
     /// For each scalar and candidate, the average length of its residuals in sixteenths of a bit.
-    /// It is an exponential average: the latest residual has the weight 1/4.
+    /// It is an exponential average, in which the latest residual has the weight 1/4.
     costs: [[u32; CANDIDATES]; MAX_NUMBERS],
 }
 
 impl Track {
-    /// Returns the prediction of each candidate for each number. An object that is placed is predicted at its last
-    /// position.
+    /// Returns the predictions of all candidates. If the object is placed, each candidate predicts
+    /// the last pose.
     pub(super) fn predictions(&self, layout: &Layout, kind: PoseKind) -> Predictions {
         let last = self.last.map(|bits| layout.ordered(bits));
         if kind == PoseKind::Placed {
@@ -43,8 +44,8 @@ impl Track {
         let [same, others @ ..] = &mut [last; CANDIDATES];
         for (prediction, numbers) in others.iter_mut().zip(self.extrapolated(layout)) {
             for (own, number) in prediction.iter_mut().zip(numbers).take(layout.numbers) {
-                // Numbers that are not finite are not used: the bits of a computed NaN differ
-                // between machines.
+                // Predictions that are not finite are not used, since the bits of a computed NaN
+                // differ between machines.
                 if number.is_finite() {
                     *own = layout.ordered(bits_of(number, layout));
                 }
@@ -54,17 +55,17 @@ impl Track {
         [*same, first, second, third]
     }
 
-    /// Returns the extrapolations: the last step repeated, the last two steps with their change, and the mean of some
-    /// steps repeated.
+    /// Returns three extrapolations: with the last step, with the last step and its change, and
+    /// with the mean of the last four steps.
     fn extrapolated(&self, layout: &Layout) -> [Numbers; CANDIDATES - 1] {
         let [now, before, earlier, _, earliest] = &self.history;
         let mut again: Numbers = array::from_fn(|i| now[i] + (now[i] - before[i]));
         let bent = array::from_fn(|i| 3.0 * (now[i] - before[i]) + earlier[i]);
         let mean = array::from_fn(|i| now[i] + (now[i] - earliest[i]) / 4.0);
-        // The last step of the rotation is repeated. For complex numbers and quaternions q1 q0^-1
-        // q1 = (2 (q0 . q1) q1 - |q1|^2 q0) / |q0|^2. The formula does not assume unit length:
-        // rotations of poses deviate from it in the last bits, and small errors would change many
-        // residuals.
+        // The extrapolation of the rotation repeats the last step. For complex numbers and
+        // quaternions q1 q0^-1 q1 = (2 (q0 . q1) q1 - |q1|^2 q0) / |q0|^2. The formula does not
+        // assume unit length: rotations of poses deviate from it in the last bits, and small errors
+        // would change many residuals.
         let rotation = layout.dimension..layout.numbers;
         let dot = |one: &Numbers, two: &Numbers| {
             rotation.clone().fold(0.0, |sum, i| sum + one[i] * two[i])
@@ -77,14 +78,15 @@ impl Track {
         [again, bent, mean]
     }
 
-    /// Returns the prediction of the candidate with the lowest cost; among equal costs, of the
-    /// first one.
+    /// Returns the prediction of the candidate with the lowest cost. Among equal costs it is the
+    /// first candidate.
     pub(super) fn best(&self, number: usize, predictions: &Predictions) -> u64 {
         let costs = self.costs[number].iter().zip(predictions);
         costs.min_by_key(|(cost, _)| **cost).map_or(0, |(_, prediction)| prediction[number])
     }
 
-    /// Stores a pose.
+    /// Stores a pose and updates the costs of the candidates. A placed object that has another pose
+    /// than the last one starts a new history.
     pub(super) fn learn(
         &mut self,
         layout: &Layout,
@@ -114,7 +116,7 @@ impl Track {
     }
 }
 
-/// Returns the number of these bits; exact.
+/// Returns the number with these bits; the conversion from `f32` is exact.
 fn number_of(bits: u64, layout: &Layout) -> f64 {
     match u32::try_from(bits) {
         Ok(bits) if layout.scalar_bytes == 4 => f64::from(f32::from_bits(bits)),
@@ -122,7 +124,7 @@ fn number_of(bits: u64, layout: &Layout) -> f64 {
     }
 }
 
-/// Returns the bits of the nearest number of the scalar of the recording.
+/// Returns the bits of the number, rounded to the scalar of the recording.
 #[expect(clippy::cast_possible_truncation, reason = "the nearest number is meant")]
 fn bits_of(number: f64, layout: &Layout) -> u64 {
     match layout.scalar_bytes {

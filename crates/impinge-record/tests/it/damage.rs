@@ -1,4 +1,4 @@
-//! Bytes that are no recording: errors with offsets, and no panic.
+//! Tests that bytes that are no recording give errors with offsets, and no panic.
 
 use impinge::dim2::math::Isometry;
 use impinge::dim2::shape::{Ball, Cuboid, ShapeHandle};
@@ -127,7 +127,7 @@ fn other_versions_scalars_and_dimensions() {
 #[test]
 fn a_length_beyond_the_end_is_refused_before_memory_is_taken() {
     let mut bytes = small();
-    // The name of the writer.
+    // The length of the name of the writer.
     bytes[12..16].copy_from_slice(&u32::MAX.to_le_bytes());
     let error = outcome(&bytes).expect_err("four gigabytes of name");
     assert_eq!(error, ReadError { offset: 12, problem: Problem::Truncated });

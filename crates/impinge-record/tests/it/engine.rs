@@ -1,4 +1,4 @@
-//! Calls for physics engines, recorded and replayed.
+//! Tests that the calls for physics engines are recorded and replayed.
 
 use std::num::NonZeroU64;
 
@@ -15,7 +15,7 @@ pub(crate) fn written<N: Stage<D>, const D: usize>(key_frames: Option<u64>) -> V
     play::<N, D>(key_frames).0
 }
 
-/// Returns the recording, and the words of the world after each update.
+/// Returns the recording, and the text of the world after each update.
 fn play<N: Stage<D>, const D: usize>(key_frames: Option<u64>) -> (Vec<u8>, Vec<Vec<String>>) {
     let mut recorder = Recorder::new(N::lit(0.02), N::registry()).expect("a usable margin");
     if let Some(every) = key_frames.and_then(NonZeroU64::new) {
@@ -107,7 +107,7 @@ fn calls_of_engines_in_3d() {
 #[test]
 fn calls_about_nobody_are_errors() {
     let bytes = written::<f32, 2>(None);
-    // The first record 16: set fixed of object 0.
+    // The first record of kind 16 sets object 0 fixed.
     let record = [16, 5, 0, 0, 0, 0, 0, 0, 0, 1];
     let at = bytes.windows(record.len()).position(|window| window == record).expect("it is there");
     let mut changed = bytes;

@@ -1,4 +1,4 @@
-//! Ghosts of meshes and height fields are those of the original in a replay.
+//! Tests that a replay has the ghosts of the recorded meshes and height fields.
 
 use impinge::math::{Point, Vector};
 use impinge::narrow_phase::GeometricQueryType;

@@ -1,9 +1,11 @@
-//! Recordings in the repository, of each version of the format: the format must not change unnoticed.
+//! Compares recordings of each version of the format with golden files, so that the format does not
+//! change unnoticed.
 //!
-//! `golden/scene2.rec` and `golden/scene3.rec` have version 1, those in `golden/version2/` version 2. They have every
-//! shape, call and question of these versions, and are read as long as the version is supported. Those in
-//! `golden/version3/` have the calls that came with version 3. If results change on purpose, or the format gets a new
-//! version, run `IMPINGE_BLESS=1 cargo test -p impinge-record golden` and commit the files.
+//! `golden/scene2.rec` and `golden/scene3.rec` have version 1, those in `golden/version2/` version
+//! 2. They contain every shape, call and query of these versions, and are read as long as the
+//! version is supported. The files in `golden/version3/` contain the calls that are new in version
+//! 3. If results change on purpose, or the format gets a new version, run `IMPINGE_BLESS=1 cargo
+//! test -p impinge-record golden` and commit the files.
 
 use std::num::NonZeroU64;
 use std::path::PathBuf;
@@ -29,8 +31,8 @@ fn written<N: Stage<D>, const D: usize>() -> Vec<u8> {
     scene.recorder.finish().bytes
 }
 
-/// Converts a recording to version 2 of the format: without the calls of version 3 only the version
-/// number differs.
+/// Converts a recording to version 2 of the format. If it has no calls of version 3, only the
+/// version number differs.
 fn in_version_2(bytes: &[u8]) -> Vec<u8> {
     let mut earlier = bytes.to_vec();
     earlier[8] = 2;
@@ -38,13 +40,15 @@ fn in_version_2(bytes: &[u8]) -> Vec<u8> {
     earlier
 }
 
-/// Converts to version 1 of the format: its updates have no numbers of events, and no flag.
+/// Converts a recording to version 1 of the format, whose updates have no numbers of events and no
+/// flag.
 fn in_version_1(bytes: &[u8], scalar_bytes: usize) -> Vec<u8> {
     let word = |at: usize| {
         let bytes = bytes[at..at + 4].try_into().expect("four bytes");
         u32::from_le_bytes(bytes) as usize
     };
-    // The name of the writer, the bytes of a number, the dimension, the margin, the checksum.
+    // The header ends with the name of the writer, two bytes for scalar and dimension, the margin,
+    // and the checksum.
     let mut at = 16 + word(12) + 2 + scalar_bytes + 4;
     let mut earlier = bytes[..at].to_vec();
     earlier[8] = 1;
@@ -74,8 +78,8 @@ fn check_engine<N: Stage<D>, const D: usize>(name: &str) {
     compare::<N, D>(&bytes, &format!("version3/{name}"));
 }
 
-/// Asserts that the golden file has these bytes, and that the replay of its recording has the same
-/// bits.
+/// Asserts that the golden file has exactly these bytes, and that its replay gives the same
+/// results, to the bit.
 fn compare<N: Stage<D>, const D: usize>(bytes: &[u8], name: &str) {
     if std::env::var_os("IMPINGE_BLESS").is_some() {
         std::fs::write(file(name), bytes).expect("the golden file can be written");
@@ -98,7 +102,8 @@ fn golden_in_3d() {
     check_engine::<f64, 3>("engine3.rec");
 }
 
-/// A ball that rotates, falls and is placed again: each prediction of packing is the best one for some steps.
+/// Records a ball that rotates, falls and is placed again, so that each candidate of packing is the
+/// best one in some steps.
 fn turning() -> Vec<u8> {
     let recorder = Recorder::<f32, 3, u32>::new(0.02, Registry::new());
     let every = NonZeroU64::new(10).expect("not zero");
@@ -118,7 +123,7 @@ fn turning() -> Vec<u8> {
     recorder.finish().bytes
 }
 
-/// Recordings that version 1 of packing wrote can be unpacked to the bit.
+/// Tests that a recording packed by version 1 of the packed format is unpacked to the bit.
 #[test]
 fn golden_packed() {
     let packed = pack(&turning()).expect("a recording");

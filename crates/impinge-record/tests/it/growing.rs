@@ -1,4 +1,4 @@
-//! Recordings that grow, that end early, and their time lines.
+//! Tests recordings that grow, recordings that end early, and their time lines.
 
 use impinge::dim2::math::{Isometry, Point};
 use impinge::dim2::shape::{Ball, Polyline, ShapeHandle};
@@ -98,7 +98,7 @@ fn a_flipped_byte_is_where_the_salvaged_recording_ends() {
 
 type Balls = Recorder<f64, 2, u32>;
 
-/// Returns two balls of radius 1 at a distance of 1.5, and one near them.
+/// Records two balls of radius 1 at a distance of 1.5, and a third ball near them.
 fn balls() -> Result<Balls, impinge_record::RecordError> {
     let mut recorder = Balls::new(0.02, Registry::new())?;
     let (ball, groups) = (ShapeHandle::new(Ball::new(1.0)), CollisionGroups::new());
@@ -165,8 +165,8 @@ fn a_changed_world_is_undone_by_the_next_seek() -> Result<(), impinge_record::Re
     Ok(())
 }
 
-/// A long polyline that is deformed at each step, with balls on it: its search tree is refitted in the recorded world
-/// and built in the replay.
+/// Deforms a long polyline with balls on it at each step. In the recorded world its search tree is
+/// refitted, in the replay it is built anew.
 #[test]
 fn deformed_shapes_have_the_same_bits() -> Result<(), impinge_record::RecordError> {
     let mut recorder = balls()?;

@@ -1,4 +1,5 @@
-//! Recordings: the same bits in a replay, in every direction, and errors for all other bytes.
+//! Tests of recordings: a replay has the same bits in every direction, and all other bytes give
+//! errors.
 
 mod damage;
 mod engine;

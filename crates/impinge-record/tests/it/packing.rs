@@ -1,4 +1,5 @@
-//! Packed recordings: the same calls with the same bits, in few bytes; errors for all other bytes.
+//! Tests of packed recordings: the same calls with the same bits in few bytes, and errors for all
+//! other bytes.
 
 use std::num::NonZeroU64;
 
@@ -60,7 +61,8 @@ fn a_recording_without_its_end() {
     assert_eq!(cut.problem, Problem::Truncated);
 }
 
-/// Poses with bits that no computation returns: NaN with a payload, infinities, subnormal numbers.
+/// Packs poses with bits that no computation returns: NaN with a payload, infinities, subnormal
+/// numbers.
 #[test]
 fn any_bits_of_positions() {
     let mut recorder = Recorder::<f32, 3, u32>::new(0.02, Registry::new()).expect("usable");
@@ -91,7 +93,7 @@ fn any_bits_of_positions() {
 fn a_difference_is_found_at_its_step() {
     let bytes = unpack(&pack(&written::<f32, 2>()).expect("a recording")).expect("packed");
     let registry = <f32 as Stage<2>>::registry();
-    // The first update record, kind 15 of 29 bytes: its hash of the state.
+    // The first update record (kind 15, 29 bytes) begins with its hash of the state.
     let head = [15, 29, 0, 0, 0];
     let place = bytes.windows(5).position(|window| window == head).expect("there are updates");
     let mut other = bytes;
@@ -111,7 +113,7 @@ fn damaged_packed_bytes_are_errors() {
     for place in 0..packed.len() {
         let mut other = packed.clone();
         other[place] ^= 0x21;
-        // Bits that fill up the last byte of a compressed stream are ignored.
+        // The bits that pad the last byte of a compressed stream may be changed without effect.
         if let Ok(same) = unpack(&other) {
             assert!(same == unpack(&packed).expect("it is whole"), "byte {place}");
         }
@@ -135,8 +137,8 @@ fn declared_lengths_are_bounded() {
     assert_eq!(unpack(&other).expect_err("no scalar").problem, Problem::Scalar { found: 5 });
 }
 
-/// Returns the bytes of a packed pose, unpacked 32 bytes: 200 balls move by `pose`, a function of the ball and the
-/// time.
+/// Returns the number of packed bytes per pose, which has 32 bytes unpacked. 200 balls move by
+/// `pose`, a function of the ball and the time.
 fn bytes_per_pose(mut pose: impl FnMut(u32, f64) -> Isometry<f32>) -> f64 {
     const BALLS: u32 = 200;
     const STEPS: u32 = 300;
@@ -161,7 +163,7 @@ fn bytes_per_pose(mut pose: impl FnMut(u32, f64) -> Isometry<f32>) -> f64 {
     packed.len() as f64 / f64::from(BALLS * STEPS)
 }
 
-/// Returns pseudorandom numbers between -1 and 1.
+/// Returns a pseudorandom number between -1 and 1.
 fn random(seed: u64) -> f64 {
     let mixed = (seed + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     let mixed = (mixed ^ (mixed >> 31)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -174,8 +176,8 @@ fn turned(axis: [f64; 3], angle: f64, at: [f64; 3]) -> Isometry<f32> {
     Isometry::from_parts(at.cast::<f32>().into(), turn.cast::<f32>())
 }
 
-/// Bodies as a program in `f32` moves them, with its rounding errors: thrown from a height, they rotate, bounce on a
-/// half-space and come to rest.
+/// Simulates bodies in `f32`, with its rounding errors. They are thrown from a height, rotate,
+/// bounce on a half-space and come to rest.
 fn integrated() -> impl FnMut(u32, f64) -> Isometry<f32> {
     struct Body {
         at: Vector3<f32>,
@@ -212,7 +214,8 @@ fn integrated() -> impl FnMut(u32, f64) -> Isometry<f32> {
     }
 }
 
-/// A page of 1000 objects and 600 steps has 3 megabytes if a pose has 3.75 bytes.
+/// Tests the sizes of packed poses. The page of a recording with 1000 objects and 600 steps has 3
+/// megabytes if a pose takes 3.75 bytes, since base64 adds a third.
 #[test]
 fn free_bodies_take_few_bytes() {
     let own = |id: u32, salt: u64| random(u64::from(id) * 16 + salt);

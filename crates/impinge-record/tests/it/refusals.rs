@@ -1,4 +1,4 @@
-//! Calls that cannot be recorded return an error with the reason, and change nothing.
+//! Tests that calls that cannot be recorded return an error with the reason, and change nothing.
 
 use impinge::bounding_volume::Aabb;
 use impinge::dim2::math::{Isometry, Point};
@@ -7,7 +7,7 @@ use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
 use impinge::shape::{Ball, Shape};
 use impinge_record::{Problem, RecordError, Recorder, Registry, Replay, validate};
 
-/// A shape of a user type.
+/// A shape of a user-defined type.
 #[derive(Debug)]
 struct Coin(Ball<f64>);
 

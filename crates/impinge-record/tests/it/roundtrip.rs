@@ -1,11 +1,11 @@
-//! A replay has the bits of the recorded world.
+//! Tests that a replay has the bits of the recorded world.
 
 use impinge::world::{CollisionObject, CollisionWorld};
 use impinge_record::{Header, Replay, validate};
 
 use crate::scene::{Scene, Stage, words};
 
-/// The words of the world after each update, and the recording.
+/// The text of the world after each update, and the recording.
 struct Played {
     words: Vec<Vec<String>>,
     bytes: Vec<u8>,
@@ -28,8 +28,8 @@ fn filled<N: Stage<D>, const D: usize>() -> Scene<N, D> {
     scene
 }
 
-/// Seeks steps in an order that goes forwards and backwards, near and far; `before` updates came before the
-/// first words.
+/// Seeks steps forwards and backwards, near and far. `before` is the number of updates before the
+/// first text.
 fn check<N: Stage<D>, const D: usize>(played: &Played, before: usize) {
     let registry = N::registry();
     assert_eq!(validate::<N, D, u32>(&played.bytes, &registry), Ok(None), "the same bits");
@@ -65,7 +65,8 @@ fn every_shape_and_call_in_3d() {
     in_every_way::<f64, 3>();
 }
 
-/// Returns a world with a history: objects were removed in an order other than that of the handles.
+/// Returns a world with a history: objects were removed in another order than that of their
+/// handles.
 fn old_world<N: Stage<D>, const D: usize>() -> CollisionWorld<N, D, u32> {
     let mut scene = filled::<N, D>();
     (0..5).for_each(|step| scene.step(step).expect("the calls are allowed"));

@@ -1,4 +1,4 @@
-//! A recording of every shape, with all kinds of calls: the same on every run.
+//! A scene with every shape and all kinds of calls, the same in every run.
 
 use std::num::NonZeroU64;
 
@@ -119,7 +119,7 @@ pub(crate) fn shapes<N: Stage<D>, const D: usize>() -> Vec<ShapeHandle<N, D>> {
     all
 }
 
-/// The recorder of a scene, and the positions of its objects.
+/// The recorder of a scene, its objects, and the shapes for them.
 pub(crate) struct Scene<N: Stage<D>, const D: usize> {
     pub(crate) recorder: Recorder<N, D, u32>,
     handles: Vec<CollisionObjectHandle>,
@@ -133,7 +133,7 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         Self { recorder, handles: Vec::new(), shapes: shapes::<N, D>() }
     }
 
-    /// Continues with a world that has objects.
+    /// Creates a scene that continues with a world that has objects.
     pub(crate) fn of_world(world: CollisionWorld<N, D, u32>) -> Self {
         let handles = world.collision_objects().map(CollisionObject::handle).collect();
         let recorder = Recorder::of_world(world, N::lit(0.02), N::registry());
@@ -146,7 +146,7 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         self
     }
 
-    /// One object of each shape, in a heap.
+    /// Adds one object of each shape, in a heap.
     pub(crate) fn fill(&mut self) -> Result<(), RecordError> {
         for (shape, id) in self.shapes.clone().into_iter().zip(0_u32..) {
             let at = N::placed(f64::from(id % 4) * 1.25, f64::from(id / 4));
@@ -208,7 +208,7 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         Ok(())
     }
 
-    /// Runs each question once.
+    /// Runs each kind of query, once with and once without a filter.
     fn ask(&mut self) -> Result<(), RecordError> {
         let far = N::lit(10.0);
         let mut right = Vector::<N, D>::zeros();
@@ -242,7 +242,7 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
     }
 }
 
-/// Returns the state of the scene in a world as text that has all bits.
+/// Returns the state of a world as text, with all bits of its numbers.
 pub(crate) fn words<N: Recordable<D>, const D: usize>(
     world: &CollisionWorld<N, D, u32>,
 ) -> Vec<String> {

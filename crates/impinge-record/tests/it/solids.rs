@@ -1,4 +1,4 @@
-//! Closed meshes and polylines that were made solid are solid in a replay.
+//! Tests that closed meshes and polylines that were made solid are solid in a replay.
 
 use impinge::dim2::math::Isometry as Isometry2;
 use impinge::dim3::math::Isometry as Isometry3;

@@ -221,7 +221,8 @@ mod tests {
 
     #[test]
     fn edge_across_edge() {
-        // Two thin wedges of boxes, turned by 45 degrees about x and about y: ridge over ridge.
+        // Two cubes, rotated by 45 degrees about x and about y, so that an edge of one crosses an
+        // edge of the other at a right angle.
         let cube = Solid::cuboid([1.0, 1.0, 1.0]);
         let (s, c) = (std::f64::consts::FRAC_PI_8.sin(), std::f64::consts::FRAC_PI_8.cos());
         let about_x = Pose::from_quaternion([0.0; 3], [s, 0.0, 0.0, c]);
@@ -247,7 +248,7 @@ mod tests {
 
     #[test]
     fn crossing_axes_in_the_plane_have_depth() {
-        // In the plane the difference of two crossing segments is a solid parallelogram.
+        // In 2D the Minkowski difference of two crossing segments is a solid parallelogram.
         let lying = Solid::capsule([-3.0, 0.0], [3.0, 0.0], 0.5);
         let standing = Solid::capsule([0.0, -2.0], [0.0, 2.0], 0.25);
         assert_eq!(exact(&lying, [0.0; 2], &standing, [0.0, 0.5]), (-1.5 - 0.75, [0.0, 1.0]));
@@ -303,8 +304,7 @@ mod tests {
         certified(&cylinder, &cylinder, [0.9, 3.0, 1.2], -0.5);
         certified(&cylinder, &cylinder, [0.0, 0.25, 0.0], -2.0);
         certified(&cylinder, &cylinder, [5.0, 8.0, 0.0], 5.0);
-        // The mantle of the cone has the normal (0.8, 0.6); the box stands on its tip over that
-        // mantle.
+        // The apex of the cone is 0.25 below the bottom face of the box.
         certified(&cone, &Solid::cuboid([0.5, 0.5, 0.5]), [0.0, 2.75, 0.0], 0.25);
         certified(&cone, &cylinder, [0.0, 3.5, 0.0], -0.5);
         certified(

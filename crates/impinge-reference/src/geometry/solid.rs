@@ -55,7 +55,7 @@ impl<const D: usize> Solid<D> {
         Self::Rounded { vertices: vec![a, b], radius }
     }
 
-    /// A filled triangle, flat in space.
+    /// A filled triangle; flat in 3D.
     #[must_use]
     pub fn triangle(a: [f64; D], b: [f64; D], c: [f64; D]) -> Self {
         Self::polytope(vec![a, b, c])

@@ -145,9 +145,9 @@ fn flatness([a, b, c]: &[Vector; 3]) -> f64 {
 }
 
 /// Returns a direction at which the maximum within a triangle may lie. It is the normal of the
-/// plane of the support points, which is exact if M has a face there. Otherwise it is the direction
-/// of `point`, the lowest point of the triangle of support points, which is exact if M is round
-/// there.
+/// plane of the support points, which is exact if M has a face there. If the support points are
+/// collinear, it is the direction of `point`, their combination with the weights of the matrix
+/// game.
 fn promising(corners: &[Vector; 3], supports: &[Vector; 3], point: &Vector) -> Vector {
     let [a, b, c] = supports;
     let face = perpendicular(&[sub(b, a), sub(c, a)]);

@@ -63,8 +63,8 @@ pub fn axis<const D: usize>(index: usize) -> [f64; D] {
     std::array::from_fn(|i| if i == index { 1.0 } else { 0.0 })
 }
 
-/// Returns a vector perpendicular to the D-1 given ones: in 2D the counter-clockwise quarter turn,
-/// in 3D the cross product. Zero if the given vectors are linearly dependent.
+/// Returns a vector perpendicular to the D-1 given vectors: in 2D the counter-clockwise quarter
+/// turn, in 3D the cross product. Zero if the given vectors are linearly dependent.
 ///
 /// # Panics
 /// Unless D is 2 or 3 and D-1 vectors are given.

@@ -1,9 +1,10 @@
 //! Numbers of about 31 decimal digits: an unevaluated sum of two `f64`.
 //!
 //! The error-free sum is that of O. Møller and D. Knuth, the error-free product that of T. Dekker,
-//! "A Floating-Point Technique for Extending the Available Precision" (1971); the sloppier steps
-//! follow Y. Hida, X. Li and D. Bailey, "Library for Double-Double and Quad-Double Arithmetic"
-//! (2007). Each operation is right to about 2⁻¹⁰², for magnitudes between about 1e-140 and 1e140.
+//! "A Floating-Point Technique for Extending the Available Precision" (1971). The operations on
+//! pairs follow Y. Hida, X. Li and D. Bailey, "Library for Double-Double and Quad-Double
+//! Arithmetic" (2007). Each operation is accurate to about 2⁻¹⁰², for magnitudes between about
+//! 1e-140 and 1e140.
 
 use std::cmp::Ordering;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -131,7 +132,7 @@ impl Mul for Quad {
 impl Div for Quad {
     type Output = Self;
 
-    /// Long division with three quotient digits of 53 bits each.
+    /// Divides by long division, with three quotient digits of 53 bits each.
     fn div(self, other: Self) -> Self {
         let first = self.high / other.high;
         let rest = self - other * Self::new(first);

@@ -288,8 +288,8 @@ impl<const D: usize> Placed<D> {
         point
     }
 
-    /// Returns the point of a disk that is nearest to `point`, seen along the axis of the disk.
-    /// Returns the centre of a part that is no disk.
+    /// Returns the point of a disk that is nearest to `point`, measured in the plane of the disk;
+    /// the centre if the part is a single point. Ellipsoids are not supported.
     pub(super) fn nearest_in_disk(&self, point: &Vector<D>) -> Vector<D> {
         let offset = sub(point, &self.center);
         let mut shares: Vec<Quad> =

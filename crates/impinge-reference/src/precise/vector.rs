@@ -84,7 +84,8 @@ pub fn reject<const D: usize>(a: &Vector<D>, direction: &Vector<D>) -> Vector<D>
     sub(a, &scale(direction, share))
 }
 
-/// A vector perpendicular to the D-1 given ones; see [`crate::geometry::vector::perpendicular`].
+/// Returns a vector perpendicular to the D-1 given vectors; see
+/// [`crate::geometry::vector::perpendicular`].
 ///
 /// # Panics
 /// Unless D is 2 or 3 and D-1 vectors are given.

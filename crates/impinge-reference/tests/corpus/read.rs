@@ -22,8 +22,9 @@ pub(crate) fn numbers<const N: usize>(value: &Value) -> [f64; N] {
     std::array::from_fn(|i| number(&list[i]))
 }
 
-/// Returns the solid, and its pose in the frame of the shape. Cylinders and cones of the corpus may
-/// have any axis; those of the reference have y.
+/// Returns the solid, and its pose in the frame of the shape; `None` if the type of the shape is
+/// unknown. Cylinders and cones of the corpus may have the axis x, y or z; those of the reference
+/// have the axis y.
 pub(crate) fn solid<const D: usize>(shape: &Value) -> Option<(Solid<D>, Pose<D>)> {
     let radius = || number(shape.get("radius").unwrap_or(&shape["r"]));
     let points = |keys: &[&str]| keys.iter().map(|key| numbers(&shape[key])).collect();

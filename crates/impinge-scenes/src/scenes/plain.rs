@@ -15,11 +15,12 @@ const HALF_HEIGHT: f64 = 0.25;
 /// The largest distance by which a solid slides from its start, to either side along each axis.
 const WAY: f64 = 1.0;
 
-/// `count` flat boxes of half extents `half` along the ground and 0.25 upward, on a height field,
-/// which is the first object. Its cells have width 1, and its heights vary by 0.02. The boxes slide
-/// back and forth by 0.01 to 0.03 per step, each rotated by a random angle about the upward axis.
-/// Their undersides lie at the mean height, so that they touch most of the triangles that they
-/// cover: about `8 · half²` in 3D, `2 · half` segments in 2D. No two boxes overlap.
+/// `count` flat boxes on a height field, which is the first object. Their half extents are `half`
+/// horizontally and 0.25 vertically. The cells of the field have width 1, and its heights vary by
+/// 0.02. The boxes slide back and forth by 0.01 to 0.03 per step, each rotated by a random angle
+/// about the vertical axis. Their undersides lie at the mean height, so that they touch most of the
+/// triangles that they cover: about `8 · half²` in 3D, `2 · half` segments in 2D. No two boxes
+/// overlap.
 #[must_use]
 pub fn plates<const D: usize>(count: usize, half: f64) -> Scene<D> {
     let half_extents = std::array::from_fn(|i| rounded(if i == 1 { HALF_HEIGHT } else { half }));
@@ -47,19 +48,19 @@ pub fn solids_on_plain<const D: usize>(count: usize, kind: SolidKind) -> Scene<D
 
 /// The sizes and speeds of the solids of a scene.
 struct Slider {
-    /// Half the largest extent along the ground.
+    /// Half the largest horizontal extent.
     half: f64,
-    /// The height of the centre above the ground.
+    /// The height of the centre above the mean height of the field.
     height: f64,
     /// The least and the greatest distance per step.
     speed: (f64, f64),
-    /// Whether the solid is rotated so that its second axis lies along the ground.
+    /// Whether the solid is rotated so that its second axis is horizontal.
     is_laid: bool,
 }
 
 impl Slider {
-    /// Returns the width of the ground per solid: its diagonal, the distance that it slides, and
-    /// two cells.
+    /// Returns the width of the field per solid: the diagonal of the solid, the distance that it
+    /// slides, and two cells.
     fn lot(&self) -> f64 {
         2.0 * (1.5 * self.half + WAY + CELL)
     }
@@ -85,8 +86,8 @@ impl Slider {
         Motion { place, axis, tangent: Wave::rest(tangent) }
     }
 
-    /// Returns the axis of a rotation and the tangent of half its angle: about the upward axis, or,
-    /// if `is_laid`, a quarter turn about an axis along the ground. In 2D, no rotation or a quarter
+    /// Returns the axis of a rotation and the tangent of half its angle: about the vertical axis,
+    /// or, if `is_laid`, a quarter turn about a horizontal axis. In 2D, no rotation or a quarter
     /// turn.
     fn turn<const D: usize>(&self, random: &mut Random) -> ([f64; 3], f64) {
         let [x, z] = random.direction::<2>();

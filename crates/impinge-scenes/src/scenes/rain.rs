@@ -1,4 +1,4 @@
-//! Solids that fall onto hilly ground.
+//! Solids that fall onto hilly terrain.
 
 use super::pile::{axis, signed_speed};
 use super::terrain::{Ground, solid};
@@ -6,17 +6,17 @@ use super::{MARGIN, NEAR_CONTACTS};
 use crate::random::Random;
 use crate::{Motion, Scene, SceneObject, Wave};
 
-/// The height above the ground from which solids fall.
+/// The height above the terrain from which solids fall.
 const HEIGHT: f64 = 12.0;
-/// The depth to which a solid penetrates the ground before it rises again.
+/// The depth to which a solid penetrates the terrain before it rises again.
 const DIP: f64 = 0.1;
 
 /// `count` balls, boxes, capsules and convex solids of size 1, equally many of each. They fall from
 /// up to 12 above a hilly mesh by 0.05 to 0.15 per step, each at its own speed, rotate, and rise
-/// again from the ground. The mesh is the first object and has 25 triangles per solid; in 2D it is
+/// again from the terrain. The mesh is the first object and has 25 triangles per solid; in 2D it is
 /// a polyline of 5 segments for every two.
 ///
-/// At any time a few percent of them touch the ground, and a few percent touch each other.
+/// At any time a few percent of them touch the terrain, and a few percent touch each other.
 #[must_use]
 pub fn rain<const D: usize>(count: usize) -> Scene<D> {
     let random = &mut Random::new(11);
@@ -30,7 +30,7 @@ pub fn rain<const D: usize>(count: usize) -> Scene<D> {
 fn falling<const D: usize>(kind: usize, ground: &Ground<D>, random: &mut Random) -> SceneObject<D> {
     let shape = solid(kind, random);
     let at = ground.somewhere(random);
-    // The height of the centre above the ground at which the solid, without rotation, touches it.
+    // The height of the centre above the terrain at which the solid, without rotation, touches it.
     let resting = shape.aabb(&crate::Placement::at(at)).map_or(0.0, |(low, _)| at[1] - low[1]);
     let lowest = at[1] + resting - DIP;
     let place = std::array::from_fn(|i| {

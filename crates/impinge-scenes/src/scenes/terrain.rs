@@ -1,22 +1,22 @@
-//! Solids that slide and hop on hilly ground.
+//! Solids that slide and hop on hilly terrain.
 
 use super::pile::{axis, signed_speed};
 use super::{MARGIN, NEAR_CONTACTS};
 use crate::random::{Random, root};
 use crate::{Motion, Placement, Scene, SceneObject, SceneShape, Wave, rounded};
 
-/// The width of a cell of the ground: half the size of most objects.
+/// The width of a cell of the terrain: half the size of most objects.
 pub(super) const CELL: f64 = 0.5;
 /// The number of cells between two random heights of the hills.
 const HILL: usize = 16;
 
 /// `count` balls, boxes, capsules and convex solids of size 1, equally many of each, on a hilly
 /// mesh, which is the first object. It has 100 triangles per solid, a million for 10 000. In 2D the
-/// ground is a polyline of 10 segments per solid.
+/// terrain is a polyline of 10 segments per solid.
 ///
-/// All move back and forth along the ground by 0.01 to 0.03 per step, over up to half their size,
-/// and up and down by 0.05. At any time about two thirds of them touch the ground, each a few of
-/// its triangles, and few touch each other. No centre is ever below the ground.
+/// All move back and forth along the terrain by 0.01 to 0.03 per step, over up to half their size,
+/// and up and down by 0.05. At any time about two thirds of them touch the terrain, each a few of
+/// its triangles, and few touch each other. No centre is ever below the terrain.
 #[must_use]
 pub fn terrain_mesh<const D: usize>(count: usize) -> Scene<D> {
     let ground = Ground::new(count, &mut Random::new(6));
@@ -24,7 +24,7 @@ pub fn terrain_mesh<const D: usize>(count: usize) -> Scene<D> {
     Scene { name: "terrain mesh", ..scene(count, &ground, shape) }
 }
 
-/// The scene of [`terrain_mesh`], with the ground as a height field.
+/// The scene of [`terrain_mesh`], with the terrain as a height field.
 #[must_use]
 pub fn terrain_field<const D: usize>(count: usize) -> Scene<D> {
     let ground = Ground::<D>::new(count, &mut Random::new(6));
@@ -67,7 +67,7 @@ fn stone<const D: usize>(radius: f64, random: &mut Random) -> Vec<[f64; D]> {
     points
 }
 
-/// Returns an object whose axis-aligned box touches the ground at step 0.
+/// Returns an object whose axis-aligned box touches the terrain at step 0.
 fn standing<const D: usize>(
     shape: SceneShape<D>,
     ground: &Ground<D>,
@@ -115,7 +115,7 @@ impl<const D: usize> Ground<D> {
     }
 
     /// Returns a square (in 2D a line) at least as wide as `width`, without hills, but with the
-    /// roughness of the hilly ground.
+    /// roughness of the hilly terrain.
     pub(super) fn plain(width: f64, cell: f64, random: &mut Random) -> Self {
         let vertices = (2_usize..).find(|n| (n - 1) as f64 * cell >= width).unwrap_or(2);
         let counts = [if D < 3 { 1 } else { vertices }, vertices];
@@ -123,7 +123,7 @@ impl<const D: usize> Ground<D> {
         Self { counts, cell, heights: heights.collect() }
     }
 
-    /// Returns the extents of the ground along the axes; rows lie along the third axis.
+    /// Returns the extents of the terrain along the axes; rows lie along the third axis.
     pub(super) fn extents(&self) -> [f64; D] {
         std::array::from_fn(|axis| match axis {
             0 => (self.counts[1] - 1) as f64 * self.cell,
@@ -168,7 +168,7 @@ impl<const D: usize> Ground<D> {
         SceneShape::TriMesh { triangles: triangles.collect(), vertices }
     }
 
-    /// Returns a random point: a vertex, moved along the ground by at most half a cell. It is no
+    /// Returns a random point: a vertex, moved along the terrain by at most half a cell. It is no
     /// nearer to the border than the width of an object.
     pub(super) fn somewhere(&self, random: &mut Random) -> [f64; D] {
         let border = 3;

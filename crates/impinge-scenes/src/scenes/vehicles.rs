@@ -1,4 +1,4 @@
-//! Solids of the size of vehicles, on ground with much smaller triangles.
+//! Solids of the size of vehicles, on terrain with much smaller triangles.
 
 use super::pile::signed_speed;
 use super::terrain::{CELL, Ground};
@@ -10,28 +10,28 @@ use crate::{Motion, Scene, SceneObject, SceneShape, Wave, rounded};
 /// Half the length, the height and the width of a vehicle, in its frame: its length lies along the
 /// first axis.
 const HALF: [f64; 3] = [2.0, 0.75, 1.0];
-/// The area of ground per vehicle, as a multiple of that per solid of size 1.
+/// The area of terrain per vehicle, as a multiple of that per solid of size 1.
 const SHARE: usize = 4;
-/// The depth of the underside below the mean height of the ground under it. It is about the
-/// roughness and curvature of the ground over this length, so that most triangles under a vehicle
+/// The depth of the underside below the mean height of the terrain under it. It is about the
+/// roughness and curvature of the terrain over this length, so that most triangles under a vehicle
 /// touch it.
 const SINKING: f64 = 0.03;
-/// The distance of vehicles from the border of the ground.
+/// The distance of vehicles from the border of the terrain.
 const BORDER: f64 = 4.0;
 
 /// `count` boxes, hulls and capsules of half extents 2, 0.75 and 1, equally many of each, on a
 /// hilly mesh of triangles 0.5 wide, which is the first object. It has 400 triangles per vehicle.
-/// In 2D the ground is a polyline of 40 segments per vehicle.
+/// In 2D the terrain is a polyline of 40 segments per vehicle.
 ///
-/// Each is tilted with the ground, covers dozens of triangles, and drives back and forth by 0.01 to
-/// 0.03 per step along its length, over a distance of 1 to either side, and up and down with the
-/// ground. Few touch each other.
+/// Each is tilted with the terrain, covers dozens of triangles, and drives back and forth by 0.01
+/// to 0.03 per step along its length, over a distance of 1 to either side, and up and down with the
+/// terrain. Few touch each other.
 #[must_use]
 pub fn vehicles_mesh<const D: usize>(count: usize) -> Scene<D> {
     scene("vehicles on mesh", count, Ground::mesh, driving)
 }
 
-/// The scene of [`vehicles_mesh`], with the ground as a height field.
+/// The scene of [`vehicles_mesh`], with the terrain as a height field.
 #[must_use]
 pub fn vehicles_field<const D: usize>(count: usize) -> Scene<D> {
     scene("vehicles on field", count, Ground::field, driving)
@@ -44,7 +44,7 @@ pub fn trembling_vehicles_mesh<const D: usize>(count: usize) -> Scene<D> {
     scene("trembling vehicles on mesh", count, Ground::mesh, trembling)
 }
 
-/// The scene of [`trembling_vehicles_mesh`], with the ground as a height field.
+/// The scene of [`trembling_vehicles_mesh`], with the terrain as a height field.
 #[must_use]
 pub fn trembling_vehicles_field<const D: usize>(count: usize) -> Scene<D> {
     scene("trembling vehicles on field", count, Ground::field, trembling)
@@ -97,7 +97,7 @@ pub(super) fn body<const D: usize>(half: [f64; 3], random: &mut Random) -> Vec<[
     corners.collect()
 }
 
-/// Returns a separate position along the ground for the `n`-th of `count` vehicles: the first
+/// Returns a separate position along the terrain for the `n`-th of `count` vehicles: the first
 /// coordinate and, in 3D, the third.
 fn lot<const D: usize>(
     n: usize,
@@ -117,7 +117,7 @@ fn lot<const D: usize>(
     [place(n as f64 - row * side, 0, shifts[0]), across]
 }
 
-/// The position of a vehicle at rest on the ground. Its frame has three coordinates in 2D too.
+/// The position of a vehicle at rest on the terrain. Its frame has three coordinates in 2D too.
 struct Seat<'a, const D: usize> {
     ground: &'a Ground<D>,
     /// The first and the third coordinate of the centre.
@@ -141,7 +141,7 @@ impl<'a, const D: usize> Seat<'a, D> {
         seat
     }
 
-    /// Returns the height of the ground at a distance `before` along the heading from the centre,
+    /// Returns the height of the terrain at a distance `before` along the heading from the centre,
     /// and `beside` across it.
     fn height(&self, before: f64, beside: f64) -> f64 {
         let [x, z] = self.heading;
@@ -151,8 +151,8 @@ impl<'a, const D: usize> Seat<'a, D> {
         )
     }
 
-    /// Returns unit vectors along the length, out of the ground and along the width: a right-handed
-    /// frame.
+    /// Returns unit vectors along the length of the vehicle, along the terrain normal and along its
+    /// width: a right-handed frame.
     fn frame(&self) -> [[f64; 3]; 3] {
         let [long, wide] = [0.75 * HALF[0], 0.75 * HALF[2]];
         let climb = (self.height(long, 0.0) - self.height(-long, 0.0)) / (2.0 * long);
@@ -218,7 +218,7 @@ fn turn<const D: usize>([x, y, z]: &[[f64; 3]; 3]) -> ([f64; 3], f64) {
     (unit(vector), tangent)
 }
 
-/// Returns the height of the ground at a horizontal position, interpolated between the four
+/// Returns the height of the terrain at a horizontal position, interpolated between the four
 /// vertices of its cell. Beyond the border, the outermost cell is extrapolated.
 fn height<const D: usize>(ground: &Ground<D>, at: [f64; 2]) -> f64 {
     let extents = ground.extents();

@@ -1,4 +1,4 @@
-//! Parts of scenes: placements, flat and hilly ground, hulls.
+//! Parts of scenes: placements, flat and hilly terrain, hulls.
 
 use impinge_scenes::{Placement, Random, SceneShape};
 
@@ -30,7 +30,7 @@ pub(crate) fn cube<const D: usize>() -> SceneShape<D> {
     SceneShape::Cuboid { half_extents: [0.5; D] }
 }
 
-/// Returns the half-space below the height zero.
+/// Returns the half-space `y <= 0`.
 pub(crate) fn half_space<const D: usize>() -> SceneShape<D> {
     SceneShape::Plane { normal: core::array::from_fn(|axis| if axis == 1 { 1.0 } else { 0.0 }) }
 }
@@ -77,8 +77,8 @@ pub(crate) fn field(
     SceneShape::HeightField { counts, heights, extents: [width, 1.0, depth] }
 }
 
-/// Returns the height of hollows in which solids come to rest: one hollow for every two cells in
-/// either direction.
+/// Returns the height function of a terrain with hollows in which solids come to rest: one hollow
+/// of depth `depth` for every two cells in each direction.
 pub(crate) fn egg_box(depth: f64) -> impl Fn(usize, usize) -> f64 {
     move |column, row| if column % 2 == 1 && row % 2 == 1 { -depth } else { 0.0 }
 }

@@ -18,7 +18,8 @@ pub fn stacks2() -> Vec<Stack<2>> {
     ]
 }
 
-/// Returns a polyline of 41 vertices, half a unit apart, from right to left: its front is above.
+/// Returns a polyline of 41 vertices, half a unit apart, from right to left: its front side faces
+/// up.
 fn line(height: impl Fn(usize) -> f64) -> SceneShape<2> {
     let vertices = (0..41).map(|n| [10.0 - 0.5 * n as f64, height(n)]);
     SceneShape::Polyline { vertices: vertices.collect() }
@@ -38,7 +39,7 @@ fn pyramid() -> Stack<2> {
     })
 }
 
-/// Octagons that lie on their sides; the corners follow from the tangent of an eighth of a turn.
+/// Octagons of height 1 that lie on their sides. The corner coordinates are 0.5 and 0.5 · tan(π/8).
 fn polygons() -> Stack<2> {
     let stack = Stack::new("8 octagons", Kind::Rest).fixed(line(|_| 0.0), [0.0; 2]);
     let near = 0.5 * (2.0_f64.sqrt() - 1.0);

@@ -47,7 +47,7 @@ pub(super) fn stacks() -> Vec<Stack<3>> {
     ]
 }
 
-/// Adds a solid that starts on flat ground.
+/// Returns a scene with one solid on `ground`, without friction and with an initial velocity.
 fn slide(
     name: &'static str,
     ground: SceneShape<3>,

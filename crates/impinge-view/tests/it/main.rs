@@ -1,4 +1,4 @@
-//! Pictures of known scenes: silhouettes by arithmetic, documents that parse, golden images.
+//! Tests of pictures of known scenes: computed silhouettes, well-formed documents, golden images.
 #![forbid(unsafe_code)]
 
 mod gallery;

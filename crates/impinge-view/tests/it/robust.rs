@@ -1,4 +1,4 @@
-//! Invalid input does not panic, and the same input gives the same bytes.
+//! Tests that invalid input does not panic, and that the same input gives the same bytes.
 
 use crate::scenes::{INK, box_mesh, boxes, glass, hills, plane};
 use impinge::debug_render::{DebugRender, Drawn};
@@ -39,7 +39,7 @@ fn bad_numbers<N: Real>(picture: &mut impl DebugRender<N, 3>) -> u64 {
     broken.lines.push([1, 8]);
     picture.mesh(&broken, &Isometry::identity(), INK, Drawn::Object);
     let at_corner = broken.triangles.iter().filter(|corners| corners.contains(&0)).count() as u64;
-    // Three edges meet at the corner; one line has an index without a vertex.
+    // The last terms: three edges meet at the corner, and one line has an index without a vertex.
     5 * 6 + at_corner + 3 + 1
 }
 
@@ -80,7 +80,7 @@ fn large_and_small_scenes_are_framed() {
     }
 }
 
-/// Returns the bytes of all scenes.
+/// Returns the bytes of pictures of all scenes.
 fn bytes<N: Real>() -> Vec<Vec<u8>> {
     let png = |draw: fn(&mut PngPicture), camera: Camera| {
         let mut picture = PngPicture::new(camera, [80, 60]);

@@ -1,4 +1,5 @@
-//! The surfaces of rounded 3D solids: closed, on the solid, and of the expected area.
+//! Tests that the surfaces of rounded 3D solids are closed, lie on the solid, and enclose the
+//! expected volume.
 
 use impinge::debug_render::{MeshOptions, ShapeMesh};
 use impinge::dim3::math::{Isometry, Point, Vector};
@@ -12,7 +13,8 @@ fn mesh_of(shape: &dyn Shape<f64, 3>, turn: u32) -> ShapeMesh<f64, 3> {
     ShapeMesh::of(shape, &options)
 }
 
-/// Each side of a triangle is the reverse of one other side, and no vertex is off the surface.
+/// Checks that each side of a triangle is the reverse of exactly one other side, and that all
+/// vertices are on the surface.
 fn assert_closed(solid: &Rounded<f64>, turn: u32, name: &str) {
     let mesh = mesh_of(solid, turn);
     let mut sides = BTreeMap::new();
@@ -30,7 +32,7 @@ fn assert_closed(solid: &Rounded<f64>, turn: u32, name: &str) {
     }
 }
 
-/// Six times the volume inside a surface.
+/// Returns six times the volume inside a surface.
 fn volume(mesh: &ShapeMesh<f64, 3>) -> f64 {
     let corner = |index: u32| mesh.vertices[index as usize].coords;
     let of = |triangle: &[u32; 3]| {
@@ -40,7 +42,7 @@ fn volume(mesh: &ShapeMesh<f64, 3>) -> f64 {
     mesh.triangles.iter().map(of).sum()
 }
 
-/// Returns points on a sphere in general position.
+/// Returns the convex hull of points in general position on a sphere that is stretched along z.
 fn hull(count: u32) -> ConvexHull<f64> {
     let point = |index: u32| {
         let n = f64::from(index);
@@ -71,7 +73,8 @@ fn surfaces_are_closed() {
 
 #[test]
 fn volumes_are_those_of_steiner() {
-    // A box with sides a, b, c within r: abc + 2 r (ab + bc + ca) + pi r^2 (a + b + c) + 4/3 pi r^3.
+    // Steiner's formula for a box with sides a, b, c, rounded by r: abc + 2 r (ab + bc + ca) + pi
+    // r^2 (a + b + c) + 4/3 pi r^3.
     let pi = std::f64::consts::PI;
     let (a, b, c, r) = (1.0, 2.0, 0.5, 0.3);
     let exact = a * b * c

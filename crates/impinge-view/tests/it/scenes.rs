@@ -1,4 +1,4 @@
-//! Hand-made meshes and scenes of them.
+//! Hand-made meshes, and scenes that consist of them.
 
 use impinge::debug_render::{Color, DebugRender, Drawn, ShapeMesh};
 use impinge::dim3::math::{Isometry, Point, Vector};
@@ -12,7 +12,7 @@ pub(crate) const CLAY: Color = Color::rgb(204, 128, 104);
 pub(crate) const INK: Color = Color::rgb(90, 120, 150);
 pub(crate) const RED: Color = Color::rgb(196, 54, 60);
 
-/// The faces of a box whose corner `i` has the upper end of axis `k` if bit `k` of `i` is set.
+/// The faces of a box. Corner `i` is at the upper end of axis `k` if bit `k` of `i` is set.
 const FACES: [[u32; 4]; 6] =
     [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
 
@@ -33,7 +33,7 @@ pub(crate) fn box_mesh<N: Real>(id: u64, half: [f64; 3]) -> ShapeMesh<N, 3> {
 const AROUND: u32 = 48;
 const RINGS: u32 = 24;
 
-/// A ball by latitude and longitude, with three great circles as lines.
+/// Returns the mesh of a ball by latitude and longitude, with three great circles as lines.
 pub(crate) fn ball_mesh<N: Real>(id: u64, radius: f64) -> ShapeMesh<N, 3> {
     let step = std::f64::consts::TAU / f64::from(AROUND);
     let vertex = |ring: u32, turn: u32| {
@@ -60,7 +60,7 @@ pub(crate) fn ball_mesh<N: Real>(id: u64, radius: f64) -> ShapeMesh<N, 3> {
     }
 }
 
-/// Soft hills on a square of 2 `half`, with a grid.
+/// Returns the mesh of soft hills on a square with half extent `half`, with a grid of lines.
 pub(crate) fn terrain_mesh<N: Real>(id: u64, half: f64, height: f64) -> ShapeMesh<N, 3> {
     const CELLS: u32 = 24;
     let at = |cell: u32| (f64::from(cell) / f64::from(CELLS) * 2.0 - 1.0) * half;
@@ -86,7 +86,7 @@ pub(crate) fn terrain_mesh<N: Real>(id: u64, half: f64, height: f64) -> ShapeMes
     }
 }
 
-/// A regular polygon in 2D.
+/// Returns the mesh of a regular polygon.
 pub(crate) fn polygon_mesh<N: Real>(id: u64, radius: f64, corners: u32) -> ShapeMesh<N, 2> {
     let vertex = |index: u32| {
         let angle = std::f64::consts::TAU * f64::from(index) / f64::from(corners);
@@ -101,7 +101,7 @@ pub(crate) fn polygon_mesh<N: Real>(id: u64, radius: f64, corners: u32) -> Shape
     }
 }
 
-/// The triangles of a mesh, without edges and outline.
+/// Draws the triangles of a mesh as single triangles, without the lines and the outline of a mesh.
 pub(crate) fn faces<N: Space<D>, const D: usize>(
     picture: &mut impl DebugRender<N, D>,
     mesh: &ShapeMesh<N, D>,
@@ -117,7 +117,7 @@ fn moved<N: Real>(place: [f64; 3], turn: [f64; 3]) -> Isometry<N> {
     Isometry::new(Vector::from(place.map(N::lit)), Vector::from(turn.map(N::lit)))
 }
 
-/// Boxes on a floor, a ball, and contacts.
+/// Draws boxes on a floor, balls, and contacts.
 pub(crate) fn boxes<N: Real>(picture: &mut impl DebugRender<N, 3>) {
     let (floor, cube) = (box_mesh(1, [3.0, 0.15, 2.2]), box_mesh(2, [0.5; 3]));
     let (plank, ball) = (box_mesh(3, [1.1, 0.12, 0.5]), ball_mesh(4, 0.5));
@@ -138,7 +138,7 @@ pub(crate) fn boxes<N: Real>(picture: &mut impl DebugRender<N, 3>) {
     }
 }
 
-/// A ball and a box in a box of glass.
+/// Draws a ball and a box inside a box of glass.
 pub(crate) fn glass<N: Real>(picture: &mut impl DebugRender<N, 3>) {
     let what = Drawn::Object;
     picture.mesh(&ball_mesh(1, 0.5), &moved([-0.5, -0.5, 0.2], [0.0; 3]), CLAY, what);
@@ -147,7 +147,7 @@ pub(crate) fn glass<N: Real>(picture: &mut impl DebugRender<N, 3>) {
     picture.mesh(&box_mesh(3, [1.2, 1.0, 0.9]), &moved([0.0; 3], [0.0; 3]), glass, what);
 }
 
-/// Balls and a box above hills, and a ray.
+/// Draws balls and a box above hills, and a ray.
 pub(crate) fn hills<N: Real>(picture: &mut impl DebugRender<N, 3>) {
     let what = Drawn::Object;
     picture.mesh(&terrain_mesh(1, 4.0, 0.4), &moved([0.0; 3], [0.0; 3]), SAGE, what);
@@ -163,7 +163,7 @@ pub(crate) fn hills<N: Real>(picture: &mut impl DebugRender<N, 3>) {
     picture.point(&to, N::lit(0.1), RED, Drawn::QueryHit);
 }
 
-/// Polygons on a floor in 2D, with boxes, contacts, a ray and names.
+/// Draws polygons on a floor in 2D, with a box, contacts, a ray and a text.
 pub(crate) fn plane<N: Real>(picture: &mut impl DebugRender<N, 2>) {
     use dim2::math::{Isometry, Point, Vector};
     let at = |x: f64, y: f64| Point::new(N::lit(x), N::lit(y));

@@ -1,4 +1,4 @@
-//! Compares the covered pixels with arithmetic.
+//! Compares the covered pixels of pictures with computed ones.
 
 use crate::scenes::{INK, ball_mesh, box_mesh, faces};
 use impinge::debug_render::{Color, DebugRender, Drawn, ShapeMesh};
@@ -8,7 +8,7 @@ use impinge_view::{Camera, Image, PngPicture};
 
 const BLANK: [u8; 4] = [250, 249, 246, 255];
 
-/// Returns the centres of covered pixels.
+/// Returns the centres of all pixels that are not background.
 fn covered(image: &Image) -> Vec<[f64; 2]> {
     let pixels = (0..image.size()[1]).flat_map(|y| (0..image.size()[0]).map(move |x| (x, y)));
     let covered = pixels.filter(|(x, y)| image.pixel(*x, *y) != BLANK);

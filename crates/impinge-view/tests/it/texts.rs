@@ -1,4 +1,4 @@
-//! Texts and legends: the pixels that they cover.
+//! Tests which pixels texts and legends cover.
 
 use crate::scenes::{INK, RED, box_mesh, plane};
 use impinge::debug_render::{Color, DebugRender, Drawn};
@@ -8,7 +8,7 @@ use impinge_view::{Camera, Image, PngPicture, SvgPicture};
 
 const BLACK: Color = Color::rgb(0, 0, 0);
 
-/// Returns an empty picture of a square from -1 to 1.
+/// Returns an empty picture of the square from -1 to 1.
 fn framed(size: [u32; 2]) -> PngPicture {
     let corners = [Point::new(-1.0, -1.0, 0.0), Point::new(1.0, 1.0, 0.0)];
     PngPicture::new(Camera::plane().fit(corners), size).with_margin(0.0)
@@ -33,7 +33,8 @@ fn text_at(x: f64, y: f64, text: &str) -> Image {
 
 #[test]
 fn a_text_is_to_the_upper_right_of_its_point() {
-    // The point is at (50, 50); the frame of four characters begins 5 to the right, and ends 5 above.
+    // The point is at (50, 50). The frame of the four characters begins 5 pixels to the right of it
+    // and ends 5 pixels above it.
     let [low, high] = extent(&text_at(0.0, 0.0, "Mlgp")).expect("black on near white");
     assert!(low[0] >= 55 && high[0] < 55 + 28, "four characters, 7 wide each: {low:?} {high:?}");
     assert!(low[1] >= 50 - 5 - 16 && high[1] < 45, "16 high: {low:?} {high:?}");
@@ -88,7 +89,8 @@ fn a_legend_has_the_colours_of_the_layers() {
     let without = picture.to_image();
     let image = picture.clone().with_legend().to_image();
     assert_eq!(image.size(), [300, 120], "within the picture");
-    // A row has its line 20 above the lower side; the second entry follows 7 letters and the gaps.
+    // The line of a legend row is 20 pixels above the lower side. The second entry begins after a
+    // line, 7 letters and the gaps.
     let is = |color: Color, x| image.pixel(x, 100)[..3] == color.rgb;
     assert!(is(INK, 16) && is(INK, 31) && !is(INK, 32), "16 pixels of the colour of objects");
     assert!(is(RED, 16 + 85) && !is(RED, 16 + 84), "and of queries");

@@ -15,14 +15,15 @@ pub const NO_FEATURE: FeatureId = FeatureId::Face(u32::MAX);
 /// The part index that is written for an element without a result.
 const NO_PART: u32 = u32::MAX;
 
-/// Output columns of a batch, which can be cut into chunks.
+/// Output columns of a batch that can be split into chunks.
 pub(super) trait AnswerColumns: Cut {
-    /// Returns [`BatchError::Length`] unless each column has `len` slots, or is empty where that is
-    /// allowed.
+    /// Returns [`BatchError::Length`] unless each column has `len` slots; an optional column may
+    /// also be empty.
     fn check(&self, len: usize) -> Result<(), BatchError>;
 }
 
-/// The single column of a batch with one result must not be empty.
+/// The column of a query that computes one value for each element. It is not optional: it must have
+/// a slot for each element.
 impl<T: Send> AnswerColumns for &mut [T] {
     fn check(&self, len: usize) -> Result<(), BatchError> {
         as_long_as(len, "out", self)
@@ -63,7 +64,7 @@ macro_rules! columns {
 
 /// Output columns of [`PairBatch::closest_points`](super::PairBatch::closest_points).
 ///
-/// Points are on the surfaces, in the world frame.
+/// Points lie on the surfaces of the solids and are in the world frame.
 ///
 /// ```
 /// use impinge::dim2::batch::ClosestColumns;
@@ -200,9 +201,9 @@ pub struct ImpactColumns<'a, N: Real, const D: usize> {
     pub point1: &'a mut [[N; D]],
     /// The point on the surface of the second solid at that time, in the world frame.
     pub point2: &'a mut [[N; D]],
-    /// The index of the part of the first shape that touches; 0 for a convex solid.
+    /// The index of the first shape's part that touches the second shape; 0 for a convex solid.
     pub part1: &'a mut [u32],
-    /// The index of the part of the second shape that touches; 0 for a convex solid.
+    /// The index of the second shape's part that touches the first shape; 0 for a convex solid.
     pub part2: &'a mut [u32],
     /// The reliability of the impact; `None` without an impact.
     pub status: &'a mut [Option<ImpactStatus>],
@@ -237,9 +238,9 @@ impl<N: Real, const D: usize> ImpactColumns<'_, N, D> {
 /// ```
 #[derive(Debug, Default)]
 pub struct ProjectionColumns<'a, N: Real, const D: usize> {
-    /// The projection of the given point onto the shape, or onto its boundary, in the world frame.
+    /// The projection of the query point onto the shape, or onto its boundary, in the world frame.
     pub point: &'a mut [[N; D]],
-    /// Whether the given point lies in the shape or on its boundary.
+    /// Whether the query point lies in the shape or on its boundary; `false` without a result.
     pub is_inside: &'a mut [bool],
     /// The index of the composite's part on which the nearest point lies; 0 for a convex solid.
     pub part: &'a mut [u32],
@@ -274,10 +275,11 @@ impl<N: Real, const D: usize> ProjectionColumns<'_, N, D> {
 /// ```
 #[derive(Debug, Default)]
 pub struct HitColumns<'a, N: Real, const D: usize> {
-    /// The time of the hit, in units of the length of the ray's direction; infinite without a hit.
+    /// The time `t` of the hit, at the point `origin + t * direction` of the ray; infinite without
+    /// a hit.
     pub time: &'a mut [N],
-    /// The outward unit normal of the shape at the hit, in the world frame; zero if a ray of a
-    /// solid query starts inside, NaN without a hit.
+    /// The outward unit normal of the shape at the hit, in the world frame; zero if the shape is
+    /// solid and the ray starts inside, NaN without a hit.
     pub normal: &'a mut [[N; D]],
     /// The index of the composite's part that is hit; 0 for a convex solid.
     pub part: &'a mut [u32],

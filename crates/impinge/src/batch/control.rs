@@ -1,4 +1,4 @@
-//! Progress and cancellation.
+//! Progress reports of batches, and cancellation.
 
 use core::fmt;
 use core::ops::{ControlFlow, Range};
@@ -11,11 +11,11 @@ use crate::chunks::{CHUNK, Cut, PerChunk, each_chunk};
 /// A callback that receives the number of finished elements.
 type Report<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
 
-/// Number of chunks that are computed before their lists are joined. Bounds the memory of lists
-/// that are not joined yet.
+/// The number of chunks that are computed before their lists are joined. It bounds the memory of
+/// lists that are not joined yet.
 const CHUNKS_PER_WAVE: usize = 1024;
 
-/// Receives the progress of a batch, and may cancel it.
+/// A callback that receives the progress of a batch and may cancel the batch.
 ///
 /// The callback is called after each chunk of 64 elements, and after the last chunk, which may be
 /// shorter. It receives the number of elements finished so far, which grows with each call; in the
@@ -66,7 +66,7 @@ impl fmt::Debug for Control<'_> {
     }
 }
 
-/// The progress of a running batch.
+/// The number of finished elements of a running batch, and whether the batch is cancelled.
 pub(crate) struct Progress<'a> {
     report: Option<Report<'a>>,
     /// The number of elements last reported. The lock is held while the callback runs.
@@ -80,8 +80,8 @@ impl<'a> Progress<'a> {
         Self { report: control.report, done: Mutex::new(0), is_cancelled }
     }
 
-    /// Runs a whole batch: calls `work` with the range of elements and the part of `columns` of
-    /// each chunk.
+    /// Runs a batch of `count` elements. Calls `work` once for each chunk, with the chunk's range
+    /// of elements and its part of `columns`.
     pub(crate) fn run<C: Cut>(
         &self,
         count: usize,
@@ -91,8 +91,9 @@ impl<'a> Progress<'a> {
         self.each(0..count, columns, &work)
     }
 
-    /// Runs a whole batch whose chunks each fill a list; passes these lists to `take` in the order
-    /// of the chunks.
+    /// Runs a batch of `count` elements in which `work` fills one list for each chunk. Passes these
+    /// lists to `take` in the order of the chunks. `take` must empty the list, since a later chunk
+    /// reuses it.
     pub(crate) fn collect<T: Default + Send>(
         &self,
         count: usize,
@@ -136,7 +137,7 @@ impl<'a> Progress<'a> {
         }
     }
 
-    /// Reports that `count` more elements are finished. `Break` if the batch has been cancelled.
+    /// Reports that `count` more elements are finished. Returns `Break` if the batch is cancelled.
     fn advance(&self, count: usize) -> ControlFlow<()> {
         let Some(report) = self.report else { return ControlFlow::Continue(()) };
         let mut done = self.done.lock().unwrap_or_else(PoisonError::into_inner);

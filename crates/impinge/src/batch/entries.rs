@@ -1,4 +1,5 @@
-//! Entry points of batches, whose generic code is compiled in this crate.
+//! Entry points of batches: functions whose generic code this crate compiles for each scalar and
+//! dimension, so that the user's crate need not.
 
 use super::{
     BatchError, ClosestColumns, ContactColumns, Control, HitColumns, ImpactColumns, ManifoldRows,
@@ -55,7 +56,8 @@ compiled! {
         out: ImpactColumns<'_, N, D>,
     ) -> Done = pairs::impacts;
 
-    /// `asked` is the prediction and the maximum number of points of a manifold.
+    /// Runs [`PairBatch::manifolds`]; `asked` has the prediction and the maximum number of points
+    /// of a manifold.
     fn manifolds(
         pairs: &PairBatch<'_, N, D>,
         asked: (&ContactPrediction<N>, Option<usize>),

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// The reason why a batch was refused or ended early.
+/// The reason why the input of a batch was rejected, or why the batch ended early.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Shapes, Side};
@@ -36,11 +36,11 @@ pub enum BatchError {
         /// The length of a row.
         width: usize,
     },
-    /// An element has the index of a shape that is not in the list of shapes.
+    /// The shape index of an element is not less than the number of shapes.
     Pick {
         /// The index of the element.
         index: usize,
-        /// The index of the shape.
+        /// The shape index of the element.
         pick: u32,
         /// The number of shapes.
         shapes: usize,
@@ -54,7 +54,7 @@ pub enum BatchError {
     },
     /// The distance limit of pairs is negative or NaN.
     Distance {
-        /// The distance.
+        /// The distance limit.
         value: f64,
     },
     /// The index of a tile is not less than the number of tiles, or zero tiles were requested.
@@ -64,8 +64,8 @@ pub enum BatchError {
         /// The number of tiles.
         tiles: u32,
     },
-    /// The axis of a cut between tiles does not exist, or its position is not finite or outside the
-    /// region that is cut.
+    /// The axis of a cut between tiles does not exist, or the position of the cut is not finite or
+    /// lies outside the region that it divides.
     TileCut {
         /// The index of the cut.
         index: usize,
@@ -116,14 +116,15 @@ pub enum MatrixError {
     },
     /// Two columns of the rotation are not perpendicular, or one is not a unit vector.
     NotOrthogonal {
-        /// The indices of both columns; twice the same for a column that is not a unit vector.
+        /// The indices of both columns; equal if a column is not a unit vector.
         columns: [usize; 2],
-        /// The scalar product of the columns, which should be 0, or 1 if both are the same.
+        /// The scalar product of the columns. It must be within 2⁻¹⁶ of 0, or of 1 if both indices
+        /// are equal.
         product: f64,
     },
     /// The rotation part is a reflection.
     NotARotation {
-        /// The determinant of the rotation, which should be 1.
+        /// The determinant of the rotation part; it must be positive.
         determinant: f64,
     },
 }

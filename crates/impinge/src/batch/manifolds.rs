@@ -2,8 +2,8 @@
 //!
 //! A chunk is computed in three steps. First its pairs are placed, and pairs that are certainly
 //! beyond the prediction are rejected. Then the manifolds of the other pairs are computed: pairs of
-//! boxes, balls, segments and capsules are sorted by their kinds and computed 8 at a time in SIMD
-//! lanes. At last the points are written in the order of the pairs.
+//! boxes, balls, segments and capsules are sorted by shape kinds and computed 8 at a time in SIMD
+//! lanes. Finally the contact points are written in the order of the pairs.
 
 use crate::math::order::sort_few;
 use crate::tables::ByDimension;
@@ -23,7 +23,7 @@ use crate::narrow_phase::{ContactPrediction, conforming_points};
 use crate::query::{ManifoldView, PairRef, PlacedSolids, Placement};
 use crate::shape::{Geometry, ShapeKind};
 
-/// See [`PairBatch::manifolds`].
+/// Implements [`PairBatch::manifolds`].
 pub(super) fn manifolds<N: Space<D>, const D: usize>(
     batch: &PairBatch<'_, N, D>,
     (prediction, max_points): (&ContactPrediction<N>, Option<usize>),
@@ -95,7 +95,8 @@ struct PairManifolds<'a, N: Real, const D: usize> {
     placed: [Placed<'a, N, D>; 2],
     /// Whether the canonical order is the reverse of the caller's order.
     is_swapped: bool,
-    /// Copies of the solids in canonical order; `None` unless both are small enough for SIMD lanes.
+    /// Copies of the solids in canonical order; `None` unless each is a ball, a segment, a capsule
+    /// or a box, the kinds with SIMD kernels.
     solids: Option<[Solid<N, D>; 2]>,
     /// Contacts of two convex solids, in the frame of the first one in canonical order.
     raw: RawManifold<N, D>,
@@ -144,7 +145,7 @@ impl<'a, N: Space<D>, const D: usize> PairManifolds<'a, N, D> {
     }
 }
 
-/// Object `i` is solid `i` in canonical order.
+/// Object 0 is the first shape in canonical order, object 1 the second.
 impl<N: Real, const D: usize> PlacedSolids<N, D> for PairManifolds<'_, N, D> {
     fn placed(&self, object: u32) -> (&Pose<N, D>, Geometry<'_, N, D>) {
         let placed = &self.placed[object as usize];

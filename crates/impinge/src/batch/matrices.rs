@@ -3,7 +3,8 @@
 use super::{BatchError, MatrixError, PoseSource};
 use crate::math::{Matrix, Pose, Real, Space, Vector};
 
-/// Greatest deviation from 0 or 1 of the scalar product of two columns of a rotation: 2⁻¹⁶.
+/// The greatest accepted deviation of the scalar product of two columns of a rotation from 0 or 1:
+/// 2⁻¹⁶.
 const TOLERANCE: f64 = 1.0 / 65536.0;
 
 /// Poses as homogeneous matrices, read in place. Each matrix has (D+1) × (D+1) numbers in row-major
@@ -11,7 +12,7 @@ const TOLERANCE: f64 = 1.0 / 65536.0;
 ///
 /// ```text
 ///   | r00 r01 r02 t0 |
-///   | r10 r11 r12 t1 |     x ↦ r · x + t takes the local frame of a shape to the world
+///   | r10 r11 r12 t1 |     x ↦ r · x + t maps the local frame of a shape to the world
 ///   | r20 r21 r22 t2 |
 ///   |  0   0   0   1 |
 /// ```
@@ -32,7 +33,7 @@ pub struct Matrices<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Space<D>, const D: usize> Matrices<'a, N, D> {
-    /// Numbers in a matrix.
+    /// The number of entries of a matrix.
     const WIDTH: usize = (D + 1) * (D + 1);
 
     /// Accepts matrices whose last row is 0, …, 0, 1 and whose rotation part is orthogonal with
@@ -40,7 +41,7 @@ impl<'a, N: Space<D>, const D: usize> Matrices<'a, N, D> {
     ///
     /// The scalar products of the rotation's columns may differ by 2⁻¹⁶, about 1.5e-5, from 0 or 1:
     /// five correct decimals suffice. The matrix is used as given. Such a deviation displaces the
-    /// points of a shape by that fraction of their distance from the shape's origin.
+    /// points of a shape by about 2⁻¹⁶ times their distance from the shape's origin.
     ///
     /// Cost: some nanoseconds for each matrix, on one thread.
     ///
@@ -110,8 +111,8 @@ fn translation_of<N: Real, const D: usize>(matrix: &[N]) -> Vector<N, D> {
     translation
 }
 
-/// Returns `true` if [`check`] finds no error. It has no branches, which is faster than an early
-/// exit.
+/// Returns `true` if [`check`] finds no error. Evaluates all conditions without branches, which is
+/// faster than an early exit.
 #[inline]
 fn is_pose<N: Space<D>, const D: usize>(matrix: &[N]) -> bool {
     let (rows, last) = matrix.split_at(D * (D + 1));

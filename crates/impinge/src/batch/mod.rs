@@ -4,7 +4,7 @@
 //!   Shapes: one, one each, or picked     Side ─┐
 //!   PoseSource: one, or one each         ──────┤  PairBatch: element i of one side with element i of the other
 //!                                        Side ─┘
-//!   element       0     1     2     3    …        a length of one stands for every element
+//!   element       0     1     2     3    …        a list of length 1 applies to all elements
 //!   distance   [ d0 ][ d1 ][ d2 ][ d3 ]  …        one slot for each element, in this order
 //!   point1     [ p0 ][ p1 ][ p2 ][ p3 ]  …        an empty column is not computed
 //! ```
@@ -27,14 +27,15 @@
 //!
 //! # No result
 //!
-//! An element has no result if it is beyond the limit, or if its pose, point, ray or velocity is
-//! not finite. Its distance and time are then `INFINITY`, its depth `-INFINITY`, its points and
-//! normals `NaN`, its part `u32::MAX`, and its feature [`NO_FEATURE`].
+//! An element has no result if the query finds none within its limit, or if a pose, point, ray or
+//! velocity of the element is not finite. Its distance and time are then `INFINITY`, its depth
+//! `-INFINITY`, its points and normals `NaN`, its part `u32::MAX`, and its feature [`NO_FEATURE`].
 //!
 //! # Errors
 //!
-//! Each method checks all lengths before it computes anything. After any other error than
-//! [`BatchError::Cancelled`] no column has changed; after that one, some slots are filled.
+//! Each method checks all lengths before it computes anything. An error other than
+//! [`BatchError::Cancelled`] leaves all columns unchanged. After a cancellation, some slots have
+//! been written and the others are unchanged.
 
 mod columns;
 mod control;

@@ -24,7 +24,7 @@ use crate::query::{
     witness_between,
 };
 
-/// A batch of pairs: element `i` of one side with element `i` of the other.
+/// A batch of pairs: element `i` of one side is paired with element `i` of the other side.
 ///
 /// A side of a single element is paired with every element of the other side. The methods write the
 /// result of pair `i` to slot `i`, with the bits of the single call.
@@ -81,9 +81,9 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
     /// Computes the distance of each pair: zero if the solids touch or overlap, infinite without a
     /// result. See [`distance`](crate::query::distance()).
     ///
-    /// Cost: the sum of the single calls, without the work that all elements of a side share. If a
-    /// maximum distance suffices, [`Self::closest_points`] and [`Self::proximities`] reject distant
-    /// pairs by their bounding balls.
+    /// The cost is the sum of the single calls, except that data shared by all elements of a side
+    /// is computed once. If a maximum distance suffices, [`Self::closest_points`] and
+    /// [`Self::proximities`] reject distant pairs by their bounding balls.
     ///
     /// # Errors
     /// [`BatchError::Length`] if `out` is not as long as the batch, [`BatchError::Cancelled`].
@@ -156,7 +156,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
     /// velocities and do not rotate: see [`impact`](crate::query::impact()).
     ///
     /// `velocities` has a list for each side, in the world frame and in units of length per unit of
-    /// time: one velocity for each pair, one for all, or none for solids at rest.
+    /// time. A list has one velocity for each pair, or a single velocity for all pairs, or is empty
+    /// for solids at rest.
     ///
     /// # Errors
     /// [`BatchError::Length`] if the length of a list of velocities is neither 0, 1 nor the number
@@ -174,7 +175,7 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
     /// Computes the contact points of each pair as rows, with the bits of a new
     /// [`PairManifoldGenerator`](crate::narrow_phase::PairManifoldGenerator).
     ///
-    /// `prediction` limits distances and rotations as it does there. Manifolds have at most
+    /// `prediction` limits distances and rotations as in the generator. Manifolds have at most
     /// `max_points` points (0 means 1); by default (`None`) two in 2D and four in 3D. The content
     /// of `out` is replaced and its memory reused. Boxes, balls, segments and capsules are computed
     /// 8 pairs at a time.
@@ -196,9 +197,9 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
     /// `None` if no pair is at most `max_distance` apart. A negative or NaN `max_distance` means
     /// zero.
     ///
-    /// The limit shrinks to the least distance so far, so most pairs are rejected by their bounding
-    /// balls, and the call is cheaper than [`Self::distances`]. The result does not depend on the
-    /// threads.
+    /// The limit shrinks to the least distance found so far. So most pairs are usually rejected by
+    /// their bounding balls, and the call is cheaper than [`Self::distances`]. The result does not
+    /// depend on the number of threads.
     ///
     /// # Errors
     /// [`BatchError::Cancelled`].
@@ -216,8 +217,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         [PreparedSide::new(&self.sides[0]), PreparedSide::new(&self.sides[1])]
     }
 
-    /// Calls `answer` with both elements of each pair, the columns of the pair's chunk, and the
-    /// pair's slot in these.
+    /// Calls `answer` for each pair with both elements, the columns of the pair's chunk, and the
+    /// index of the pair's slot in these columns.
     fn each<C: AnswerColumns>(
         &self,
         control: &Control<'_>,
@@ -232,8 +233,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         })
     }
 
-    /// Fills the slot of each pair that is at most `limit` apart with `answer` of its distance, and
-    /// every other slot with `none`.
+    /// Writes `answer(distance)` to the slot of each pair that is at most `limit` apart, and `none`
+    /// to every other slot.
     fn each_distance<T: Copy + Send + Sync>(
         &self,
         limit: N,
@@ -257,8 +258,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         })
     }
 
-    /// Calls `answer` with the slot of each pair and `None`, then again, with the slot and a
-    /// [`PairAnswer`], for each pair that may be at most `limit` apart.
+    /// First calls `answer` with `None` for the slot of each pair. Then calls it with a
+    /// [`PairAnswer`] for each pair that may be at most `limit` apart.
     fn each_separation<C: AnswerColumns>(
         &self,
         limit: N,
@@ -411,8 +412,8 @@ pub(super) fn impacts<N: Space<D>, const D: usize>(
     })
 }
 
-/// Returns the velocity of an element: its own if `column` has several, the common one if it has
-/// one, or zero if it is empty.
+/// Returns the velocity of element `index`: the common velocity if `column` has length 1, zero if
+/// it is empty, else the velocity at this index.
 #[inline]
 fn velocity_at<N: Real, const D: usize>(column: &[[N; D]], index: usize) -> Vector<N, D> {
     match column.get(index_in(column.len(), index)) {
@@ -442,7 +443,7 @@ pub(super) fn nearest<N: Space<D>, const D: usize>(
     Ok(best.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// Returns the nearest among `known` and the pairs in `range`; `None` if there is none within
+/// Returns the nearest pair among `known` and the pairs in `range`; `None` if no pair is within
 /// `limit`.
 fn nearest_of<N: Space<D>, const D: usize>(
     sides: &[PreparedSide<'_, N, D>; 2],

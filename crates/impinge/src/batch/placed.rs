@@ -14,24 +14,25 @@ use crate::math::{Real, Space};
 
 /// The pairs of a chunk that may be at most `limit` apart, with their placed shapes.
 pub(super) struct PlacedPairs<'a, N: Real, const D: usize> {
-    /// By pair: its slot in the chunk.
+    /// The slot of each pair in the output columns of the chunk.
     slots: Vec<usize>,
-    /// By side, the placed elements of the pairs, in the order of `slots`.
+    /// For each side, the placed elements of the pairs, in the order of `slots`.
     sides: [PlacedSide<'a, N, D>; 2],
     limit: N,
 }
 
-/// The result of a pair, or its shapes.
+/// The result of a pair of convex solids, or the shapes of a pair that the caller must compute.
 pub(super) enum PairAnswer<'p, 'a, N: Real, const D: usize> {
     /// The separation of two convex solids, in the world frame and in the caller's order.
     Convex(&'p Separation<N, D>),
-    /// A pair with a composite, which the caller must compute by a single query.
+    /// The placed shapes of a pair that the caller must compute by a single query: a pair with a
+    /// composite, or the only pair of a batch.
     Alone([&'p Placed<'a, N, D>; 2]),
 }
 
 impl<'a, N: Space<D>, const D: usize> PlacedPairs<'a, N, D> {
-    /// Collects the pairs of a range of elements. If `limit` is infinite, all poses are read in bulk; else only the
-    /// poses of pairs that may be within the limit.
+    /// Collects the pairs of a range of elements. If `limit` is infinite, all poses are read in bulk. Otherwise only
+    /// translations are read first, and then the poses of the pairs that may be within the limit.
     pub(super) fn new(sides: &[PreparedSide<'a, N, D>; 2], range: Range<usize>, limit: N) -> Self {
         if limit == N::INFINITY {
             let slots = (0..range.len()).collect();
@@ -52,9 +53,9 @@ impl<'a, N: Space<D>, const D: usize> PlacedPairs<'a, N, D> {
         Self { slots, sides: near, limit }
     }
 
-    /// Returns the pairs of convex solids, each with its index in `slots` as its `slot`. Leaves out pairs whose
-    /// relative pose is not finite. Calls `of_composites` with the chunk slot and the shapes of each pair with a
-    /// composite.
+    /// Returns the pairs of convex solids; the `slot` of each is its index in `self.slots`, not its slot in the chunk.
+    /// Leaves out pairs whose relative pose is not finite. For each pair with a composite, calls `of_composites` with
+    /// its slot in the chunk and its shapes.
     fn convex(
         &self,
         mut of_composites: impl FnMut(usize, [&Placed<'a, N, D>; 2]),
@@ -93,8 +94,8 @@ impl<'a, N: Space<D>, const D: usize> PlacedPairs<'a, N, D> {
         }
     }
 
-    /// Calls `put` with the chunk slot of each pair that may be at most `limit` apart, and with its separation or, for
-    /// a composite, its shapes.
+    /// Calls `put` for each pair that may be at most `limit` apart, with its slot in the chunk. A pair of convex solids
+    /// comes with its separation, a pair with a composite with its shapes.
     pub(super) fn separations(&self, mut put: impl FnMut(usize, PairAnswer<'_, 'a, N, D>)) {
         let mut convex = self.convex(|slot, placed| put(slot, PairAnswer::Alone(placed)));
         let mut found = vec![None; self.slots.len()];

@@ -9,11 +9,11 @@ use crate::math::{Point, Pose, Real, Space};
 use crate::query::{PointQuery, located_at};
 use crate::shape::Shape;
 
-/// A batch of points in the world frame: point `i` with element `i` of a side. A single point is
-/// paired with all elements, and a single element with all points.
+/// A batch of points in the world frame: point `i` is paired with element `i` of a side. A single
+/// point is paired with all elements, and a single element with all points.
 ///
 /// The results have the bits of [`PointQuery`], which also defines the inside of composites and of
-/// sets without thickness.
+/// shapes without thickness.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Control, OnePose, PointBatch, ProjectionColumns, Shapes, Side};
@@ -43,8 +43,8 @@ pub struct PointBatch<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Space<D>, const D: usize> PointBatch<'a, N, D> {
-    /// Pairs each point with the placed shape of the same index; a single point or shape is paired
-    /// with all of the other kind.
+    /// Pairs each point with the placed shape of the same index. A single point is paired with all
+    /// shapes, and a single shape with all points.
     ///
     /// # Errors
     /// [`BatchError::Length`] if the lengths differ and neither is one.
@@ -65,8 +65,8 @@ impl<'a, N: Space<D>, const D: usize> PointBatch<'a, N, D> {
         self.len == 0
     }
 
-    /// Computes the point nearest to each given point, on the shape, or on its boundary if `solid`
-    /// is `false`: see [`PointQuery::project_point_with_location`].
+    /// Projects each point onto its shape, or onto the boundary of its shape if `solid` is `false`.
+    /// See [`PointQuery::project_point_with_location`].
     ///
     /// # Errors
     /// [`BatchError::Length`] if a column is neither empty nor as long as the batch, [`BatchError::Cancelled`].
@@ -97,8 +97,9 @@ impl<'a, N: Space<D>, const D: usize> PointBatch<'a, N, D> {
         entries::contains(self, control, out)
     }
 
-    /// Calls `answer` for each pair with its point and shape, or `None` if the point or pose is not
-    /// finite, the columns of the pair's chunk, and the pair's slot in these.
+    /// Calls `answer` for each pair with its point and shape, the columns of the pair's chunk, and
+    /// the index of the pair's slot in these columns. Point and shape are `None` if the point or
+    /// the pose is not finite.
     fn each<C: AnswerColumns>(
         &self,
         control: &Control<'_>,

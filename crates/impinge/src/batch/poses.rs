@@ -4,7 +4,7 @@ use core::ops::Range;
 
 use crate::math::{AbstractRotation, Isometry, Pose, Real, Space, Vector};
 
-/// The placement of a shape: a [`Pose`], an isometry of nalgebra, or a custom type.
+/// A type that describes the pose of a shape: [`Pose`], an isometry of nalgebra, or a custom type.
 ///
 /// ```
 /// use impinge::dim2::batch::AsPose;
@@ -24,8 +24,8 @@ pub trait AsPose<N: Real, const D: usize>: Sync {
     /// Returns the pose as a rotation matrix and a translation.
     fn to_pose(&self) -> Pose<N, D>;
 
-    /// Returns the translation alone, with the bits of [`Self::to_pose`]. Queries reject distant
-    /// shapes by it without computing a rotation.
+    /// Returns the translation alone, with the bits of [`Self::to_pose`]. Queries use it to reject
+    /// distant shapes without computing a rotation.
     fn translation(&self) -> Vector<N, D> {
         self.to_pose().translation
     }
@@ -70,12 +70,12 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Sync, const D: usize> AsPose<N, D>
 
 /// The poses of one side of a batch, by index.
 ///
-/// Implemented by vectors, arrays and slices (`&slice`, as the batch takes a reference) of types
-/// with [`AsPose`], by [`Matrices`](super::Matrices) and by [`OnePose`]. Implement it to read poses
-/// in place from other memory.
+/// Vectors, arrays and slices of types with [`AsPose`] implement this trait (pass `&slice`, since
+/// the batch takes a reference), as do [`Matrices`](super::Matrices) and [`OnePose`]. Implement it
+/// to read poses in place from other memory.
 ///
-/// A source of one pose gives that pose to every element of its side. Poses need not be finite: an
-/// element whose pose is not finite has no result.
+/// A source of length 1 provides the pose of every element of its side. Poses need not be finite:
+/// an element whose pose is not finite has no result.
 pub trait PoseSource<N: Real, const D: usize>: Sync {
     /// Returns the number of poses.
     fn len(&self) -> usize;
@@ -100,7 +100,7 @@ pub trait PoseSource<N: Real, const D: usize>: Sync {
         self.pose(index).without_rotation()
     }
 
-    /// Appends the poses of a range of indices to `out`: one virtual call for many poses.
+    /// Appends the poses of a range of indices to `out`, so that many poses cost one virtual call.
     fn append(&self, range: Range<usize>, out: &mut Vec<Pose<N, D>>) {
         out.reserve(range.len());
         for index in range {

@@ -9,8 +9,9 @@ use crate::bounding_volume::Ray;
 use crate::math::{Point, Real, Space, Vector};
 use crate::query::{RayBatch, RayIntersection, cast_at, cast_many_on};
 
-/// A batch of rays in the world frame, as arrays of origins and directions: ray `i` with element
-/// `i` of a side. A single ray is paired with all elements, and a single element with all rays.
+/// A batch of rays in the world frame, as arrays of origins and directions: ray `i` is paired with
+/// element `i` of a side. A single ray is paired with all elements, and a single element with all
+/// rays.
 ///
 /// The results have the bits of
 /// [`RayCast::first_hit_with_ray`](crate::query::RayCast::first_hit_with_ray). Each ray is cast
@@ -44,12 +45,12 @@ pub struct RayColumns<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Space<D>, const D: usize> RayColumns<'a, N, D> {
-    /// Pairs each ray, without a maximum time, with the placed shape of the same index; a single
-    /// ray or shape is paired with all of the other kind. A single origin or direction is used for
-    /// all rays. Times are in units of the length of each direction.
+    /// Pairs each ray with the placed shape of the same index. A single ray is paired with all
+    /// shapes, and a single shape with all rays; a single origin or direction is used for all rays.
+    /// The rays have no maximum time. Time `t` is at the point `origin + t * direction`.
     ///
     /// # Errors
-    /// [`BatchError::Length`] if the lengths differ, where a length of one fits any other.
+    /// [`BatchError::Length`] if two of the lengths differ and neither is 1.
     pub fn try_new(
         side: Side<'a, N, D>,
         origins: &'a [[N; D]],

@@ -15,8 +15,8 @@ use crate::shape::FeatureId;
 ///   manifold  [ 0 0    ][  ][ 0 0  1 1 ]             pair 2 has two manifolds of two points each
 /// ```
 ///
-/// Two convex solids have at most one manifold; composites have one for each flat patch of contact.
-/// The points of a manifold have equal normals.
+/// Two convex solids have at most one manifold; composites have one manifold for each flat patch of
+/// contact. The points of a manifold have equal normals.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Control, ManifoldRows, OnePose, PairBatch, Shapes, Side};
@@ -39,7 +39,7 @@ use crate::shape::FeatureId;
 pub struct ManifoldRows<N: Real, const D: usize> {
     /// The first slot of each pair, followed by the number of points.
     pub starts: Vec<usize>,
-    /// The index, within the pair, of the manifold of each point.
+    /// For each point, the index of its manifold among the manifolds of its pair.
     pub manifold: Vec<u32>,
     /// The point on the surface of the first shape, in the world frame.
     pub point1: Vec<[N; D]>,
@@ -111,7 +111,8 @@ impl<N: Real, const D: usize> ManifoldRows<N, D> {
         [&mut self.feature1, &mut self.feature2].into_iter().for_each(Vec::clear);
     }
 
-    /// Appends the points of one manifold to the pair that has not ended yet.
+    /// Appends the points of the manifold with index `manifold` to the current pair, which
+    /// [`Self::end_pair`] ends.
     #[inline]
     pub(super) fn push(&mut self, manifold: u32, view: &ManifoldView<'_, N, D>)
     where
@@ -130,13 +131,13 @@ impl<N: Real, const D: usize> ManifoldRows<N, D> {
         }
     }
 
-    /// Ends a pair: later points belong to the next pair.
+    /// Ends the current pair: points that are pushed later belong to the next pair.
     #[inline]
     pub(super) fn end_pair(&mut self) {
         self.starts.push(self.depth.len());
     }
 
-    /// Moves all pairs of other rows to the end of these rows.
+    /// Appends all pairs of `other` to these rows, and clears `other`.
     pub(super) fn append(&mut self, other: &mut Self) {
         let before = self.depth.len();
         self.starts.extend(other.starts.iter().skip(1).map(|start| before + start));

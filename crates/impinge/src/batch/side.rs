@@ -27,9 +27,9 @@ pub enum Shapes<'a, N: Real, const D: usize> {
     One(&'a dyn Shape<N, D>),
     /// A shape for each element; a single shape is used for all elements.
     Each(&'a [ShapeHandle<N, D>]),
-    /// For each element an index into `shapes`; a single index is used for all elements.
+    /// An index into `shapes` for each element; a single index is used for all elements.
     Picked {
-        /// The shapes to pick from.
+        /// The shapes to which `picks` refers.
         shapes: &'a [ShapeHandle<N, D>],
         /// For each element, the index of its shape.
         picks: &'a [u32],
@@ -37,7 +37,7 @@ pub enum Shapes<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Real, const D: usize> Shapes<'a, N, D> {
-    /// Returns the number of elements with their own shape; 1 if all elements share a shape.
+    /// Returns the number of shapes or picks; 1 if all elements share one shape.
     #[must_use]
     pub const fn len(&self) -> usize {
         match self {
@@ -75,8 +75,8 @@ impl<'a, N: Real, const D: usize> Shapes<'a, N, D> {
     }
 }
 
-/// Shapes and their poses: element `i` is shape `i` at pose `i`. All elements share a single shape
-/// or a single pose.
+/// Shapes and their poses: element `i` is shape `i` at pose `i`. If there is a single shape or a
+/// single pose, all elements have it.
 ///
 /// ```
 /// use impinge::dim3::batch::{OnePose, Shapes, Side};
@@ -98,11 +98,12 @@ pub struct Side<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Real, const D: usize> Side<'a, N, D> {
-    /// Combines shapes with poses: equally many of both, or a single shape or pose for all.
+    /// Combines as many shapes as poses, or a single shape with many poses, or a single pose with
+    /// many shapes.
     ///
     /// # Errors
     /// [`BatchError::Length`] if the lengths differ and neither is one, [`BatchError::Pick`] for
-    /// the first element whose index of a shape is not in the list.
+    /// the first element whose shape index is out of range.
     pub fn try_new(
         shapes: Shapes<'a, N, D>,
         poses: &'a dyn PoseSource<N, D>,
@@ -124,7 +125,7 @@ impl<'a, N: Real, const D: usize> Side<'a, N, D> {
         self.len == 0
     }
 
-    /// Returns the first element, without preparing the side, for a single query.
+    /// Returns the first element for a single query, without building a [`PreparedSide`].
     #[inline]
     pub(super) fn alone(&self) -> Element<'a, 'a, N, D> {
         Element { poses: self.poses, only: None, shape: self.shapes.at(0).geometry(), pose: 0 }
@@ -151,21 +152,22 @@ pub(super) fn common_length(
     }
 }
 
-/// Returns the index of element `element` in a list of `len` entries: one for each element, or one
-/// for all.
+/// Returns the index of the entry of element `element` in a list of `len` entries. A list of length
+/// 1 has one entry for all elements.
 #[inline]
 pub(super) const fn index_in(len: usize, element: usize) -> usize {
     if len == 1 { 0 } else { element }
 }
 
-/// A side, with the data that all of its elements share computed once.
+/// A side together with data that is computed once for all of its elements.
 pub(super) struct PreparedSide<'a, N: Real, const D: usize> {
     side: Side<'a, N, D>,
-    /// Number of poses.
+    /// The number of poses.
     poses: usize,
-    /// The shape, if all elements share it.
+    /// The shape if all elements share it; else `None`.
     shape: Option<(&'a dyn Shape<N, D>, Geometry<'a, N, D>)>,
-    /// The pose and the placed shape, if all elements share both.
+    /// The pose and the placed shape if all elements share both; else `None`. The placed shape of a
+    /// ball has no rotation, the pose has it.
     only: Option<(Pose<N, D>, Placed<'a, N, D>)>,
 }
 
@@ -184,7 +186,8 @@ impl<'a, N: Space<D>, const D: usize> PreparedSide<'a, N, D> {
         Self { side: *side, poses: side.poses.len(), shape, only }
     }
 
-    /// Returns the shape and the pose if all elements share both; else `None`.
+    /// Returns the shape and the pose, including the rotation of a ball, if all elements share
+    /// both; else `None`.
     pub(super) fn alone(&self) -> Option<(Geometry<'a, N, D>, Pose<N, D>)> {
         self.shape.zip(self.only.as_ref()).map(|((_, geometry), (pose, _))| (geometry, *pose))
     }
@@ -225,7 +228,8 @@ impl<'a, N: Space<D>, const D: usize> PreparedSide<'a, N, D> {
         found
     }
 
-    /// Returns element `element`. Its pose is read only if a query does not reject it.
+    /// Returns element `element` without reading its pose. A query reads the pose only if the
+    /// translation does not reject the element.
     #[inline]
     pub(super) fn element(&self, element: usize) -> Element<'_, 'a, N, D> {
         let shape = match self.shape {
@@ -241,7 +245,7 @@ impl<'a, N: Space<D>, const D: usize> PreparedSide<'a, N, D> {
 pub(super) struct PlacedSide<'a, N: Real, const D: usize> {
     /// A shape for each element, or one for all.
     shapes: Vec<Geometry<'a, N, D>>,
-    /// A pose for each element, or one for all. The rotation of a ball is the identity.
+    /// A pose for each element, or one for all. The pose of a ball may lack its rotation.
     poses: Vec<Pose<N, D>>,
 }
 
@@ -283,13 +287,13 @@ pub(super) fn pair_at<'s, 'a, N: Space<D>, const D: usize>(
     [sides[0].element(index), sides[1].element(index)]
 }
 
-/// An element of a side, whose pose has not been read yet.
+/// An element of a side; its pose is read on request.
 pub(super) struct Element<'s, 'a, N: Real, const D: usize> {
     poses: &'a dyn PoseSource<N, D>,
-    /// The pose and the placed shape, if all elements of the side share both.
+    /// The pose and the placed shape if all elements of the side share both; else `None`.
     only: Option<&'s (Pose<N, D>, Placed<'a, N, D>)>,
     shape: Geometry<'a, N, D>,
-    /// Index in `poses` of the element's pose.
+    /// The index of the element's pose in `poses`.
     pose: usize,
 }
 

@@ -1,18 +1,19 @@
-//! Pairs among more objects than one machine can hold: space is cut into tiles, and each tile computes its own pairs.
+//! Pairs among more objects than one machine can hold: space is cut into tiles, whose pairs are computed separately.
 //!
 //! ```text
 //!   cut 0 ──── below ──── cut 1 ── tile 0       ┌────┬────────┐
-//!     │                     └───── tile 1       │ 1  │   3    │    an object goes to every tile that its box,
+//!     │                     └───── tile 1       │ 1  │   3    │    an object is assigned to each tile that its box,
 //!     └─ at or above ──── cut 2 ── tile 2       ├────┼────────┤    grown by half the clearance, overlaps
 //!                           └───── tile 3       │ 0  │   2    │
-//!                                               └────┴────────┘    a pair belongs to one of them
+//!                                               └────┴────────┘    a pair belongs to exactly one tile
 //! ```
 //!
 //! The tiles are the leaves of a k-d tree (Bentley, "Multidimensional binary search trees used for associative
-//! searching", 1975) over the boxes of a sample. So each tile has about equally many objects, even if their density
-//! varies. The grown boxes of two near objects overlap, and the pair belongs to the tile that contains the lowest
-//! corner of this overlap: the reference point of Dittrich and Seeger ("Data redundancy and duplicate detection in
-//! spatial join processing", 2000). Both boxes contain that point, so both objects are assigned to that tile.
+//! searching", 1975) over the boxes of a sample. So all tiles have about the same number of objects, even if the
+//! density of the objects varies. The grown boxes of two near objects overlap, and the pair belongs to the tile that
+//! contains the lowest corner of this overlap: the reference point of Dittrich and Seeger ("Data redundancy and
+//! duplicate detection in spatial join processing", 2000). Both boxes contain that point, so both objects are assigned
+//! to that tile.
 //!
 //! A [`Tiles`] consists of the clearance and the cuts in preorder. A subtree of n tiles has n - 1 cuts: first its own
 //! cut, then the ⌊n/2⌋ - 1 cuts of the ⌊n/2⌋ tiles below it, then the cuts of the tiles above it.
@@ -24,7 +25,8 @@ use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::order::order_of;
 use crate::math::{Mapped, Point, Real, Space, max};
 
-/// A plane perpendicular to an axis: a coordinate less than `at` is below the plane.
+/// A plane perpendicular to an axis. A point is below the plane if its coordinate on this axis is
+/// less than `at`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TileCut<N> {
     /// The index of the axis: 0 for x.
@@ -52,12 +54,12 @@ pub struct TileRows {
     pub tiles: Vec<u32>,
 }
 
-/// Cuts space into `number` tiles, each with about equally many of the objects.
+/// Cuts space into `number` tiles with about the same number of objects each.
 ///
 /// `boxes` are the boxes of the objects or of a sample of them, as [`boxes()`](super::boxes) computes them; `None` is
-/// ignored. The tiles depend on the arguments alone. They need not fit the objects that are later assigned to them: any
-/// tiles lead to the same pairs, and only the balance of work differs. If there are more tiles than objects, or no
-/// boxes at all, some tiles are empty.
+/// ignored. The tiles depend on the arguments alone. The objects that are later assigned to them may differ from the
+/// sample: any tiles lead to the same pairs, and only the balance of work differs. If there are more tiles than
+/// objects, or no boxes at all, some tiles are empty.
 ///
 /// Cost: O(n log n log t) for n boxes and t tiles.
 ///
@@ -73,7 +75,7 @@ pub struct TileRows {
 /// let tiles = tiles(&boxes, 2, 1.0)?;
 /// let rows = tiles.meeting(&boxes);
 /// assert_eq!((rows.starts, rows.tiles), (vec![0, 1, 2, 3, 4], vec![0, 0, 1, 1]), "two in each");
-/// // Here each tile gets all objects; those that do not meet it only cost time.
+/// // Here each tile receives all objects; objects that do not overlap it only cost time.
 /// assert_eq!(pairs_in_tile(&row, &ids, &tiles, 0, &Control::new())?, [[70, 71]]);
 /// assert_eq!(pairs_in_tile(&row, &ids, &tiles, 1, &Control::new())?, [[72, 73]]);
 /// # Ok::<(), BatchError>(())
@@ -98,13 +100,14 @@ pub fn tiles<N: Real, const D: usize>(
 }
 
 /// Returns the pairs of objects that belong to tile `tile` and that touch, overlap, or are apart by at most the
-/// clearance of the tiles. They are pairs of ids, the lower one first, ascending.
+/// clearance of the tiles. Each result is a pair of ids, the lower id first; the list is in ascending order.
 ///
-/// `side` has the objects for which [`Tiles::meeting`] lists the tile, in any order; other objects cost time and change
-/// nothing. `ids` has a distinct id for each element of `side`. For any tiles, the lists of all tiles together contain
-/// exactly once each pair that [`pairs_within_one`](super::pairs_within_one) finds among all objects.
+/// `side` has the objects for which [`Tiles::meeting`] lists the tile, in any order; other objects cost time but do not
+/// change the result. `ids` has a distinct id for each element of `side`. For any tiles, the lists of all tiles
+/// together contain exactly once each pair that [`pairs_within_one`](super::pairs_within_one) finds among all objects.
 ///
-/// Cost: that of `pairs_within_one` for the objects in `side`; pairs of other tiles get no exact test.
+/// The cost is at most that of `pairs_within_one` for the objects in `side`; pairs of other tiles are rejected before
+/// the exact test.
 ///
 /// # Errors
 /// [`BatchError::Length`] if `ids` is not as long as the side, [`BatchError::NoTile`] if `tile` is not less than
@@ -153,7 +156,8 @@ struct Subtree {
 }
 
 impl Subtree {
-    /// Returns the subtrees below and above the first cut. There must be at least two tiles.
+    /// Returns the subtrees below and above the first cut. The subtree must have at least two
+    /// tiles.
     const fn halves(self) -> [Self; 2] {
         let below = self.tiles / 2;
         let next = self.cut + below as usize;
@@ -202,8 +206,8 @@ impl<N: Real, const D: usize> Tiles<N, D> {
         self.clearance
     }
 
-    /// Returns the cuts, one less than there are tiles, in preorder: a cut comes before the cuts of its subtree, and
-    /// cuts below it before cuts above it.
+    /// Returns the cuts in preorder: a cut comes before the cuts of its subtree, and cuts below it come before cuts
+    /// above it. There is one cut less than there are tiles.
     #[must_use]
     pub fn cuts(&self) -> &[TileCut<N>] {
         &self.cuts
@@ -230,13 +234,13 @@ impl<N: Real, const D: usize> Tiles<N, D> {
         subtree.tile
     }
 
-    /// Returns the tiles to which each object must be assigned: those that its box, grown by half the clearance,
-    /// overlaps.
+    /// Returns the tiles to which each object must be assigned: all tiles that overlap its box grown by half the
+    /// clearance.
     ///
-    /// `boxes` are the boxes of all objects or of any part of them, as [`boxes()`](super::boxes) computes them. An
-    /// object without a box has no tile. An unbounded or huge box may overlap all tiles.
+    /// `boxes` are the boxes of all objects or of some of them, as [`boxes()`](super::boxes) computes them. An object
+    /// without a box has no tile. An unbounded or huge box may overlap all tiles.
     ///
-    /// Cost: O(log t + r) for t tiles and a box that overlaps r of them.
+    /// The cost for each object is O(r log t), for t tiles of which r overlap the grown box.
     #[must_use]
     pub fn meeting(&self, boxes: &[Option<Aabb<N, D>>]) -> TileRows {
         let mut rows = TileRows { starts: vec![0], tiles: Vec::with_capacity(boxes.len()) };
@@ -265,8 +269,8 @@ impl<N: Real, const D: usize> Tiles<N, D> {
         Subtree { cut: 0, tile: 0, tiles: cuts + 1 }
     }
 
-    /// Cuts the region `bounds`, with the boxes that overlap it, into `tiles` tiles. The recursion depth is logarithmic
-    /// in `tiles`.
+    /// Cuts the region `bounds` into `tiles` tiles and appends the cuts; `boxes` are the boxes that overlap the region.
+    /// The recursion depth is logarithmic in `tiles`.
     fn divide(&mut self, boxes: Vec<Aabb<N, D>>, bounds: &Aabb<N, D>, tiles: u32) {
         if tiles == 1 {
             return;
@@ -308,7 +312,7 @@ impl<N: Real, const D: usize> Tiles<N, D> {
         }
     }
 
-    /// Returns the index of the first cut that lies outside the region that it cuts; `None` if all lie inside.
+    /// Returns the index of the first cut that lies outside the region that it divides; `None` if all cuts lie inside.
     fn first_outside(&self, subtree: Subtree, bounds: &Aabb<N, D>) -> Option<usize> {
         if subtree.tiles == 1 {
             return None;
@@ -331,12 +335,13 @@ fn halves<N: Real, const D: usize>(bounds: &Aabb<N, D>, cut: &TileCut<N>) -> [Aa
     [Aabb::new(*bounds.mins(), below), Aabb::new(above, *bounds.maxs())]
 }
 
-/// Cost of a cut, compared lexicographically: first the number of objects per tile on the fuller side, times a factor
-/// common to all cuts; then the number of objects on both sides, which includes twice each object that is cut.
+/// Cost of a cut, compared lexicographically: first the greater number of objects per tile of the two sides, times a
+/// factor common to all cuts; then the number of objects below plus the number above, which counts an object on both
+/// sides twice.
 type CutLoad = (u64, usize);
 
-/// Returns the cut with the least cost. If there is no candidate, because no box and no bound has a finite lower face,
-/// returns any finite cut inside the bounds.
+/// Returns the cut with the least cost. If no box and no bound has a usable finite lower face, returns any finite cut
+/// inside the bounds.
 fn best_cut<N: Real, const D: usize>(
     boxes: &[Aabb<N, D>],
     bounds: &Aabb<N, D>,
@@ -358,7 +363,7 @@ fn best_cut<N: Real, const D: usize>(
     best.map_or(TileCut { axis: 0, at }, |(_, cut)| cut)
 }
 
-/// The coordinates of the boxes' faces on one axis, ascending.
+/// The coordinates of the boxes' lower and upper faces on one axis, each list in ascending order.
 struct Faces<N> {
     lows: Vec<N>,
     highs: Vec<N>,
@@ -375,8 +380,9 @@ impl<N: Real> Faces<N> {
         Self { lows: sorted(lows.collect()), highs: sorted(highs.collect()) }
     }
 
-    /// Returns candidate positions: the two lower faces between which both sides are balanced, the first lower face
-    /// inside, and the lower bound. At the lower bound no box is below the cut, which is best if all boxes overlap.
+    /// Returns up to four candidate positions: the lower bound of the region, the first lower face inside the region,
+    /// and the two lower faces next to the balanced position. A cut at the lower bound makes the region below it empty,
+    /// which is best if all boxes overlap.
     fn even_cuts(&self, [low, high]: [N; 2], tiles: u32) -> impl Iterator<Item = N> {
         let begin = self.lows.partition_point(|&face| face <= low);
         let inside = &self.lows[begin..];
@@ -392,7 +398,8 @@ impl<N: Real> Faces<N> {
         cuts.into_iter().flatten()
     }
 
-    /// Returns the number of boxes that extend below the cut, and the number of boxes that extend to it or above it.
+    /// Returns the number of boxes that extend below the position `at`, and the number of boxes that extend to it or
+    /// above it.
     fn counts(&self, at: N) -> [usize; 2] {
         let before = |faces: &[N]| faces.partition_point(|&face| face < at);
         [before(&self.lows), self.highs.len() - before(&self.highs)]

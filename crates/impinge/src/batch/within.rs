@@ -1,19 +1,19 @@
 //! All near pairs of two sets of placed shapes.
 //!
 //! A tree is built over the boxes of one set. Each element of the other set searches it with its
-//! own box, grown by the distance. The proximity of the two shapes then accepts or rejects each
-//! proposed pair.
+//! own box, grown by the distance. For each pair whose boxes overlap,
+//! [`proximity`](crate::query::proximity()) of the two shapes then decides.
 //!
 //! ```text
-//!    +-------------+  the box of an element, rounded outwards and grown by the rounding errors of its pair
+//!    +-------------+  the box of an element, rounded outwards and grown by 2¹⁰ ε times its extent
 //!    |   shape     |
 //!    +-------------+ <----- distance -----> |   the searched volume ends here
 //! ```
 //!
-//! The algorithms for pairs have errors of some hundred rounding errors of the pair's lengths (see
-//! [`crate::collide::far`]): the extents of both solids about their origins, and the distance. So
-//! before any pair is rejected, each box is grown by 2¹⁰ rounding errors of its own solid's extent
-//! about its origin, and the searched volume by 2¹⁰ rounding errors of the distance.
+//! The errors of the pair algorithms are at most some hundred ε times the lengths of the pair (see
+//! [`crate::collide::far`]). These lengths are the extents of both solids about their origins, and
+//! the distance. So each box is grown by 2¹⁰ ε times the extent of its solid about its origin, and
+//! the searched volume by 2¹⁰ ε times the distance.
 
 use super::entries;
 use core::ops::Range;
@@ -28,20 +28,21 @@ use crate::math::{Mapped, Real, Space, max};
 use crate::partitioning::BoxTree;
 use crate::query::distance_within;
 
-/// Number of rounding errors of its lengths by which a box is grown.
+/// The growth of a box, in units of ε times the length that causes the rounding error.
 const ROUNDING_ERRORS: f64 = 1024.0;
 
-/// Returns the pairs `[i, j]`, ascending, of an element `i` of the first side and an element `j` of
-/// the second that touch, overlap, or are at most `distance` apart.
+/// Returns, in ascending order, the pairs `[i, j]` of an element `i` of the first side and an
+/// element `j` of the second side that touch, overlap, or are at most `distance` apart.
 ///
-/// The test is [`proximity`](crate::query::proximity()), and `distance` is inclusive. Elements with
-/// a pose that is not finite, and composites without parts, have no pairs.
+/// The result for a pair is that of [`proximity`](crate::query::proximity()); `distance` is
+/// inclusive. Elements with a pose that is not finite, and composites without parts, have no pairs.
 ///
-/// The callback of `control` receives numbers of elements of the larger side.
+/// The callback of `control` receives the number of finished elements of the larger side.
 ///
-/// Cost: O((n + m) log n) for n and m elements, n ≤ m, and the proximity of each pair whose boxes
-/// are within the distance. Half-spaces that are not aligned with an axis are tested against every
-/// element of the other side.
+/// Cost: O((n + m) log n) for n and m elements, n ≤ m, plus the cost of
+/// [`proximity`](crate::query::proximity()) for each pair whose boxes are within the distance.
+/// Half-spaces that are not aligned with an axis are tested against every element of the other
+/// side.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Control, OnePose, Shapes, Side, pairs_within};
@@ -68,9 +69,9 @@ pub fn pairs_within<N: Space<D>, const D: usize>(
     entries::pairs_within(side1, Some(side2), distance, control)
 }
 
-/// Returns the pairs `[i, j]`, `i < j`, ascending, of elements of one side that touch, overlap, or
-/// are at most `distance` apart: [`pairs_within`] for the side and itself, with each pair once and
-/// without self-pairs.
+/// Returns, in ascending order, the pairs `[i, j]`, `i < j`, of elements of one side that touch,
+/// overlap, or are at most `distance` apart. These are the results of [`pairs_within`] for the side
+/// and itself, with each pair once and without self-pairs.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Control, Shapes, Side, pairs_within_one};
@@ -94,11 +95,12 @@ pub fn pairs_within_one<N: Space<D>, const D: usize>(
     entries::pairs_within(side, None, distance, control)
 }
 
-/// Returns the box of each element of a side, grown by the rounding errors of its pairs, for
-/// [`tiles()`](super::tiles()) and [`Tiles::meeting`].
+/// Returns the box of each element of a side, grown by a bound of the rounding errors of its pairs.
+/// The boxes are the input of [`tiles()`](super::tiles()) and [`Tiles::meeting`].
 ///
-/// An element has `None` if its pose is not finite or it is a composite without parts. Half-spaces
-/// and other unbounded shapes have infinite faces. The boxes depend on the shapes and poses alone.
+/// The box is `None` if the pose of the element is not finite, or the element is a composite
+/// without parts. Half-spaces and other unbounded shapes have infinite faces. The boxes depend on
+/// the shapes and poses alone.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Control, Shapes, Side, boxes};
@@ -126,11 +128,11 @@ pub fn boxes<N: Space<D>, const D: usize>(
 /// The elements of a side and their boxes.
 struct BoxedSide<'a, N: Real, const D: usize> {
     side: PreparedSide<'a, N, D>,
-    /// By element, its grown box; `None` for an element without a finite point.
+    /// The grown box of each element; `None` if its pose is not finite or it has no finite point.
     boxes: Vec<Option<Aabb<N, D>>>,
 }
 
-/// Implements [`pairs_within`], and without a second side [`pairs_within_one`].
+/// Implements [`pairs_within`]; implements [`pairs_within_one`] if `side2` is `None`.
 pub(super) fn pairs_of<N: Space<D>, const D: usize>(
     side1: &Side<'_, N, D>,
     side2: Option<&Side<'_, N, D>>,
@@ -183,19 +185,21 @@ pub(super) fn boxes_of<N: Space<D>, const D: usize>(
     Ok(BoxedSide::new(side, control)?.boxes)
 }
 
-/// Returns [`BatchError::Distance`] if a distance limit is negative or NaN.
+/// Returns [`BatchError::Distance`] if the distance limit `value` is negative or NaN.
 pub(super) fn is_distance<N: Real>(value: N) -> Result<(), BatchError> {
     let is_usable = value >= N::ZERO;
     if is_usable { Ok(()) } else { Err(BatchError::Distance { value: value.as_f64() }) }
 }
 
-/// Returns the distance plus its rounding errors: the growth of one of two boxes.
+/// Returns `distance` plus its rounding errors: if one of two boxes grows by this margin, the boxes
+/// overlap whenever their solids are within `distance`.
 fn margin<N: Real>(distance: N) -> N {
     distance + distance * N::lit(ROUNDING_ERRORS) * N::EPSILON
 }
 
-/// Returns the growth of each of two boxes with which they overlap if they are within `distance`.
-/// Twice the result is at least [`margin`], even where half of the smallest number rounds to zero.
+/// Returns half of [`margin`], rounded up: if both boxes of a pair grow by it, they overlap
+/// whenever their solids are within `distance`. Rounding up matters where half of the smallest
+/// positive number rounds to zero.
 pub(super) fn half_margin<N: Real>(distance: N) -> N {
     let whole = margin(distance);
     let half = whole * N::HALF;
@@ -205,7 +209,7 @@ pub(super) fn half_margin<N: Real>(distance: N) -> N {
 impl<'a, N: Space<D>, const D: usize> BoxedSide<'a, N, D> {
     fn new(side: &Side<'a, N, D>, control: &Control<'_>) -> Result<Self, BatchError> {
         let given = side.len();
-        // An index is less than the length, so it is never `u32::MAX`.
+        // Indices are less than the length, so no index is `u32::MAX`.
         if u32::try_from(given).is_err() {
             return Err(BatchError::TooMany { given });
         }
@@ -219,9 +223,10 @@ impl<'a, N: Space<D>, const D: usize> BoxedSide<'a, N, D> {
         Ok(Self { side, boxes })
     }
 
-    /// Returns the near pairs of an element of this side, which searches, and an element of the
-    /// other side, in no particular order. `pair_of` receives both indices and returns the pair to
-    /// report; `None` to leave it out.
+    /// Searches the tree of `other` with the box of each element of this side, and returns the
+    /// pairs within `distance` in no particular order. `pair_of` receives the index of the element
+    /// of this side and the index of the element of `other`. It returns the pair to report, or
+    /// `None` to leave it out.
     fn pairs_with(
         &self,
         other: &Self,
@@ -252,8 +257,8 @@ impl<'a, N: Space<D>, const D: usize> BoxedSide<'a, N, D> {
         Ok(all)
     }
 
-    /// Builds a tree over the boxes that are not `None`; returns it with the element index of each
-    /// box.
+    /// Builds a tree over the boxes that are not `None`. Returns the element index of each box, and
+    /// the tree.
     fn tree(&self) -> Result<(Vec<u32>, BoxTree<N, D>), BatchError> {
         let boxes = (0..).zip(&self.boxes);
         let (numbers, boxes): (Vec<u32>, Vec<_>) =
@@ -270,8 +275,8 @@ fn number_of(element: usize) -> u32 {
     u32::try_from(element).expect("32 bits can number the elements")
 }
 
-/// Returns the box of an element, grown by its rounding errors; `None` if the pose is not finite or
-/// the element has no finite point.
+/// Returns the box of an element, grown by a bound of the rounding errors of its pairs; `None` if
+/// the pose is not finite or the element has no finite point.
 fn grown_box<N: Space<D>, const D: usize>(
     side: &PreparedSide<'_, N, D>,
     element: usize,

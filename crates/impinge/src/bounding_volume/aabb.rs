@@ -6,7 +6,7 @@ use super::{BoundingVolume, Ray};
 use crate::math::outward::{product_within, sum_above, sum_below};
 use crate::math::{Point, Real, Vector, max, max_component, min};
 
-/// The points between two corners, faces included.
+/// An axis-aligned box: the points between two corners, including the faces.
 ///
 /// `mins ≤ maxs` on every axis and no coordinate is NaN. Faces may be infinite: such a box is
 /// unbounded. Zero extents are allowed.
@@ -26,7 +26,7 @@ pub struct Aabb<N: Real, const D: usize> {
     pub(super) maxs: Point<N, D>,
 }
 
-/// Why two corners were rejected as a box. Values are given as `f64`, exactly.
+/// The reason why two corners were rejected as a box. Coordinates are converted to `f64`, exactly.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::{Aabb, AabbError};
@@ -110,8 +110,8 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     /// Creates the box with the given centre and half extents, rounded outwards.
     ///
     /// # Panics
-    /// If a coordinate is NaN or a half extent negative; [`Aabb::try_from_half_extents`] returns an
-    /// error instead.
+    /// If a coordinate is NaN, or a half extent is negative and not absorbed by rounding;
+    /// [`Aabb::try_from_half_extents`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn from_half_extents(center: Point<N, D>, half_extents: Vector<N, D>) -> Self {
@@ -124,7 +124,7 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     /// Creates the box with the given centre and half extents, rounded outwards.
     ///
     /// # Errors
-    /// If a coordinate is NaN or a half extent negative.
+    /// If a coordinate is NaN, or a half extent is negative and not absorbed by rounding.
     pub fn try_from_half_extents(
         center: Point<N, D>,
         half_extents: Vector<N, D>,
@@ -133,7 +133,7 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         Self::try_new(aabb.mins, aabb.maxs)
     }
 
-    /// Returns the box of a single point; the coordinates are not checked.
+    /// Returns the box that contains a single point; the coordinates are not checked.
     pub(crate) const fn at(point: Point<N, D>) -> Self {
         Self { mins: point, maxs: point }
     }
@@ -194,9 +194,9 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     }
 
     /// Returns the times at which the ray enters and leaves the box, clamped to `t ≥ 0`; `None` if
-    /// it misses.
+    /// the ray misses the box.
     ///
-    /// Slab test (Kay and Kajiya 1986); a ray that lies in a face hits the box.
+    /// This is the slab test (Kay and Kajiya 1986). A ray that lies in a face hits the box.
     pub fn ray_interval(&self, ray: &Ray<N, D>) -> Option<(N, N)> {
         let (mut enter, mut leave) = (N::ZERO, N::INFINITY);
         for axis in 0..D {
@@ -217,9 +217,9 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     /// Returns the times at which the box `moving`, with `velocity`, begins and ceases to touch
     /// this box, clamped to `t ≥ 0`; `None` if it never touches.
     ///
-    /// The slab test on the sums of both extents; if `moving` is a single point, the result is that
-    /// of [`Self::ray_interval`]. A box at rest touches always or never. The velocity must be
-    /// finite.
+    /// This is the slab test with the extents of both boxes added. If `moving` is a single point,
+    /// the result equals [`Self::ray_interval`] of a ray. With a zero velocity the interval is from
+    /// zero to infinity, or the result is `None`. The velocity must be finite.
     pub fn sweep_interval(&self, moving: &Self, velocity: &Vector<N, D>) -> Option<(N, N)> {
         let (mut enter, mut leave) = (N::ZERO, N::INFINITY);
         for axis in 0..D {
@@ -244,7 +244,7 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     }
 
     /// Returns the distance between two boxes, zero if they overlap. A distance whose square
-    /// underflows is treated as zero.
+    /// underflows becomes zero.
     pub fn distance_to_aabb(&self, other: &Self) -> N {
         let below = (self.mins - other.maxs).map(|x| max(x, N::ZERO));
         let above = (other.mins - self.maxs).map(|x| max(x, N::ZERO));
@@ -261,9 +261,9 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     }
 }
 
-/// Returns the length of a vector whose square overflows. The result is never less than a length
-/// whose square does not overflow. So distances stay monotonic: a box that encloses another is not
-/// farther away.
+/// Returns the length of a vector whose squared length overflows. The result is never less than a
+/// length whose square is finite. So distances are monotonic: a box that encloses another box is
+/// not farther away.
 #[cold]
 fn long_distance<N: Real, const D: usize>(gaps: &Vector<N, D>) -> N {
     let largest = max_component(gaps);

@@ -1,4 +1,4 @@
-//! Simple volumes that enclose shapes, for the broad phase.
+//! Bounding volumes of shapes: axis-aligned boxes and spheres. Also the rays that queries cast.
 
 mod aabb;
 mod placed;
@@ -11,12 +11,12 @@ pub use sphere::{BoundingSphere, BoundingSphereError};
 
 use crate::math::Real;
 
-/// A volume that encloses an object in a broad phase.
+/// A bounding volume: a simple volume that encloses an object in a broad phase.
 ///
 /// Computed volumes are rounded outwards: [`merged`](Self::merged) contains both volumes exactly,
 /// and [`loosened`](Self::loosened) and [`swept`](Self::swept) contain the exact result. Boxes are
-/// exact if the exact corners are representable, except [`swept`](Self::swept) with a rounded
-/// product; spheres are larger by some units in the last place.
+/// exact if the exact corners are representable, except the result of [`swept`](Self::swept) if the
+/// displacement is rounded. Spheres are larger by some units in the last place.
 ///
 /// All tests are closed: volumes that only touch intersect.
 ///
@@ -40,18 +40,19 @@ pub trait BoundingVolume<N: Real>: Clone {
     fn intersects(&self, other: &Self) -> bool;
     /// Returns `true` if every point of `other` is in this volume.
     fn contains(&self, other: &Self) -> bool;
-    /// Returns the smallest volume of this kind around both volumes.
+    /// Returns the smallest volume of this type that contains both volumes.
     #[must_use]
     fn merged(&self, other: &Self) -> Self;
     /// Returns the volume grown by `margin` (zero or more) on every side.
     #[must_use]
     fn loosened(&self, margin: N) -> Self;
-    /// Returns the smallest volume of this kind that contains this volume at all times from zero to
-    /// `max_time` (zero or more, may be infinite), moving with `velocity` (finite).
+    /// Returns the smallest volume of this type that contains this volume while it moves with
+    /// `velocity` from time zero to `max_time`. The velocity must be finite; `max_time` must be
+    /// zero or more, and may be infinite.
     #[must_use]
     fn swept(&self, velocity: &Self::Vector, max_time: N) -> Self;
     /// Returns `true` if the point is in the volume.
     fn contains_point(&self, point: &Self::Point) -> bool;
-    /// Returns `true` if the ray, with times from zero on, meets the volume.
+    /// Returns `true` if the ray meets the volume at a time of zero or more.
     fn intersects_ray(&self, ray: &Self::Ray) -> bool;
 }

@@ -1,9 +1,9 @@
 //! Boxes around placed solids, rounded outwards.
 //!
-//! A coordinate of a placed point is `t + Σ Rᵢⱼ·pⱼ`. The sum is rounded, so boxes grow by a bound of its error
-//! ([`slack_of`]). Adding `t` is rounded outwards to the neighbouring number ([`sum_below`], [`sum_above`]), so that
-//! solids far from the origin have boxes as tight as others. If a pose maps axes to axes, only this addition is
-//! rounded.
+//! A coordinate of a placed point is `t + Σ Rᵢⱼ·pⱼ`. The sum is rounded, so boxes are grown by an upper bound of its
+//! error ([`slack_of`]). The addition of `t` is rounded outwards to a neighbouring number ([`sum_below`],
+//! [`sum_above`]), so that the boxes of solids far from the origin are tight too. If a pose maps axes to axes, only
+//! this addition is rounded.
 
 use super::Aabb;
 use crate::math::outward::{slack_of, sum_above, sum_below};
@@ -17,7 +17,8 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         Self::moved([&-half_extents, &half_extents], &center.coords)
     }
 
-    /// Returns the box between two corners, translated and rounded outwards.
+    /// Returns the box between the corners `low` and `high`, translated by `by` and rounded
+    /// outwards.
     #[inline(always)]
     fn moved([low, high]: [&Vector<N, D>; 2], by: &Vector<N, D>) -> Self {
         let (mut mins, mut maxs) = (*by, *by);
@@ -29,8 +30,8 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     }
 
     /// Returns the box around a solid that is symmetric about its local origin, placed at `pose`.
-    /// `extents` has the half extent of the solid along each outer axis: a sum of magnitudes with
-    /// an error of at most four of its rounding units.
+    /// `extents` has the half extent of the solid along each outer axis. Each is a sum of
+    /// magnitudes with a relative error of at most 2 ε.
     #[inline(always)]
     pub(crate) fn around_rotated(pose: &Pose<N, D>, mut extents: Vector<N, D>) -> Self {
         if !pose.is_aligned() {
@@ -43,9 +44,9 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     }
 
     /// Returns the box around points that `pose` has rotated but not yet translated. `low` and
-    /// `high` are the least and greatest of their coordinates as computed by [`Pose::vector`].
-    /// `size` bounds the distance of the points from the local origin. The result is unbounded if
-    /// the coordinates overflow.
+    /// `high` are the least and greatest coordinates of the rotated points as computed by
+    /// [`Pose::vector`]. `size` is an upper bound of the distance of the points from the local
+    /// origin. The result is unbounded if the coordinates overflow.
     ///
     /// A coordinate of a rotated point is a sum of D products with an error of at most D·ε·size/2 (Higham, "Accuracy
     /// and Stability of Numerical Algorithms", 2002, section 3.1).

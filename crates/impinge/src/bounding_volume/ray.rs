@@ -1,11 +1,11 @@
-//! Half-lines.
+//! Rays.
 
 use crate::math::{Point, Pose, Real, Vector};
 
-/// A half-line: the points `origin + t · dir` for `t ≥ 0`.
+/// A ray: the points `origin + t · dir` for times `t ≥ 0`.
 ///
-/// `dir` need not be a unit vector; times are in units of its length. A zero `dir` makes the ray a
-/// point.
+/// `dir` need not be a unit vector: it is the displacement per unit of time. If `dir` is zero, the
+/// ray is the point `origin`.
 ///
 /// ```
 /// use impinge::dim2::math::{Point, Vector};
@@ -24,7 +24,7 @@ pub struct Ray<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Ray<N, D> {
-    /// Creates the ray from `origin` along `dir`.
+    /// Creates the ray that starts at `origin` and moves by `dir` per unit of time.
     pub const fn new(origin: Point<N, D>, dir: Vector<N, D>) -> Self {
         Self { origin, dir }
     }
@@ -34,14 +34,15 @@ impl<N: Real, const D: usize> Ray<N, D> {
         self.origin + self.dir * t
     }
 
-    /// Returns the ray in the local frame of a solid at `pose`; times stay equal.
+    /// Transforms the ray from the outer frame to the local frame of a solid at `pose`. Times do
+    /// not change.
     #[must_use]
     pub fn inverse_transformed_by(&self, pose: &Pose<N, D>) -> Self {
         Self::new(pose.inverse_point(&self.origin), pose.inverse_vector(&self.dir))
     }
 
-    /// Returns the ray, given in the local frame of a solid at `pose`, in the outer frame; times
-    /// stay equal.
+    /// Transforms the ray from the local frame of a solid at `pose` to the outer frame. Times do
+    /// not change.
     #[must_use]
     pub fn transformed_by(&self, pose: &Pose<N, D>) -> Self {
         Self::new(pose.point(&self.origin), pose.vector(&self.dir))

@@ -6,7 +6,7 @@ use super::{Aabb, BoundingVolume, Ray};
 use crate::math::outward::{slack_of, sum_above};
 use crate::math::{Point, Pose, Real, Vector, max, unit};
 
-/// The points within `radius` of `center`.
+/// A bounding sphere: the points within `radius` of `center`.
 ///
 /// The radius may be zero (a point) or infinite (the whole space).
 ///
@@ -24,7 +24,7 @@ pub struct BoundingSphere<N: Real, const D: usize> {
     radius: N,
 }
 
-/// Why a centre and a radius were rejected as a sphere.
+/// The reason why a centre and a radius were rejected as a sphere.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::{BoundingSphere, BoundingSphereError};
@@ -54,7 +54,7 @@ impl<N: Real> fmt::Display for BoundingSphereError<N> {
 impl<N: Real> std::error::Error for BoundingSphereError<N> {}
 
 impl<N: Real, const D: usize> BoundingSphere<N, D> {
-    /// Creates the sphere around `center`.
+    /// Creates the sphere with the given centre and radius.
     ///
     /// # Panics
     /// If the radius is negative or NaN or the centre is not finite; [`Self::try_new`] returns an
@@ -68,7 +68,7 @@ impl<N: Real, const D: usize> BoundingSphere<N, D> {
         }
     }
 
-    /// Creates the sphere around `center`.
+    /// Creates the sphere with the given centre and radius.
     ///
     /// # Errors
     /// If the radius is negative or NaN or the centre is not finite.
@@ -80,7 +80,7 @@ impl<N: Real, const D: usize> BoundingSphere<N, D> {
         if usable { Ok(Self { center, radius }) } else { Err(BoundingSphereError::Radius(radius)) }
     }
 
-    /// Returns the sphere of the whole space.
+    /// Returns a sphere with an infinite radius, which contains the whole space.
     #[must_use]
     pub fn unbounded() -> Self {
         Self { center: Point::origin(), radius: N::INFINITY }
@@ -96,7 +96,7 @@ impl<N: Real, const D: usize> BoundingSphere<N, D> {
         self.radius
     }
 
-    /// Returns the sphere around a box; unbounded if the box is unbounded.
+    /// Returns a sphere that contains a box; the whole space if the box is unbounded.
     pub(crate) fn around_box(aabb: &Aabb<N, D>) -> Self {
         let center = aabb.center();
         let farthest = Vector::<N, D>::from_fn(|axis, _| {
@@ -110,8 +110,8 @@ impl<N: Real, const D: usize> BoundingSphere<N, D> {
         sum_above(length_above(&(self.center - center)), self.radius)
     }
 
-    /// Returns the sphere placed at `pose`, rounded outwards. Exact for a sphere about the origin
-    /// under a pose that maps axes to axes.
+    /// Returns this sphere placed at `pose`, rounded outwards. The result is exact if the sphere is
+    /// centred at the origin and the pose maps axes to axes.
     #[must_use]
     pub fn transformed_by(&self, pose: &Pose<N, D>) -> Self {
         let (center, mut radius) = (pose.point(&self.center), self.radius);
@@ -127,8 +127,8 @@ impl<N: Real, const D: usize> BoundingSphere<N, D> {
     }
 }
 
-/// Returns an upper bound of the length of a vector whose components have an error of one rounding
-/// unit; infinity for a vector that is not finite, zero for zero.
+/// Returns an upper bound of the length of a vector whose components have a relative error of at
+/// most ε/2. The bound is infinite for a vector that is not finite, and zero for the zero vector.
 fn length_above<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
     match unit(v) {
         Some((_, length)) => length + slack_of(length),
@@ -177,7 +177,7 @@ impl<N: Real, const D: usize> BoundingVolume<N> for BoundingSphere<N, D> {
         let rounding = slack_of(length_above(&self.center.coords) + travel);
         let radius = sum_above(self.radius, rounding);
         let moved = Self::try_new(self.center + velocity * max_time, radius);
-        // A path that is not finite may lead anywhere.
+        // If the path is not finite, the result is the whole space.
         moved.map_or_else(|_| Self::unbounded(), |moved| self.merged(&moved))
     }
 

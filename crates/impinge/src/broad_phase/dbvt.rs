@@ -1,4 +1,4 @@
-//! The default broad phase: the pair finder, with handles and data of the user.
+//! The default broad phase: a [`PairFinder`], with a handle and the user's data for each object.
 
 use crate::math::order::sort_few;
 use crate::tables::entries;
@@ -17,7 +17,7 @@ use crate::memory::{Recent, clone_fields};
 use crate::pairs::unpack;
 use crate::partitioning::Sweep;
 
-/// A bounding volume that [`DBVTBroadPhase`] accepts: [`Aabb`]. Sealed.
+/// A bounding volume that [`DBVTBroadPhase`] supports. Sealed: only [`Aabb`] implements it.
 pub trait TreeVolume<N: Real>: BoundingVolume<N> + sealed::Sealed {
     /// The algorithm that finds the pairs of these volumes.
     type Finder: Debug + Clone;
@@ -47,14 +47,15 @@ impl<N: Space<D>, const D: usize> TreeVolume<N> for Aabb<N, D> {
 
 /// A dynamic tree over bounding volumes loosened by a margin.
 ///
-/// The tree changes only when an object's exact volume leaves its loosened one, so objects that
-/// move slowly or jitter cost almost nothing. Volumes are loosened at creation too. Two objects are
-/// a pair if their loosened volumes overlap; the searches (`interferences_with_*`, `visit_*`) test
-/// exact volumes.
+/// The tree changes only when an object's exact volume leaves its loosened volume, so objects that
+/// move slowly or jitter cost almost nothing. The first update of a new object loosens its volume
+/// too. Two objects are a pair if their loosened volumes overlap; the searches
+/// (`interferences_with_*`, `visit_*`) test exact volumes.
 ///
-/// Loosened volumes are stored as `f32`, rounded outwards, even for `f64`, so no pair is missed. A
-/// volume with a face beyond the range of `f32` is treated as unbounded: each is tested against
-/// every object that changes, so there should be few.
+/// Loosened volumes are stored as `f32`, rounded outwards, even for `f64`, so no pair is missed. An
+/// object is treated as unbounded if a face of its loosened volume is beyond the range of `f32`.
+/// Each unbounded object is tested against every object that changes, so there should be few of
+/// them.
 ///
 /// An update costs O(changed · log n) with temporal coherence. A still object without pairs takes
 /// about 60 bytes in addition to its exact volume, its loosened volume and its data. [`PairFinder`]
@@ -77,7 +78,7 @@ impl<N: Space<D>, const D: usize> TreeVolume<N> for Aabb<N, D> {
 /// ```
 pub struct DBVTBroadPhase<N: Real, BV: TreeVolume<N>, T> {
     pub(super) handles: Handles,
-    /// Data by index of the handle; `None` where there is no object.
+    /// Users' data by handle index; `None` for an index without an object.
     pub(super) proxies: Proxies<T>,
     pub(super) finder: BV::Finder,
     recent: Recent,
@@ -99,8 +100,8 @@ impl<N: Space<D>, const D: usize, T> Debug for DBVTBroadPhase<N, Aabb<N, D>, T> 
 }
 
 impl<N: Real, BV: TreeVolume<N>, T> DBVTBroadPhase<N, BV, T> {
-    /// Creates a broad phase without objects, whose volumes are loosened by `margin` (zero or more;
-    /// 0.02 suits objects of size 1).
+    /// Creates a broad phase without objects that loosens volumes by `margin` (zero or more; 0.02
+    /// suits objects of size 1).
     ///
     /// # Panics
     /// If the margin is negative, infinite or NaN; [`Self::try_new`] returns an error instead.
@@ -110,7 +111,7 @@ impl<N: Real, BV: TreeVolume<N>, T> DBVTBroadPhase<N, BV, T> {
         or_panic(Self::try_new(margin))
     }
 
-    /// Creates a broad phase without objects, whose volumes are loosened by `margin`.
+    /// Creates a broad phase without objects that loosens volumes by `margin`.
     ///
     /// # Errors
     /// If the margin is negative, infinite or NaN.
@@ -127,13 +128,13 @@ pub(super) fn data_of<T>(proxies: &[Option<T>], id: u32) -> &T {
     data.expect("the finder knows only objects that are there")
 }
 
-/// Returns the id by which the finder identifies the object.
+/// Returns the id of the object in the finder: the index of its handle.
 fn id_of(handle: ProxyHandle) -> u32 {
     u32::try_from(handle.uid()).expect("handles hold an index of 32 bits")
 }
 
 impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
-    /// Creates a broad phase without objects that uses vectors of the given width. The width does
+    /// Creates a broad phase without objects that uses SIMD vectors of this width. The width does
     /// not affect results. For tests.
     ///
     /// # Errors
@@ -175,7 +176,8 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
         is_alive.then_some(()).ok_or(BroadPhaseError::StaleHandle(handle))
     }
 
-    /// Returns an error for the first stale handle, or else for a handle that occurs twice.
+    /// Returns an error for the first stale handle; if there is none, for the smallest handle that
+    /// occurs twice.
     fn check_all(&self, handles: &[ProxyHandle]) -> Result<(), BroadPhaseError> {
         handles.iter().try_for_each(|&handle| self.check(handle))?;
         let mut sorted = handles.to_vec();
@@ -200,7 +202,7 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
     }
 }
 
-/// Returns an error for a NaN or inverted box. Arithmetic on valid boxes can produce these.
+/// Returns an error for a NaN or inverted box, which arithmetic on valid boxes can produce.
 fn check_volume<N: Real, const D: usize>(
     bv: &Aabb<N, D>,
     handle: Option<ProxyHandle>,

@@ -4,7 +4,7 @@ use core::fmt;
 
 use super::ProxyHandle;
 
-/// The reason why a call to a broad phase was refused. The call has changed nothing.
+/// The reason why a broad phase refused a call. The refused call has changed nothing.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::Aabb;

@@ -1,4 +1,5 @@
-//! An update of the broad phase: from waiting boxes to events in canonical order.
+//! The update of a [`PairFinder`]: applies the waiting boxes, and reports the pairs that start or
+//! stop in canonical order.
 
 use super::PairFinder;
 use super::finder::{CHANGED, Container, REFILTER};
@@ -7,10 +8,10 @@ use crate::math::Real;
 use crate::memory::Look;
 use crate::pairs::{PairTable, pack, unpack};
 
-/// Number of pairs whose table entries are prefetched at once.
+/// Number of pairs whose entries in the pair table are prefetched together.
 const BATCH: usize = 16;
 
-/// Started and stopped pairs of an update, packed; each list is ascending.
+/// The pairs that start or stop in an update, packed ([`pack`]). Each list is ascending.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PairEvents {
     /// Pairs that start.
@@ -77,8 +78,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         found.ended.dedup();
     }
 
-    /// Lists the pairs whose loosened boxes began to overlap or ceased to overlap since the last
-    /// update.
+    /// Lists the pairs whose loosened boxes began or ceased to overlap since the last update. For
+    /// an object that is filtered again, all pairs that overlap now count as begun.
     fn find_changes(&mut self, found: &mut Changes) {
         found.clear();
         self.joiner.self_join(&self.moving, found);
@@ -93,7 +94,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// Appends the pairs of object `a` in the table whose loosened boxes no longer overlap.
+    /// Appends to `ended` the pairs of object `a` in the pair table whose loosened boxes no longer
+    /// overlap.
     fn push_ended_pairs(&self, a: u32, ended: &mut Vec<u64>) {
         for (b, _) in self.pairs.partners(a) {
             if !self.loose[a as usize].overlaps(&self.loose[b as usize]) {
@@ -102,7 +104,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// Lists the pairs of an unbounded object that began or ended. Tests all objects if this one
+    /// Lists the pairs of the unbounded object `u` that began or ended. Tests all objects if `u`
     /// changed, else only the objects that changed.
     fn changes_of_unbounded(&self, u: u32, found: &mut Changes) {
         let is_changed = self.marks[u as usize] & CHANGED != 0;
@@ -136,8 +138,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         (before, self.loose[a as usize].overlaps(&self.loose[b as usize]))
     }
 
-    /// Updates the table of pairs, and prepares the trees for the next update. The two steps are
-    /// independent.
+    /// Updates the pair table, and prepares the trees for the next update. The two tasks are
+    /// independent, so they may run in parallel if there are at least [`PARALLEL_FROM`] objects.
     fn commit_pairs_and_boxes(&mut self, ended: &[u64]) {
         let mut pairs = core::mem::take(&mut self.pairs);
         let mut pair_events = core::mem::take(&mut self.pair_events);
@@ -157,7 +159,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         (self.pairs, self.pair_events) = (pairs, pair_events);
     }
 
-    /// Makes the present boxes the old ones for the next update, and clears all marks.
+    /// Makes the present boxes the old boxes of the next update, and clears all marks.
     fn commit_changes(&mut self) {
         for &id in &self.changes {
             self.marks[id as usize] = 0;
@@ -169,7 +171,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     }
 }
 
-/// Runs both closures; with the feature `parallel` possibly on two threads.
+/// Runs both closures; with the feature `parallel`, possibly on two threads.
 fn join(one: impl FnOnce() + Send, other: impl FnOnce() + Send) {
     #[cfg(feature = "parallel")]
     rayon::join(one, other);
@@ -188,8 +190,8 @@ impl PairEvents {
         look.trim(&mut self.events);
     }
 
-    /// Updates the table of pairs, and lists the events in canonical order. A pair that starts
-    /// takes the index of a pair that stops, so that no other pair moves.
+    /// Updates the pair table, and lists the events in canonical order. A pair that starts takes
+    /// the index of a pair that stops, so that no other pair moves.
     fn commit(&mut self, pairs: &mut PairTable, ended: &[u64]) {
         let Self { starting, stopped, events } = self;
         let mut started = 0;
@@ -220,8 +222,8 @@ impl PairEvents {
     }
 }
 
-/// Merges two ascending lists of pairs into one, with the flag `false` for stopped and `true` for
-/// started pairs.
+/// Merges two ascending lists of pairs into one ascending list. The flag is `false` for a stopped
+/// pair and `true` for a started pair.
 fn merge(stopped: &[u64], started: &[u64], events: &mut Vec<(u64, bool)>) {
     events.clear();
     let mut rest = started.iter().peekable();

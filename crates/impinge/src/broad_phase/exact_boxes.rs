@@ -1,4 +1,5 @@
-//! Stores the exact boxes of moved objects, and finds those that leave their loosened boxes.
+//! Stores the exact boxes of moved objects, and finds the objects whose exact box leaves the
+//! loosened box.
 
 use super::finder::{Container, Waiting};
 use crate::bounding_volume::Aabb;
@@ -11,7 +12,8 @@ pub(super) struct LooseBounds<'a, const D: usize> {
     pub(super) loose: &'a [Bounds<D>],
 }
 
-/// The exact boxes to be stored, and the indices of their waiting boxes; both indexed by `id - first`.
+/// The arrays to which [`Self::write`] writes: exact boxes, and the index of each object's waiting
+/// box. Both are slices for the ids from `first` on, so they are indexed by `id - first`.
 pub(super) struct ExactBoxes<'a, N: Real, const D: usize> {
     pub(super) first: usize,
     pub(super) exact: &'a mut [Aabb<N, D>],
@@ -19,10 +21,11 @@ pub(super) struct ExactBoxes<'a, N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> ExactBoxes<'_, N, D> {
-    /// Stores the exact boxes, and lists in `outside` the objects that leave their loosened boxes
-    /// or are in no tree. An object is listed by its index in the whole list of waiting boxes, of
-    /// which `waiting` is a part that begins at index `first_at`. `outside` must be as long as
-    /// `waiting`. Returns their number.
+    /// Stores the waiting boxes as exact boxes. Lists in `outside` the objects whose exact box
+    /// leaves the loosened box, and those in no tree. Returns the number of listed objects.
+    ///
+    /// `waiting` is the part of the whole list of waiting boxes that begins at index `first_at`. An
+    /// object is listed by its index in the whole list. `outside` must be as long as `waiting`.
     pub(super) fn write(
         self,
         bounds: &LooseBounds<'_, D>,
@@ -37,8 +40,9 @@ impl<N: Real, const D: usize> ExactBoxes<'_, N, D> {
         self.write_serial(bounds, waiting, first_at, outside)
     }
 
-    /// Runs on one thread. Whether an object leaves its box is unpredictable, so the loop has no
-    /// such branch: each index is written, and overwritten by the next one if the object stays.
+    /// Implements [`Self::write`] on one thread. Whether an object leaves its loosened box is
+    /// unpredictable, so the loop does not branch on it: each index is written, and the next index
+    /// overwrites it if the object stays.
     fn write_serial(
         self,
         bounds: &LooseBounds<'_, D>,
@@ -70,22 +74,23 @@ mod parallel {
     use super::{ExactBoxes, LooseBounds, NONE, Waiting};
     use crate::math::Real;
 
-    /// Greatest number of waiting boxes in one task.
+    /// Maximum number of waiting boxes in one task.
     const MAX_SERIAL: usize = 4096;
 
-    /// Returns `true` if the list is long enough and its ids ascend, so that its halves write to
-    /// disjoint slices.
+    /// Returns `true` if there are several threads, the list is long enough, and its ids ascend.
+    /// Ascending ids ensure that the two halves of the list write to disjoint slices.
     pub(super) fn can_split<N: Real, const D: usize>(waiting: &[Waiting<N, D>]) -> bool {
         waiting.len() > MAX_SERIAL
             && rayon::current_num_threads() > 1
             && waiting.is_sorted_by_key(|waiting| waiting.id)
-            // A removed object has the id `NONE`; sorted, it would be last.
+            // The id of a removed object is `NONE`, the greatest `u32`; in a sorted list it would
+            // be last.
             && waiting.last().is_some_and(|last| last.id != NONE)
     }
 
     impl<N: Real, const D: usize> ExactBoxes<'_, N, D> {
-        /// Splits the list in halves of at most [`MAX_SERIAL`] boxes, which may run on several threads;
-        /// [`can_split`] must hold.
+        /// Halves the list recursively into parts of at most [`MAX_SERIAL`] boxes, which may run on
+        /// several threads. [`can_split`] must hold for the whole list.
         pub(super) fn write_parallel(
             self,
             bounds: &LooseBounds<'_, D>,
@@ -111,7 +116,7 @@ mod parallel {
     }
 
     impl<'a, N: Real, const D: usize> ExactBoxes<'a, N, D> {
-        /// Splits the output into the ids below `id` and the others.
+        /// Splits the slices into those of the ids below `id` and those of the ids from `id` on.
         fn split(self, id: usize) -> (Self, Self) {
             let (exact1, exact2) = self.exact.split_at_mut(id - self.first);
             let (at1, at2) = self.waiting_at.split_at_mut(id - self.first);

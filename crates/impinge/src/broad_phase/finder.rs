@@ -1,4 +1,5 @@
-//! The broad phase without data of the user: ids and boxes in, started and stopped pairs out.
+//! The broad phase without users' data. It receives ids and boxes, and reports pairs that start or
+//! stop.
 
 use core::fmt;
 
@@ -18,7 +19,7 @@ use crate::pairs::PairTable;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Container {
-    /// None: there is no such object, or no update has applied its box yet.
+    /// No container: the object does not exist, or no update has applied its first box yet.
     Nowhere,
     /// The tree of moving objects.
     Moving,
@@ -28,43 +29,45 @@ pub(crate) enum Container {
     Unbounded,
 }
 
-/// Mark of an object whose loosened box changed since the last update.
+/// Mark of an object whose loosened box changed since the last update. Every object with
+/// [`REFILTER`] has it too.
 pub(super) const CHANGED: u8 = 1;
 /// Mark of an object whose pairs must all be filtered again.
 pub(super) const REFILTER: u8 = 2;
 
-/// A box to be set at the next update; `id` is [`NONE`] if the object has been removed since.
+/// A box that the next update applies to object `id`; `id` is [`NONE`] if the object has been
+/// removed since.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Waiting<N: Real, const D: usize> {
     pub(super) id: u32,
     pub(super) aabb: Aabb<N, D>,
 }
 
-/// Keeps the pairs of objects whose loosened boxes overlap. An object is identified by a small
-/// index, its id.
+/// The pairs of objects whose loosened boxes overlap, kept up to date. An object is identified by a
+/// small index, its id.
 ///
 /// The loosened box of an object is its exact box grown by the margin and rounded outwards to
-/// `f32`. It changes only when the exact box leaves it, or when an unbounded object becomes
-/// bounded, so objects that move little cost almost nothing. A box with a face beyond the range of
-/// `f32` is unbounded: unbounded objects are in a list, and are tested against every object that
-/// changed.
+/// `f32`. It is replaced only when the exact box leaves it, or when an unbounded object becomes
+/// bounded, so objects that move little cost almost nothing. An object is unbounded if a face of
+/// its loosened box is beyond the range of `f32`. Unbounded objects are in a list, and are tested
+/// against every object that changed.
 ///
-/// All arrays are indexed by id. Objects that have not changed for a while move to a second tree,
-/// which is joined only with changed objects.
+/// Arrays with one entry for each object are indexed by id. Objects that have not changed for a
+/// while move to a second tree, the tree of still objects. It is searched for changed objects only.
 pub struct PairFinder<N: Real, const D: usize> {
     margin: N,
     /// Exact boxes at the last update.
     pub(super) exact: Vec<Aabb<N, D>>,
     pub(super) loose: Vec<Bounds<D>>,
-    /// Loosened boxes at the last update, valid for unbounded objects marked as changed. As long as
-    /// the largest id of these requires.
+    /// By id: the loosened boxes at the last update. Valid only for unbounded objects with the mark
+    /// [`CHANGED`]; the array may be shorter than the number of ids.
     previous: Vec<Bounds<D>>,
     pub(super) containers: Vec<Container>,
     pub(super) marks: Vec<u8>,
     /// By id: the value of `clock` in the update in which the loosened box last changed.
     pub(super) last_change: Vec<u32>,
     pub(super) waiting: Vec<Waiting<N, D>>,
-    /// Scratch: indices in `waiting`.
+    /// Scratch: indices in `waiting` of the boxes that leave their loosened boxes.
     outside: Vec<u32>,
     /// By id: the object's index in `waiting`, or [`NONE`].
     pub(super) waiting_at: Vec<u32>,
@@ -78,15 +81,15 @@ pub struct PairFinder<N: Real, const D: usize> {
     pub(super) unbounded: Vec<u32>,
     pub(super) pairs: PairTable,
     pub(super) joiner: Joiner<D>,
-    /// Objects whose pairs are checked one by one for their end, because the join does not report
-    /// all of their ended pairs.
+    /// Objects whose pairs in the table are tested one by one, because the join of the trees does
+    /// not report all of their pairs that end.
     pub(super) searched: Vec<u32>,
-    /// Scratch of one update.
+    /// Scratch: objects that move to the tree of still objects in an update.
     pub(super) resting: Vec<u32>,
     pub(super) found: Changes,
     pub(super) pair_events: PairEvents,
     pub(super) lanes: Lanes,
-    /// Number of updates so far; wraps.
+    /// Number of updates so far; wraps around.
     pub(super) clock: u32,
     pub(super) rest_pass: RestPass,
     pub(super) recent: Recent,
@@ -117,7 +120,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         Self::with_lanes(margin, Lanes::detect())
     }
 
-    /// Creates a finder with the given vector width; see [`Self::try_new`]. For tests.
+    /// Creates a finder with this SIMD vector width; see [`Self::try_new`]. For tests.
     pub(super) fn with_lanes(margin: N, lanes: Lanes) -> Result<Self, BroadPhaseError> {
         let is_usable = margin >= N::ZERO && margin.is_finite_number();
         if !is_usable {
@@ -185,8 +188,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.still.each_node(visit);
     }
 
-    /// Adds an object, which takes part from the next update on. The id must be unused; ids should
-    /// be dense.
+    /// Adds an object. It has pairs from the next update on. `id` must be unused; ids should be
+    /// dense.
     pub fn insert(&mut self, id: u32, aabb: Aabb<N, D>) {
         let needed = id as usize + 1;
         if self.containers.len() < needed {
@@ -202,7 +205,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.set(id, aabb);
     }
 
-    /// Sets the box of an object at the next update; only the last of several calls has an effect.
+    /// Sets the box that the next update applies to an object; of several calls, only the last has
+    /// an effect.
     #[inline]
     pub fn set(&mut self, id: u32, aabb: Aabb<N, D>) {
         let at = self.waiting_at[id as usize];
@@ -214,12 +218,12 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// Filters every pair of the object again at the next update.
+    /// Makes the next update filter every pair of the object again.
     pub fn refilter(&mut self, id: u32) {
         self.to_refilter.push(id);
     }
 
-    /// Filters every pair again at the next update.
+    /// Makes the next update filter every pair again.
     pub fn refilter_all(&mut self) {
         self.refilters_all = true;
     }
@@ -245,8 +249,9 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         if at != NONE {
             self.waiting[at as usize].id = NONE;
         }
-        // `changes` is not empty here only after a filter panicked. `to_refilter` may keep the id: an
-        // object that reuses it is new, and all its pairs are filtered in any case.
+        // `changes` has entries here only if a filter panicked in the last update. `to_refilter`
+        // may keep the id: an object that reuses it is new, so all its pairs are filtered in any
+        // case.
         self.changes.retain(|&other| other != id);
         self.marks[index] = 0;
     }
@@ -278,8 +283,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         (self.waiting, self.outside) = (waiting, outside);
     }
 
-    /// Stores the exact boxes. Lists in `outside` the objects that leave their loosened boxes or
-    /// are in no tree, by their index in `waiting`.
+    /// Stores the waiting boxes as exact boxes. Lists in `outside` the objects whose exact box
+    /// leaves the loosened box, and those in no tree, by their index in `waiting`.
     fn list_outside(&mut self, waiting: &[Waiting<N, D>], outside: &mut Vec<u32>) {
         outside.clear();
         outside.resize(waiting.len(), 0);
@@ -290,14 +295,14 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         outside.truncate(count);
     }
 
-    /// Computes a new loosened box for an object whose exact box left the old one or that is in no
-    /// tree.
+    /// Computes a new loosened box for an object whose exact box left the old one, or that is in no
+    /// tree. An unbounded object keeps its loosened box while that still contains the exact box.
     #[inline]
     fn update_loose(&mut self, id: u32, aabb: &Aabb<N, D>) {
         let index = id as usize;
         let loose = Bounds::enclosing(&aabb.loosened(self.margin));
         if self.containers[index] == Container::Moving && loose.is_finite() {
-            // The tree keeps its old box now, and reads the new one in its refit.
+            // The tree keeps the old box until its refit, which reads the new box from `loose`.
             self.last_change[index] = self.clock;
             self.mark(id, CHANGED);
             self.loose[index] = loose;
@@ -311,8 +316,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// Moves an object from its container to the tree of moving objects, or to the list of
-    /// unbounded ones.
+    /// Moves an object from its container to the tree of moving objects if `loose` is finite, else
+    /// to the list of unbounded objects.
     #[inline(never)]
     fn reinsert(&mut self, id: u32, loose: Bounds<D>) {
         let index = id as usize;
@@ -341,8 +346,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.previous[id as usize] = before;
     }
 
-    /// Returns the loosened box at the last update; [`Bounds::NOWHERE`] if the object had none, or
-    /// all its pairs must begin anew.
+    /// Returns the loosened box of an object at the last update. [`Bounds::NOWHERE`] if there was
+    /// none, or if all pairs of the object must begin anew.
     pub(super) fn before(&self, id: u32) -> Bounds<D> {
         let index = id as usize;
         let in_tree = match self.containers[index] {
@@ -352,7 +357,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             Container::Unbounded if self.marks[index] & CHANGED != 0 => Some(self.previous[index]),
             Container::Unbounded => Some(self.loose[index]),
         };
-        // For such an object the tree stores an empty box, which an unbounded box would overlap.
+        // If all pairs must begin anew, the tree stores an empty box. An unbounded box would
+        // overlap an empty box, but overlaps no `NOWHERE`.
         in_tree.filter(|before| *before != Bounds::EMPTY).unwrap_or(Bounds::NOWHERE)
     }
 
@@ -365,8 +371,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         *marks |= CHANGED | mark;
     }
 
-    /// Resets the old boxes of the objects to be filtered again, so that all their pairs begin
-    /// anew.
+    /// Resets the old box of each object in `to_refilter`, so that all its pairs begin anew.
     pub(super) fn apply_refilters(&mut self) {
         let mut to_refilter = core::mem::take(&mut self.to_refilter);
         if core::mem::take(&mut self.refilters_all) {
@@ -391,8 +396,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.waiting.len()
     }
 
-    /// Releases memory: of lists that have been short for some time, and surplus capacity of arrays
-    /// by id. The tree of moving objects releases its own memory when it is empty.
+    /// Releases the memory of lists that have been short for some time, and surplus capacity of the
+    /// arrays indexed by id. The tree of moving objects releases its own memory.
     pub(super) fn give_back(&mut self, look: Look) {
         look.trim(&mut self.waiting);
         for list in [&mut self.outside, &mut self.changes, &mut self.to_refilter] {
@@ -454,7 +459,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     }
 }
 
-/// Converts an index or count to an id; panics if it does not fit.
+/// Converts an index or a count to a `u32` id; panics if it does not fit.
 #[inline]
 pub(super) fn small(value: usize) -> u32 {
     u32::try_from(value).expect("fewer than 2^32 objects")

@@ -1,14 +1,15 @@
-//! Handles of objects, which remain distinct after their objects are removed.
+//! Handles of objects. They remain distinct after their objects are removed.
 
 use crate::generation::Generation;
 use crate::memory::{Look, clone_fields};
 
 /// The handle of an object in a broad phase.
 ///
-/// A handle is never issued twice: the handle of a removed object differs from those of all later
-/// objects. A [`DBVTBroadPhase`](super::DBVTBroadPhase) refuses a handle of another broad phase
-/// like a stale one, unless one of them is a clone of the other. Handles are ordered by
-/// [`Self::uid`], then by age.
+/// A broad phase issues no handle twice: the handle of a removed object differs from those of all
+/// later objects. A [`DBVTBroadPhase`](super::DBVTBroadPhase) refuses a handle of another broad
+/// phase like a stale one, unless one broad phase is a clone of the other. (Broad phases are
+/// distinguished by a tag of 16 bits, which is reused after 65535 other handle tables.) Handles are
+/// ordered by [`Self::uid`], then by age.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::Aabb;
@@ -31,7 +32,7 @@ pub struct ProxyHandle {
 }
 
 impl ProxyHandle {
-    /// Creates a handle, for a custom broad phase: `generation` is the number of objects that had
+    /// Creates a handle, for a custom broad phase. `generation` is the number of objects that had
     /// this index before. The broad phase must use each pair of arguments only once.
     #[must_use]
     pub const fn new(index: u32, generation: u16) -> Self {
@@ -55,16 +56,16 @@ impl ProxyHandle {
     }
 }
 
-/// A table that issues handles and recognises stale ones.
+/// A table that issues handles and recognises stale handles.
 #[derive(Debug)]
 pub(super) struct Handles {
     /// Generation of the first object at each index.
     pub(super) first: Generation,
-    /// By index: the generation of the present or the next object.
+    /// By index: the generation of the present object; if there is none, of the next object.
     pub(super) generations: Vec<Generation>,
-    /// By index: there is an object.
+    /// By index: whether an object with this index exists.
     pub(super) is_present: Vec<bool>,
-    /// Indices without an object; the last one freed is used first.
+    /// Indices without an object; the last one in the list is used next.
     pub(super) free: Vec<u32>,
 }
 
@@ -86,7 +87,7 @@ impl Handles {
         self.at(index)
     }
 
-    /// Returns the handle of the present object at an index, or of the next one if there is none.
+    /// Returns the handle of the present object at an index; if there is none, of the next object.
     pub(super) fn at(&self, index: u32) -> ProxyHandle {
         ProxyHandle { index, generation: self.generations[index as usize] }
     }

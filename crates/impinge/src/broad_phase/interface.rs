@@ -50,10 +50,10 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
     /// Adds an object; see [`Self::create_proxy`].
     ///
     /// # Errors
-    /// If the volume is inverted or has a NaN.
+    /// If the volume is inverted or contains NaN.
     fn try_create_proxy(&mut self, bv: BV, data: T) -> Result<ProxyHandle, BroadPhaseError>;
 
-    /// Removes a set of objects; see [`Self::remove`].
+    /// Removes several objects; see [`Self::remove`].
     ///
     /// # Errors
     /// If a handle is stale or occurs twice. Then nothing is removed.
@@ -67,14 +67,14 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
     /// [`Self::deferred_set_bounding_volume`].
     ///
     /// # Errors
-    /// If the handle is stale, or the volume is inverted or has a NaN.
+    /// If the handle is stale, or the volume is inverted or contains NaN.
     fn try_deferred_set_bounding_volume(
         &mut self,
         handle: ProxyHandle,
         bv: BV,
     ) -> Result<(), BroadPhaseError>;
 
-    /// Filters the pairs of one object again at the next update; see
+    /// Makes the next update filter the pairs of one object again; see
     /// [`Self::deferred_recompute_all_proximities_with`].
     ///
     /// # Errors
@@ -84,15 +84,15 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         handle: ProxyHandle,
     ) -> Result<(), BroadPhaseError>;
 
-    /// Filters every pair of overlapping volumes again at the next update, and only then. Pairs
-    /// that the filter now refuses stop, and pairs that it now allows start.
+    /// Makes the next update filter every pair of overlapping volumes again, once. Pairs that the
+    /// filter now refuses stop, and pairs that it now allows start.
     fn deferred_recompute_all_proximities(&mut self);
 
     /// Applies all deferred changes and reports the pairs that started and stopped.
     ///
-    /// `filter` returns whether a pair whose volumes begin to overlap is allowed. Then `callback`
-    /// runs once for each pair that started (`true`) or stopped (`false`). All calls of the filter
-    /// come before those of `callback`; if the filter panics, the next update calls it again.
+    /// `filter` returns `true` if a pair whose volumes begin to overlap is allowed. Then `callback`
+    /// runs once for each pair that started (`true`) or stopped (`false`). All calls of `filter`
+    /// come before those of `callback`; if `filter` panics, the next update calls it again.
     fn update(
         &mut self,
         filter: &mut dyn FnMut(&T, &T) -> bool,
@@ -103,8 +103,8 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
     /// ascending uid.
     fn interferences_with_bounding_volume<'a>(&'a self, bv: &BV, out: &mut Vec<&'a T>);
 
-    /// Appends the data of each object whose exact volume, as of the last update, the ray meets, by
-    /// ascending uid.
+    /// Appends the data of each object whose exact volume, as of the last update, is hit by the
+    /// ray, by ascending uid.
     fn interferences_with_ray<'a>(&'a self, ray: &BV::Ray, out: &mut Vec<&'a T>);
 
     /// Appends the data of each object whose exact volume, as of the last update, contains the
@@ -119,16 +119,16 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
     /// created with.
     fn proxy(&self, handle: ProxyHandle) -> Option<(&BV, &T)>;
 
-    /// Adds an object, which has pairs from the next update on.
+    /// Adds an object. It has pairs from the next update on.
     ///
     /// # Panics
-    /// If the volume is inverted or has a NaN.
+    /// If the volume is inverted or contains NaN.
     #[track_caller]
     fn create_proxy(&mut self, bv: BV, data: T) -> ProxyHandle {
         or_panic(self.try_create_proxy(bv, data))
     }
 
-    /// Removes a set of objects at once.
+    /// Removes several objects at once.
     ///
     /// Before the removal, `callback` runs on each pair of the last update that contains at least
     /// one of the objects. It runs once even if both objects are removed; the pairs come in
@@ -141,17 +141,17 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         or_panic(self.try_remove(handles, callback));
     }
 
-    /// Replaces the volume of an object at the next update; only the last of several calls has an
+    /// Replaces the volume of an object at the next update; of several calls, only the last has an
     /// effect.
     ///
     /// # Panics
-    /// If the handle is stale, or the volume is inverted or has a NaN.
+    /// If the handle is stale, or the volume is inverted or contains NaN.
     #[track_caller]
     fn deferred_set_bounding_volume(&mut self, handle: ProxyHandle, bv: BV) {
         or_panic(self.try_deferred_set_bounding_volume(handle, bv));
     }
 
-    /// At the next update, filters again all pairs of this object with objects that overlap it.
+    /// Makes the next update filter all pairs of this object with objects that overlap it again.
     /// Pairs that the filter now refuses stop, and pairs that it now allows start. A pair that
     /// remains is not reported again.
     ///
@@ -162,9 +162,9 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         or_panic(self.try_deferred_recompute_all_proximities_with(handle));
     }
 
-    /// Calls `visit` for the objects whose exact volumes, as of the last update, the ray meets at
-    /// or before `max_time`, by ascending time of entry, then uid. `visit` returns the new
-    /// `max_time`, which must not increase; a negative one stops the search.
+    /// Calls `visit` for the objects whose exact volumes, as of the last update, the ray hits at or
+    /// before `max_time`, by ascending time of entry, then uid. `visit` returns the new `max_time`,
+    /// which must not increase; a negative value stops the search.
     ///
     /// The default does not compute times of entry: it visits all hits by ascending uid until
     /// `visit` returns a negative time. Ordered implementations override it.
@@ -174,20 +174,21 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         visit_all(&hits, max_time, visit);
     }
 
-    /// Calls `visit` with groups of objects that the ray may meet, in unspecified order, for
-    /// callers that test the objects themselves and sort the results. Near objects should come
-    /// first. The ray may narrowly miss some of the volumes. `visit` returns the new `max_time`.
-    /// The default calls [`Self::visit_ray`], and proposes one object at a time with the key zero.
+    /// Calls `visit` with groups of objects that the ray may hit, in unspecified order, for callers
+    /// that test the objects themselves and sort the results. Near objects should come first. The
+    /// ray may narrowly miss some of the volumes. `visit` returns the new `max_time`. The default
+    /// calls [`Self::visit_ray`], and proposes one object at a time with key zero.
     ///
-    /// A broad phase that wraps another and issues its own handles must create proposals by
-    /// [`Proposal::of`], because proposals of the wrapped one refer to the handles of that one.
+    /// A broad phase that wraps another broad phase and issues its own handles must create its
+    /// proposals by [`Proposal::of`]. The proposals of the wrapped broad phase would have the uids
+    /// of that broad phase.
     fn visit_ray_roughly(&self, ray: &BV::Ray, max_time: N, visit: &mut VisitProposals<'_, N, T>) {
         self.visit_ray(ray, max_time, &mut |data| visit(&[Proposal::of(data, N::ZERO)]));
     }
 
     /// Calls `visit` for the objects whose exact volumes, as of the last update, are at most
     /// `max_distance` from `bv`, by ascending distance, then uid. `visit` returns the new
-    /// `max_distance`, which must not increase; a negative one stops the search.
+    /// `max_distance`, which must not increase; a negative value stops the search.
     ///
     /// The default does not compute distances: it visits the objects that overlap `bv` loosened by
     /// `max_distance`, by ascending uid, until `visit` returns a negative distance. Ordered
@@ -198,10 +199,10 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         visit_all(&near, max_distance, visit);
     }
 
-    /// Calls `visit` for the objects whose exact volumes, as of the last update, `bv` touches at or
-    /// before `max_time` while it moves with `velocity` (finite), by ascending time, then uid.
-    /// `visit` returns the new `max_time`, which must not increase; a negative one stops the
-    /// search.
+    /// Calls `visit` for the objects whose exact volumes, as of the last update, are touched by
+    /// `bv` at or before `max_time` while it moves with `velocity` (finite), by ascending time,
+    /// then uid. `visit` returns the new `max_time`, which must not increase; a negative value
+    /// stops the search.
     ///
     /// The default does not compute times: it visits the objects that overlap the volume swept
     /// until `max_time`, by ascending uid, until `visit` returns a negative time. Ordered
@@ -218,8 +219,8 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         visit_all(&overlapping, max_time, visit);
     }
 
-    /// Returns the loosened volume of an object, for drawing. `None` for a stale handle, before the
-    /// first update of the object, and, by default, always.
+    /// Returns the loosened volume of an object, for drawing. `None` for a stale handle, and before
+    /// the first update of the object. The default always returns `None`.
     #[cfg(feature = "debug_render")]
     fn loosened(&self, handle: ProxyHandle) -> Option<BV> {
         let _ = handle;
@@ -259,8 +260,8 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
     }
 }
 
-/// Visits the objects until `visit` returns a negative or NaN limit. Visits none if `limit` is
-/// such.
+/// Visits the objects in order, as long as the limit is zero or more: first `limit`, then the
+/// result of `visit`. A negative or NaN limit ends the visit.
 fn visit_all<N: Real, T>(found: &[&T], mut limit: N, visit: &mut dyn FnMut(&T) -> N) {
     for data in found {
         let goes_on = limit >= N::ZERO;

@@ -1,14 +1,14 @@
 //! The broad phase: pairs of objects whose bounding volumes overlap, kept up to date as they move.
 //!
-//! [`BroadPhase`] is the interface; [`DBVTBroadPhase`] implements it with a packed tree over
-//! loosened boxes. A broad phase may report pairs that do not touch, but it never misses a pair
-//! that does.
+//! [`BroadPhase`] is the interface; [`DBVTBroadPhase`] implements it with two packed trees over
+//! loosened boxes. A broad phase may report pairs that do not touch, but it reports every pair that
+//! touches and that the filter allows.
 //!
 //! ```text
-//! DBVTBroadPhase   handles, users' data          by index of the handle
+//! DBVTBroadPhase   handles, users' data          by handle index
 //!   PairFinder     exact boxes, loosened boxes   by the same index
-//!                  moving: Tree   still: Tree    each object in one of both trees, or in
-//!                  unbounded: Vec                the list of unbounded objects
+//!                  moving: Tree   still: Tree    each bounded object in one of these trees,
+//!                  unbounded: Vec                each unbounded object in this list
 //!                  pairs: PairTable
 //! ```
 //!

@@ -1,12 +1,12 @@
-//! Objects that a search proposes to its caller.
+//! Objects that a search of the broad phase proposes to its caller.
 
 use super::dbvt::data_of;
 use crate::math::Real;
 
-/// Data of the user, by index of the handle; `None` where there is no object.
+/// Users' data by handle index; `None` for an index without an object.
 pub(super) type Proxies<T> = Vec<Option<T>>;
 
-/// An object that a search proposes. Its data are loaded only on access.
+/// An object that a search of the broad phase proposes. Its data are loaded only on access.
 #[derive(Debug)]
 pub struct Proposal<'a, N, T> {
     source: Source<'a, T>,
@@ -42,7 +42,7 @@ impl<'a, N: Real, T> Proposal<'a, N, T> {
         Self { source: Source::Data(data), key }
     }
 
-    /// Creates a proposal for object `id`, which must exist, without loading its data.
+    /// Creates a proposal for object `id`, which must exist; does not load its data.
     pub(super) const fn kept(proxies: &'a [Option<T>], id: u32, key: N) -> Self {
         Self { source: Source::Kept(proxies, id), key }
     }
@@ -56,15 +56,16 @@ impl<'a, N: Real, T> Proposal<'a, N, T> {
         }
     }
 
-    /// Returns a time or a distance, depending on the search, or a lower bound of it: the time at
-    /// which the object's volume is met, or the distance of the volume.
+    /// Returns the key of the object's volume, or a lower bound of the key. For a ray or a moving
+    /// volume, the key is the time of the first contact with the object's volume; for a search by
+    /// distance, the distance to that volume.
     #[must_use]
     pub const fn key(&self) -> N {
         self.key
     }
 
-    /// Returns [`ProxyHandle::uid`](super::ProxyHandle::uid) of the object; `None` if it is not
-    /// known without loading the object's data.
+    /// Returns the [uid](super::ProxyHandle::uid) of the object; `None` if it cannot be determined
+    /// without loading the object's data.
     #[must_use]
     pub const fn uid(&self) -> Option<usize> {
         match self.source {

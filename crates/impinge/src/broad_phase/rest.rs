@@ -1,4 +1,4 @@
-//! Moves objects at rest to the tree of still objects, and keeps both trees in order.
+//! Moves objects at rest to the tree of still objects, and maintains the order of both trees.
 
 use super::PairFinder;
 use super::finder::Container;
@@ -7,28 +7,34 @@ use crate::math::Real;
 
 /// Number of updates without a change after which an object is at rest.
 const REST_UPDATES: u32 = 32;
-/// An update scans at most `1 / SCAN_DIVISOR` of the slots of the tree of moving objects (plus one), and at most
-/// [`MAX_SCANNED`], but at least one slot for every [`CHANGED_PER_SLOT`] changed objects.
+/// An update scans at most `1 / SCAN_DIVISOR` of the slots of the tree of moving objects, plus one
+/// slot, and at most [`MAX_SCANNED`] slots. But it scans at least one slot for every
+/// [`CHANGED_PER_SLOT`] changed objects.
 const SCAN_DIVISOR: usize = 32;
 const MAX_SCANNED: usize = 512;
 const CHANGED_PER_SLOT: usize = 16;
-/// An update moves at most `MAX_RESTING` objects at rest, or two for each changed object if that is more: so objects leave
-/// faster than others can come to rest.
+/// An update moves at most `MAX_RESTING` objects to the tree of still objects, or two for each
+/// changed object if that is more. So objects leave the tree of moving objects faster than changed
+/// objects can come to rest.
 const MAX_RESTING: usize = 64;
-/// The trees are swapped only if there are at most `MAX_STILL_TO_SWAP` still objects, which then become moving ones ...
+/// The trees are swapped only if there are at most `MAX_STILL_TO_SWAP` still objects, because these
+/// become moving objects ...
 const MAX_STILL_TO_SWAP: usize = 64;
-/// ... and at least `MIN_MOVING_TO_SWAP` moving ones.
+/// ... and at least `MIN_MOVING_TO_SWAP` moving objects.
 const MIN_MOVING_TO_SWAP: usize = 1024;
 
-/// A pass over the slots of the tree of moving objects, from the last slot to the first, over many updates.
+/// A pass over the slots of the tree of moving objects, from the last slot to the first. It is
+/// spread over many updates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RestPass {
-    /// The slots before this one have not been scanned yet.
+    /// Number of slots that have not been scanned yet: those before slot `end`.
     end: usize,
     resting: usize,
-    /// Number of updates since the last one in which at least a quarter of the moving objects changed.
+    /// Number of updates since the last update in which at least a quarter of the moving objects
+    /// changed.
     quiet_updates: u32,
-    /// Whether the pass moves objects at rest to the other tree, instead of only counting them.
+    /// Whether the pass moves objects at rest to the tree of still objects, instead of only
+    /// counting them.
     moves_resting: bool,
 }
 
@@ -39,9 +45,9 @@ impl RestPass {
 }
 
 impl<N: Real, const D: usize> PairFinder<N, D> {
-    /// Moves objects at rest to the tree of still ones, and does this update's share of keeping both trees in order.
-    /// The work is bounded by a constant plus a multiple of `changed`, the number of changed objects. The result
-    /// depends only on the calls.
+    /// Moves objects at rest to the tree of still objects, and performs one step of the maintenance
+    /// of both trees. The work is bounded by a constant plus a multiple of `changed`, the number of
+    /// changed objects. The result depends only on the sequence of calls.
     pub(super) fn keep_order(&mut self, changed: usize) {
         let mut resting = core::mem::take(&mut self.resting);
         resting.clear();
@@ -62,10 +68,12 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// Continues the pass, and lists objects at rest in `resting`. The pass goes from the last slot to the first, so
-    /// that the tree can shrink; slots are in spatial order. If nearly all objects are in the tree of moving ones, as
-    /// after a bulk insertion, every other pass only counts. If such a pass finds at least three quarters of the
-    /// objects at rest, the trees are swapped.
+    /// Continues the pass, and lists the objects at rest in `resting`. Slots are in spatial order;
+    /// the pass goes from the last slot to the first, so that the tree can shrink.
+    ///
+    /// If nearly all objects are in the tree of moving objects, as after a bulk insertion, a pass
+    /// begins only after [`REST_UPDATES`] quiet updates, and every other pass only counts. If such
+    /// a pass finds at least three quarters of the objects at rest, the trees are swapped.
     fn list_resting(&mut self, changed: usize, resting: &mut Vec<u32>) {
         let slots = self.moving.slots_in_order();
         let max_resting = MAX_RESTING.max(2 * changed);
@@ -105,8 +113,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// Swaps the trees of moving and still objects. Objects that do move then leave the tree of still ones as they
-    /// move.
+    /// Swaps the trees of moving and still objects. Objects that actually move leave the tree of
+    /// still objects at their next change.
     fn swap_trees(&mut self) {
         core::mem::swap(&mut self.moving, &mut self.still);
         self.moving.spend();

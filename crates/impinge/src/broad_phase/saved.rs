@@ -1,6 +1,7 @@
-//! The broad phase of a saved world: the boxes that decide about pairs.
+//! The broad phase in a saved world: the state that determines the pairs.
 //!
-//! Where an object is in a tree decides about time alone ([`rewind`](super::rewind)): trees are made again.
+//! The slot of an object in its tree affects only the running time (see [`rewind`](super::rewind)),
+//! so the trees are not saved but built again.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,43 +14,44 @@ use crate::generation::Generation;
 use crate::math::numbers::{Damage, NumberSource, Numbers, ensure};
 use crate::math::{Mapped, Real, Space};
 
-/// A broad phase as data.
+/// The record of a broad phase.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct BroadRecord<N: Real> {
     margin: Numbers<N>,
-    /// By index, of the object there or of the next one.
+    /// By handle index: the generation of the present object; if there is none, of the next object.
     generations: Vec<u16>,
     free: Vec<u32>,
     boxes: Vec<BoxRecord<N>>,
-    /// In the order in which they came.
+    /// The id and the box of each waiting change, in the order in which the boxes were set.
     waiting: Vec<(u32, Numbers<N>)>,
     again: Vec<u32>,
     is_all_again: bool,
     clock: u32,
 }
 
-/// The boxes of an object.
+/// The record of one object in the broad phase.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct BoxRecord<N: Real> {
     proxy: u32,
-    /// By handle index.
+    /// The handle index of the object in its world.
     object: u32,
     home: Container,
     exact: Numbers<N>,
-    /// If an update has seen the object.
+    /// The loosened box; `None` before the first update of the object.
     loose: Option<Numbers<f32>>,
     last_change: u32,
 }
 
 impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
-    /// The margin, of a broad phase that nothing was added to; `None` of others.
+    /// Returns the margin of a broad phase to which no object was ever added; `None` for any other.
     pub(crate) fn unused_margin(&self) -> Option<Numbers<N>> {
         self.proxies.is_empty().then(|| Numbers::of([self.margin()]))
     }
 
-    /// The broad phase as data; `index_of` gives the handle index of an object.
+    /// Returns the record of the broad phase. `index_of` returns the handle index of an object in
+    /// its world from the data of its proxy.
     pub(crate) fn record(&self, index_of: impl Fn(&T) -> u32) -> BroadRecord<N> {
         let (generations, free) = self.handles.record();
         let present = (0..).zip(&self.proxies).filter_map(|(id, data)| Some((id, data.as_ref()?)));
@@ -61,7 +63,7 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
             free,
             boxes: present.map(|(id, data)| finder.box_record(id, index_of(data))).collect(),
             waiting: waiting.map(|waiting| (waiting.id, numbers(&waiting.aabb))).collect(),
-            // Changes are left over only where a filter panicked.
+            // `changes` has entries here only if a filter panicked in the last update.
             again: finder.to_refilter.iter().chain(&finder.changes).copied().collect(),
             is_all_again: finder.refilters_all,
             clock: finder.clock,
@@ -79,13 +81,13 @@ fn aabb<N: Real, const D: usize>(numbers: &Numbers<N>) -> Result<Aabb<N, D>, Dam
 }
 
 impl Handles {
-    /// The generations by index, and the free indices.
+    /// Returns the generations by index, and the free indices.
     fn record(&self) -> (Vec<u16>, Vec<u32>) {
         let count = |generation: &Generation| generation.count();
         (self.generations.iter().map(count).collect(), self.free.clone())
     }
 
-    /// The handles of these generations, of which none is in use yet.
+    /// Creates a table with these generations and free indices, in which no index is in use.
     fn restored(generations: &[u16], free: Vec<u32>) -> Self {
         let first = Generation::of_new_table();
         let generations: Vec<_> =
@@ -93,7 +95,8 @@ impl Handles {
         Self { first, is_present: vec![false; generations.len()], generations, free }
     }
 
-    /// The index comes into use, unless there is none or it is in use.
+    /// Marks an index as in use and returns its handle. Fails if the index does not exist or is
+    /// already in use.
     fn restore_handle(&mut self, index: u32) -> Result<ProxyHandle, Damage> {
         let is_present = self.is_present.get_mut(index as usize);
         let is_unused = is_present.is_some_and(|is_present| !core::mem::replace(is_present, true));
@@ -101,7 +104,7 @@ impl Handles {
         Ok(self.at(index))
     }
 
-    /// The free indices are those of no object, each once.
+    /// Checks that each free index exists, is not in use, and is listed only once.
     fn check_free(&self) -> Result<(), Damage> {
         let mut is_taken = self.is_present.clone();
         let is_free = |&index: &u32| {
@@ -128,7 +131,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// Makes room for so many objects.
+    /// Sets the length of the arrays indexed by id to `count`.
     fn resize(&mut self, count: usize) {
         self.exact.resize(count, Aabb::unbounded());
         self.loose.resize(count, Bounds::NOWHERE);
@@ -138,7 +141,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.waiting_at.resize(count, NONE);
     }
 
-    /// Brings an object to its home, with its boxes.
+    /// Restores the boxes of an object, and inserts it in its container. Fails if the boxes do not
+    /// match each other or the container.
     fn restore_box(&mut self, record: &BoxRecord<N>) -> Result<(), Damage> {
         let (id, index) = (record.proxy, record.proxy as usize);
         self.exact[index] = aabb(&record.exact)?;
@@ -169,8 +173,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
 }
 
 impl<N: Real> BroadRecord<N> {
-    /// The broad phase, without its pairs. `object` gives what the phase keeps of the object at a handle index, and takes
-    /// the handle of its proxy.
+    /// Restores the broad phase, without its pairs. `object` receives the handle index of an object
+    /// in its world and the handle of its proxy; it returns the data of the proxy.
     pub(crate) fn restore<T, const D: usize>(
         &self,
         mut object: impl FnMut(u32, ProxyHandle) -> Result<T, Damage>,
@@ -205,20 +209,22 @@ impl<N: Real> BroadRecord<N> {
 }
 
 impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
-    /// The box that an object was given last.
+    /// Returns the box that was last set for an object: its waiting box if there is one, else its
+    /// exact box.
     pub(crate) fn given_volume(&self, handle: ProxyHandle) -> &Aabb<N, D> {
         let waiting = self.finder.waiting_at[handle.uid()];
         let waiting = self.finder.waiting.get(waiting as usize);
         waiting.map_or(&self.finder.exact[handle.uid()], |waiting| &waiting.aabb)
     }
 
-    /// Adds the pairs of the last update.
+    /// Adds the pairs of the last update. Fails if a pair is listed twice, lacks a proxy, or has
+    /// loosened boxes that do not overlap.
     pub(crate) fn restore_pairs(
         &mut self,
         pairs: impl Iterator<Item = [ProxyHandle; 2]>,
     ) -> Result<(), Damage> {
         let Self { handles, finder, .. } = self;
-        // Where a filter panicked, boxes are ahead of pairs.
+        // If a filter panicked, boxes may be newer than pairs; `to_refilter` then has entries.
         let was_interrupted = !finder.to_refilter.is_empty();
         for [one, other] in pairs {
             ensure(handles.is_alive(one) && handles.is_alive(other), "a pair has no proxies")?;
@@ -232,7 +238,7 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
 }
 
 impl<N: Real, const D: usize> PairFinder<N, D> {
-    /// A box waits for an object for which none does.
+    /// Adds a waiting box of an object; fails if the object already has one.
     fn restore_waiting(&mut self, id: u32, aabb: Aabb<N, D>) -> Result<(), Damage> {
         ensure(self.waiting_at[id as usize] == NONE, "two boxes wait for a proxy")?;
         self.waiting_at[id as usize] = small(self.waiting.len());

@@ -23,8 +23,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         ascending(found)
     }
 
-    /// Returns the ids of the objects whose exact box the ray meets, ascending. A ray that is not
-    /// finite meets nothing.
+    /// Returns the ids of the objects whose exact box the ray hits, ascending. A ray with a
+    /// coordinate that is not finite hits nothing.
     pub fn hit_by(&self, ray: &Ray<N, D>) -> Vec<u32> {
         let mut found = Vec::new();
         self.search().each_hit(ray, |id| found.push(id));
@@ -39,7 +39,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     }
 
     /// Calls `visit` with groups of objects whose loosened box the ray may enter by `max_time`,
-    /// roughly near ones first; exact boxes are not tested. Keys are lower bounds of the times of
+    /// roughly by ascending time; exact boxes are not tested. Keys are lower bounds of the times of
     /// entry. `visit` returns the new `max_time`.
     pub fn visit_ray_roughly(&self, ray: &Ray<N, D>, max_time: N, visit: &mut VisitGroup<'_, N>) {
         self.search().groups_by_time(&Sweep::along(ray), max_time, visit);
@@ -58,8 +58,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     }
 
     /// Calls `visit` with groups of objects whose loosened box may be within `max_distance` of
-    /// `aabb`, roughly near ones first; exact boxes are not tested. Keys are lower bounds of the
-    /// distances. `visit` returns the new `max_distance`.
+    /// `aabb`, roughly by ascending distance; exact boxes are not tested. Keys are lower bounds of
+    /// the distances. `visit` returns the new `max_distance`.
     pub fn visit_nearest_roughly(
         &self,
         aabb: &Aabb<N, D>,
@@ -82,7 +82,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     }
 
     /// Calls `visit` with groups of objects whose loosened box the moving box may touch by
-    /// `max_time`, roughly near ones first; exact boxes are not tested. Keys are lower bounds of
+    /// `max_time`, roughly by ascending time; exact boxes are not tested. Keys are lower bounds of
     /// the times. `visit` returns the new `max_time`.
     pub(crate) fn visit_cast_roughly(
         &self,

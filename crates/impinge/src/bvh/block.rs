@@ -3,7 +3,7 @@
 use super::Bounds;
 use crate::math::filled;
 
-/// Boxes in a block.
+/// Number of boxes in a block.
 pub(crate) const LANES: usize = 16;
 
 /// Sixteen boxes as a structure of arrays:
@@ -23,7 +23,7 @@ pub(crate) struct Block<const D: usize> {
 }
 
 impl<const D: usize> Block<D> {
-    /// Sixteen empty lanes.
+    /// A block of sixteen empty lanes.
     pub(crate) const EMPTY: Self =
         Self { lo: [[f32::INFINITY; LANES]; D], hi: [[f32::NEG_INFINITY; LANES]; D] };
 
@@ -34,8 +34,8 @@ impl<const D: usize> Block<D> {
         Bounds { lo: filled(|axis| self.lo[axis][lane]), hi: filled(|axis| self.hi[axis][lane]) }
     }
 
-    /// Returns the lane whose box has its centre nearest to `point`, the lowest of several; `None`
-    /// if no centre is finite, or all squared distances overflow `f32`.
+    /// Returns the lane whose box has its centre nearest to `point`, the lowest lane in a tie;
+    /// `None` if no centre is finite, or all squared distances overflow `f32`.
     #[inline]
     pub(crate) fn nearest_lane(&self, point: &[f32; D]) -> Option<usize> {
         let mut squares = [0.0; LANES];

@@ -41,6 +41,7 @@ pub(super) struct SlabBox<'a, const D: usize> {
 }
 
 impl<const D: usize> BlockSlab<D> {
+    /// Returns the normal of the planes in the scalar type.
     pub(super) fn across<N: Real>(&self) -> Vector<N, D> {
         Vector::from_fn(|axis, _| N::lit(self.across[axis].into()))
     }
@@ -70,8 +71,8 @@ impl<const D: usize> SlabBox<'_, D> {
     pub(super) fn extent<N: Real>(&self, along: &Vector<N, D>) -> N {
         let whole = self.bounds.extent(along);
         let Some(slab) = self.slab else { return whole };
-        // Any multiple of the slab's normal gives a bound; this one leaves the component in its
-        // plane to the box.
+        // Any multiple of the slab's normal gives a bound. This multiple leaves to the box only the
+        // component of `along` in the plane of the slab.
         let across = slab.across::<N>();
         let share = along.dot(&across);
         let height = N::lit(if share < N::ZERO { slab.low } else { slab.high }.into());
@@ -123,12 +124,13 @@ impl<const D: usize> Tree<D> {
         self.slabs.clear();
     }
 
+    /// Returns the box and the slab of a block.
     pub(super) fn slab_box(&self, layer: usize, block: u32) -> SlabBox<'_, D> {
         let slab = self.slabs.get(layer).and_then(|slabs| slabs[block as usize].as_ref());
         SlabBox { bounds: &self.layers[layer].bounds[block as usize], slab }
     }
 
-    /// Iterates over the blocks of a layer below a block of the layer above.
+    /// Iterates over the children of block `above`, which are in the layer `layer` below it.
     fn children(&self, layer: usize, above: u32) -> impl Iterator<Item = SlabBox<'_, D>> {
         let first = above * small(LANES);
         let blocks = (first..small(self.layers[layer].blocks.len())).take(LANES);

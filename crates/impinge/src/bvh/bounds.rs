@@ -5,8 +5,8 @@ use crate::math::{Mapped, Point, Real, Vector, filled};
 
 /// A box of the tree: the points with `lo ≤ x ≤ hi` on every axis.
 ///
-/// It encloses the box of `N`s that it was computed from: each face is rounded outwards to an
-/// `f32`, so that the enclosures of touching boxes touch. Never NaN inside a tree.
+/// It encloses a box with coordinates of type `N`: each face is rounded outwards to an `f32`, so
+/// that the enclosures of touching boxes touch. A face of a box in a tree is never NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds<const D: usize> {
     /// The least coordinate, by axis.
@@ -22,7 +22,8 @@ impl<const D: usize> Bounds<D> {
     /// A box that overlaps nothing, not even an unbounded box: the old box of a new object.
     pub const NOWHERE: Self = Self { lo: [f32::NAN; D], hi: [f32::NAN; D] };
 
-    /// Returns the smallest `f32` box around a box of `N`s. Zeros lose their sign.
+    /// Returns the smallest `f32` box around a box with coordinates of type `N`. Zeros lose their
+    /// sign.
     #[inline]
     #[must_use]
     pub fn enclosing<N: Real>(aabb: &Aabb<N, D>) -> Self {
@@ -49,8 +50,9 @@ impl<const D: usize> Bounds<D> {
         Aabb::try_new(lo.into(), hi.into()).ok()
     }
 
-    /// Returns `true` if the boxes have a common point; touching counts. Wrongly `true` for an
-    /// empty and an unbounded box, whose infinities compare equal: callers clamp the unbounded one.
+    /// Returns `true` if the boxes have a common point, as boxes that only touch do. Wrongly `true`
+    /// for an empty and an unbounded box, whose infinities compare equal: callers clamp the
+    /// unbounded one.
     #[inline]
     #[must_use]
     pub fn overlaps(&self, other: &Self) -> bool {
@@ -120,7 +122,7 @@ impl<const D: usize> Bounds<D> {
     /// Returns half the surface (in 2D half the perimeter): the cost of a node in searches, up to a
     /// factor (Goldsmith and Salmon 1987). Unlike the volume, it is not zero for flat boxes.
     ///
-    /// In `f64`, where no box with finite faces overflows; 0 for an empty box.
+    /// The result is an `f64`, which no box with finite faces overflows; 0 for an empty box.
     #[must_use]
     pub fn half_surface(&self) -> f64 {
         let extent = |axis: usize| f64::from(self.hi[axis]) - f64::from(self.lo[axis]);
@@ -132,7 +134,7 @@ impl<const D: usize> Bounds<D> {
         (0..D).map(face).sum()
     }
 
-    /// Returns the box with coordinates in `N`, exactly. It must not be empty.
+    /// Returns the box with coordinates in `N`, exactly. The box must not be empty.
     pub(super) fn as_aabb<N: Real>(&self) -> Aabb<N, D> {
         let corner =
             |faces: &[f32; D]| Point::from(Vector::from_fn(|axis, _| N::lit(faces[axis].into())));

@@ -3,7 +3,7 @@
 use super::{Bounds, LANES, Tree};
 use crate::math::{Real, Vector, filled, max};
 
-/// The search and its best result.
+/// A search for the largest extent, with the best extent found so far.
 struct ExtentSearch<'a, N: Real, const D: usize> {
     direction: Vector<N, D>,
     /// Skips nodes that extend less than `tolerance` beyond the best extent found so far.
@@ -18,7 +18,8 @@ impl<const D: usize> Tree<D> {
     /// `extent_of` returns the extent of one object, which must not exceed the extent of the
     /// object's box.
     ///
-    /// Branch and bound, the farthest box of each block first. The tree must be refitted.
+    /// Branch and bound: visits the boxes of each block in descending order of extent. The tree
+    /// must be refitted.
     pub(crate) fn extent_along<N: Real>(
         &self,
         direction: Vector<N, D>,
@@ -47,8 +48,7 @@ impl<const D: usize> Tree<D> {
         });
         farthest.sort_by(|a, b| b.0.partial_cmp(&a.0).unwrap_or(core::cmp::Ordering::Equal));
         for (far, lane) in farthest {
-            // A NaN extent fails the comparison. Once an infinite extent is the best, nothing
-            // exceeds it.
+            // False for a NaN extent. Once an infinite extent is the best, no extent exceeds it.
             let is_farther = far > search.best + search.tolerance;
             if !is_farther {
                 break;

@@ -7,13 +7,14 @@ use crate::bounding_volume::Aabb;
 use crate::math::{Mapped, Real, f32_above, f32_below};
 use fearless_simd::{Select, Simd, SimdBase, SimdMask, f32x16, mask32x16};
 
-/// From this magnitude on, 2¹²⁵, differences of coordinates may overflow `f32`.
+/// The magnitude, 2¹²⁵, from which on differences of coordinates may overflow `f32`.
 const LARGEST: f32 = f32::from_bits((125 + 127) << 23);
 
-/// Largest coordinates below 2⁻¹²⁰ are replaced by it, so that the unit has a finite reciprocal.
+/// Least value used for the largest coordinate, 2⁻¹²⁰, so that the unit has a finite reciprocal.
 const SMALLEST: f32 = f32::from_bits((127 - 120) << 23);
 
-/// Error bound of a squared distance, in rounding units of `f32`, both here and in the exact test.
+/// Error bound of a squared distance in `f32` rounding units, for the test here and for the exact
+/// test.
 const SQUARE: f32 = 16.0;
 
 /// A box for tests of its squared distances to the boxes of a block.

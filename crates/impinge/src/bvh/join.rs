@@ -18,7 +18,7 @@ use super::{Block, Bounds, LANES, Tree};
 use crate::memory::Look;
 use crate::pairs::pack;
 
-/// Tasks in a chunk: of the upper layers, and of the leaf layer.
+/// Number of tasks in a chunk: `UPPER_CHUNK` in the upper layers, `LEAF_CHUNK` in the leaf layer.
 const UPPER_CHUNK: usize = 256;
 const LEAF_CHUNK: usize = 512;
 /// If fewer than one object in `QUERIES_BELOW` changed, queries are faster than the join.
@@ -394,7 +394,8 @@ impl<'a, const D: usize> JoinBoxes<'a, D> {
         let (first, second) = (sides.first, sides.second);
         let (now_a, before_a) = (&first.layers[0].blocks[..], first.was());
         let (now_b, before_b) = (&second.layers[0].blocks[..], second.was());
-        // Slices of equal length, so that bounds checks are hoisted out of the loop over pairs.
+        // Slices of equal length, so that the compiler hoists bounds checks out of the loop over
+        // pairs.
         let (now_a, now_b) = (&now_a[..before_a.len()], &now_b[..before_b.len()]);
         Self { now_a, before_a, now_b, before_b }
     }

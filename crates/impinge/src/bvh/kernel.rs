@@ -1,6 +1,6 @@
 //! The elementary operations on blocks, scalar and with SIMD vectors.
 //!
-//! [`Scalar`] defines the results; [`WideBlock`] computes the same bits with the vectors of the machine. The join uses
+//! [`Scalar`] defines the results; [`WideBlock`] computes the same bits with SIMD vectors of the machine. The join uses
 //! comparisons, minima and maxima alone, so equality is exact. `with_kernel!` selects the kernel once for a batch, and
 //! compiles its body for every instruction set.
 
@@ -13,12 +13,12 @@ use super::triangles::{ShearedLine, Triangles};
 use super::{Block, Bounds, LANES};
 use crate::math::simd::{Level, ON_ARRAYS};
 
-/// The vectors that the kernels use. They do not affect results.
+/// The SIMD instruction set that the kernels use. It does not affect results.
 #[derive(Clone, Copy, Debug)]
 pub struct Lanes(pub(super) Level);
 
 impl Lanes {
-    /// Detects the widest vectors of this machine.
+    /// Detects the widest instruction set of this machine.
     #[must_use]
     pub fn detect() -> Self {
         Self(Level::new())
@@ -37,7 +37,7 @@ impl Lanes {
         Self(Level::Arrays)
     }
 
-    /// Returns all levels that are compiled for this machine, for tests.
+    /// Returns all instruction sets of this machine that are compiled, for tests.
     #[must_use]
     pub fn available() -> Vec<Self> {
         let is_compiled = |level: &Level| ON_ARRAYS || !matches!(level, Level::Arrays);

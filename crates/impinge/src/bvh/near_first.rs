@@ -1,6 +1,6 @@
 //! Depth-first searches that visit near boxes first: along a moving box or ray, or around a box at rest.
 //!
-//! In each block the nearest child comes next (as in all ray tracers; Roussopoulos, Kelley and Vincent, "Nearest
+//! In each block the nearest child comes next (as in most ray tracers; Roussopoulos, Kelley and Vincent, "Nearest
 //! neighbor queries", 1995), as long as it is within the limit, which shrinks with each result. One block for each
 //! layer is open, with the keys of its children; the next child is selected only when its turn comes, since most are
 //! never visited. The order is rough: objects of a later block may be nearer than some of an earlier one. This avoids
@@ -91,8 +91,8 @@ impl Open {
 }
 
 impl Lanes {
-    /// Calls `found` with groups of at most [`GROUP`] objects, and their keys, that the moving box may touch by
-    /// `limit`; roughly near ones first. `found` returns the new limit, which must not increase. Limits are in the
+    /// Calls `found` with the objects that the moving box may touch by `limit`, and their keys: in groups of at most
+    /// [`GROUP`], roughly by ascending key. `found` returns the new limit, which must not increase. Limits are in the
     /// units of the slabs. A negative limit ends the search.
     pub(crate) fn visit_along<const D: usize>(
         self,
@@ -104,8 +104,9 @@ impl Lanes {
         self.visit_near_first(trees, slabs, limit, found);
     }
 
-    /// Calls `found` with groups of objects, and their keys, whose squared distance may be at most `limit`, in squared
-    /// units of the gaps; roughly near ones first. `found` returns the new limit, which must not increase.
+    /// Calls `found` with the objects whose squared distance may be at most `limit`, in squared units of the gaps, and
+    /// their keys: in groups of at most [`GROUP`], roughly by ascending key. `found` returns the new limit, which must
+    /// not increase.
     pub(crate) fn visit_around<const D: usize>(
         self,
         trees: &[&Tree<D>],
@@ -184,7 +185,7 @@ impl<const D: usize> Tree<D> {
                 None if layer == top => return limit,
                 None => layer += 1,
                 Some(block) if layer == 1 => {
-                    // Prefetches one of the remaining leaf blocks, though another one may come next.
+                    // Prefetches one of the remaining leaf blocks, though another block may be visited first.
                     if path[1].mask != 0 {
                         touch(path[1].first + path[1].mask.trailing_zeros());
                     }

@@ -1,17 +1,17 @@
 //! The order of slots: a balanced k-d order, so that blocks hold neighbours.
 //!
 //! The longest axis of the centres is cut so that the left part fills a power of two of blocks
-//! (whole subtrees of the layers above), and so on in both parts. A join needs 2.2 times fewer
-//! block tests than with Morton order, 1.25 times fewer than with Hilbert order.
+//! (whole subtrees of the layers above), and both parts are cut in the same way. A join needs 2.2
+//! times fewer block tests than with Morton order, 1.25 times fewer than with Hilbert order.
 
 use super::tree::small;
 use super::{Bounds, LANES, NONE, Tree};
 
-/// Number of items from which both parts are sorted in parallel.
+/// Number of items from which on both parts are sorted in parallel.
 #[cfg(feature = "parallel")]
 const PARALLEL_SORT: usize = 4096;
 
-/// An object to be sorted by its centre.
+/// An object with its centre, by which it is sorted.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Item<const D: usize> {
     center: [f32; D],
@@ -41,7 +41,7 @@ fn left_count(items: usize) -> usize {
     items.div_ceil(LANES).next_power_of_two() / 2 * LANES
 }
 
-/// Returns the axis with the largest spread of centres; the first of equals.
+/// Returns the axis with the largest spread of centres, the first in a tie.
 fn longest_axis<const D: usize>(items: &[Item<D>]) -> usize {
     let (mut lo, mut hi) = ([f32::INFINITY; D], [f32::NEG_INFINITY; D]);
     for item in items {
@@ -106,7 +106,7 @@ pub(super) fn sort<const D: usize>(items: &mut [Item<D>]) {
     sort(second);
 }
 
-/// An object's data, taken from its old slot to be written to a new one.
+/// The data of an object that moves from its old slot to a new one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Load<const D: usize> {
     bounds: Bounds<D>,
@@ -116,7 +116,7 @@ pub(super) struct Load<const D: usize> {
 }
 
 impl<const D: usize> Tree<D> {
-    /// Lists the objects in the slots from `start` on, in slot order.
+    /// Lists the objects in the slots at and after `start`, in slot order.
     pub(super) fn list_items(&self, start: usize, items: &mut Vec<Item<D>>) {
         items.clear();
         items.extend((start..self.end).filter_map(|slot| self.item(self.ids[slot])));
@@ -129,8 +129,8 @@ impl<const D: usize> Tree<D> {
         Some(Item { center, id })
     }
 
-    /// Assigns slots from `start` (a multiple of 16) on to the listed objects, in order, and drops
-    /// surplus blocks. `ids` must list every object at or after `start` exactly once.
+    /// Assigns the listed objects, in order, to the slots from `start` (a multiple of 16), and
+    /// drops surplus blocks. `ids` must list every object at or after `start` exactly once.
     pub(super) fn rearrange(&mut self, start: usize, ids: &[u32]) {
         let mut loads = core::mem::take(&mut self.loads);
         loads.clear();
@@ -174,7 +174,7 @@ impl<const D: usize> Tree<D> {
         self.layers[0].changed[block] |= u16::from(load.is_changed) << lane;
     }
 
-    /// Drops the free slots after the last object, and the blocks without any other slot.
+    /// Drops the free slots after the last object, and the blocks that contain only such slots.
     pub(crate) fn drop_free_end(&mut self) {
         while self.end > 0 && self.ids[self.end - 1] == NONE {
             self.end -= 1;

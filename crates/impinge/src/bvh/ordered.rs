@@ -1,10 +1,10 @@
 //! Best-first searches: objects in ascending order of a key, such as the first hits of a ray or the
 //! nearest objects.
 //!
-//! One queue of blocks and objects by key (Hjaltason and Samet, "Distance browsing in spatial
-//! databases", 1999). The key of a block is not above those of its contents, so objects leave the
-//! queue in the order of their keys. A search that stops there has opened only blocks that it
-//! needed.
+//! Blocks and objects wait in one queue, sorted by key (Hjaltason and Samet, "Distance browsing in
+//! spatial databases", 1999). The key of a block is not above those of its contents, so objects
+//! leave the queue in the order of their keys. A search that stops at an object has opened only the
+//! blocks that it needed.
 
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -86,7 +86,8 @@ impl Frontier {
             }
             match entry {
                 Entry::Object { id } => {
-                    // The queued key is exactly this one, since the same expression computed it.
+                    // The queued key equals this key exactly, since the same expression computed
+                    // it.
                     let Some(key) = (keys.object)(id) else { continue };
                     limit = found(id, key);
                 }
@@ -143,8 +144,8 @@ struct BlockLanes<'t, N, const D: usize> {
 
 impl Lanes {
     /// Returns, by lane, the time at which the moving box first touches the lane's box, and the
-    /// mask of the lanes that it does touch: for [`Frontier::search`], and the mask alone for
-    /// [`Tree::visit`]. A ray is a box of a single point.
+    /// mask of the lanes that it does touch. [`Frontier::search`] uses both, [`Tree::visit`] only
+    /// the mask. A ray is a box of a single point.
     pub(crate) fn times_of_block<N: Real, const D: usize>(
         self,
         block: &Block<D>,
@@ -168,8 +169,8 @@ impl Lanes {
 /// Returns, by lane, the time at which the moving box first touches the lane's box, and the mask of
 /// the lanes that it does touch.
 ///
-/// The slab test of `Aabb::sweep_interval`, operation for operation. Rounding is monotone, so if a
-/// box is hit, an enclosing box is hit too, and entered no later.
+/// Performs the operations of `Aabb::sweep_interval`. Rounding is monotone, so if a box is hit, an
+/// enclosing box is hit too, and entered no later.
 #[inline(always)]
 fn times_of_block<N: Real, const D: usize>(
     block: &Block<D>,
@@ -201,8 +202,8 @@ fn times_of_block<N: Real, const D: usize>(
 
 /// Returns, by lane, the distance between `aabb` and the lane's box, and the mask of lanes in use.
 ///
-/// The operations of `Aabb::distance_to_aabb`. Rounding is monotone, so an enclosing box is no
-/// farther.
+/// Performs the operations of `Aabb::distance_to_aabb`. Rounding is monotone, so an enclosing box
+/// is no farther.
 #[inline(always)]
 fn distance_of_block<N: Real, const D: usize>(
     block: &Block<D>,

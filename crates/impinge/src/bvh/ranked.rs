@@ -21,7 +21,8 @@ const EXPECTED: usize = 128;
 /// Error bound of heights, in `f32` rounding units of the coordinates.
 const ROUNDING: f32 = 16.0;
 
-/// A search, as the caller defines it. Each object has a rank: its distance, or negative for an overlap.
+/// The caller's part of a search. Each object has a rank: its distance from the query's solid, or a negative number for
+/// an overlap.
 pub(crate) trait BoxRanking<N: Real, const D: usize> {
     /// Returns a unit vector along which the contents of `aabb` are probably separated from the query's solid, and an
     /// upper bound of that solid's extent along the vector. The gap along it must be a lower bound of the ranks in the
@@ -53,11 +54,11 @@ struct RankedNode {
     height: u8,
     /// Index of the block, or slot of the object.
     at: u32,
-    /// Whether the bound is only a rough one, because the caller's own bound has not been computed yet.
+    /// Whether the bound is rough: the caller's own bound has not been computed yet.
     is_rough: bool,
 }
 
-/// A search under way.
+/// The state of a search.
 struct RankedSearch<'a, 'q, N: Real, const D: usize> {
     tree: &'a Tree<D>,
     gaps: Gaps<D>,

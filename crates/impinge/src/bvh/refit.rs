@@ -7,9 +7,9 @@ use super::kernel::{Kernel, with_kernel};
 use super::tree::{Layer, small};
 use super::{Block, Bounds, LANES, Lanes, Tree};
 
-/// Greatest ratio by which the old boxes may enlarge the surface of a leaf block. Beyond it an
-/// object was teleported, and swept bounds around its old and its new box would overlap everything
-/// between.
+/// Greatest ratio by which the old boxes may enlarge the surface of a leaf block. A larger ratio
+/// means that an object was teleported: swept bounds around its old and its new box would overlap
+/// everything between them.
 const FAR_MOVED: f64 = 2.0;
 /// Number of leaf blocks up to which a single thread refits.
 #[cfg(feature = "parallel")]
@@ -24,8 +24,8 @@ impl<const D: usize> Tree<D> {
     /// Refits the tree as [`Self::refit`] does, but first reads the boxes of changed objects from
     /// `by_id`, which is indexed by id. `by_id` is empty if the tree already has the boxes.
     ///
-    /// Ids have no spatial order. Reading the box of each slot causes independent loads, which
-    /// overlap; writing each box to its slot would not.
+    /// Ids have no spatial order. Reading the boxes in slot order gives independent loads, which
+    /// overlap; writing them in the order of ids would not.
     pub(crate) fn refit_from(&mut self, mut by_id: &[Bounds<D>]) {
         if self.has_new() {
             self.fetch_boxes(by_id);
@@ -148,7 +148,7 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Makes the present boxes the old ones for the next join, and clears all change bits and lists
+    /// Makes the present boxes the old boxes of the next join, and clears all change bits and lists
     /// of the step.
     pub(crate) fn commit_boxes(&mut self) {
         if self.touched.is_empty() {
@@ -182,7 +182,7 @@ impl<const D: usize> Tree<D> {
     }
 }
 
-/// Consecutive leaf blocks with their bounds and swept bounds, to be written.
+/// Consecutive leaf blocks, whose bounds and swept bounds are computed.
 struct Leaves<'a, const D: usize> {
     /// Index of the first block.
     first: usize,

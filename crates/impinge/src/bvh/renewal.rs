@@ -2,7 +2,7 @@
 //! step.
 //!
 //! Objects inserted since the last renewal are at the end, or in lanes of removed objects, so the order degrades. A
-//! renewal fills another tree with the same objects, which then replaces this one:
+//! renewal fills another tree with these objects, and the other tree then replaces this one:
 //!
 //! ```text
 //!   this tree        | all slots, in any order                       |
@@ -25,11 +25,12 @@ use super::{Bounds, LANES, NONE, Tree};
 /// Slots routed in one step, and objects sorted and copied in one step.
 const ROUTED: usize = 1024;
 const COPIED: usize = 512;
-/// Late objects added in one step: at least [`FOLLOWED`], and at least one in [`FOLLOWED_OF`], so that this stage ends
-/// however many objects are inserted.
+/// Late objects added in one step: at least [`FOLLOWED`], and at least the fraction 1 / [`FOLLOWED_OF`] of those left,
+/// so that this stage ends however many objects are inserted.
 const FOLLOWED: usize = 128;
 const FOLLOWED_OF: usize = 16;
-/// Work units for a new object and for a changed one, and units for each additional step of the next call.
+/// Work units that a new object and a changed object add; each [`OF_STEP`] units make one additional step in the next
+/// call.
 const OF_INSERT: usize = 64;
 const OF_SET: usize = 1;
 const OF_STEP: usize = 4096;
@@ -112,7 +113,7 @@ impl<const D: usize> Renewal<D> {
         }
     }
 
-    /// Performs the next step, and additional ones if many objects were inserted or changed. Returns `true` if the
+    /// Performs the next step, and additional steps if many objects were inserted or changed. Returns `true` if the
     /// other tree is complete.
     pub(super) fn proceed(&mut self, tree: &Tree<D>) -> bool {
         let steps = 1 + core::mem::take(&mut self.owed_units) / OF_STEP;
@@ -187,8 +188,8 @@ impl<const D: usize> Renewal<D> {
         rest == 0
     }
 
-    /// Adds an object to the other tree: at the end if `at_end`, else in the best slot. Skips an object that is gone or
-    /// that the other tree already contains.
+    /// Adds an object to the other tree: at the end if `at_end`, else in the best slot. Skips an object that was
+    /// removed or that the other tree already contains.
     fn add(&mut self, tree: &Tree<D>, id: u32, at_end: bool) {
         let bounds = tree.bounds(id).filter(|_| !self.other.contains(id));
         if let Some(bounds) = bounds {
@@ -201,7 +202,8 @@ impl<const D: usize> Renewal<D> {
     }
 }
 
-/// Cuts a sample in half, and both halves recursively. Ends, since each call goes one level deeper in `cuts`.
+/// Cuts a sample in half, and both halves recursively. The recursion ends, since each call goes one level deeper in
+/// `cuts`.
 fn fill<const D: usize>(cuts: &mut [Cut], at: usize, sample: &mut [Item<D>]) {
     if at >= cuts.len() {
         return;
@@ -214,7 +216,7 @@ fn fill<const D: usize>(cuts: &mut [Cut], at: usize, sample: &mut [Item<D>]) {
 }
 
 impl<const D: usize> Tree<D> {
-    /// Creates a sparing tree without objects, with memory for as many as this one contains.
+    /// Creates a sparing tree without objects, with memory for all objects of this tree.
     fn empty_twin(&self) -> Self {
         let (mut twin, blocks) = (Self::sparing(self.lanes), self.live.div_ceil(LANES) + 1);
         let Layer { blocks: leaves, bounds, swept, changed, .. } = &mut twin.layers[0];

@@ -2,11 +2,11 @@
 //! does.
 //!
 //! Moving objects spoil the order: the leaf blocks grow. A renewal starts when the leaf surface per
-//! object is a fifth above its value after the last renewal, or when many objects came or went.
-//! Then a snapshot of all centres is sorted over several steps and applied: work proportional to
-//! the number of objects. A sparing tree is instead renewed in a copy ([`super::renewal`]), with a
-//! bounded amount of work in each step. No step depends on measured time, so results are equal on
-//! every machine.
+//! object is a fifth above its value after the last renewal, or when many objects were inserted or
+//! removed. Then a snapshot of all centres is sorted over several steps and applied: work
+//! proportional to the number of objects. A sparing tree is instead renewed in a copy
+//! ([`super::renewal`]), with a bounded amount of work in each step. No step depends on measured
+//! time, so results are equal on every machine.
 
 use super::order::{Item, sort, split};
 use super::renewal::Renewal;
@@ -18,12 +18,13 @@ const WORN: f64 = 1.2;
 const LOOK_EVERY: u32 = 4;
 /// Greatest number of items of the snapshot that are sorted at once.
 const SORTED_AT_ONCE: usize = 1024;
-/// Least number of items for one step to handle, so that small trees are renewed in few steps.
+/// Least number of items that one step handles, so that small trees are renewed in few steps.
 const MIN_BUDGET: usize = 2048;
-/// If more than one object in `LATE` came or moved far while the snapshot was being sorted, the
-/// snapshot is discarded and all objects are sorted at once.
+/// If more than one object in `LATE` was inserted or moved far while the snapshot was being sorted,
+/// the snapshot is discarded and all objects are sorted at once.
 const LATE: usize = 4;
-/// Number of objects that may come or go in a tree of any size before the order is renewed.
+/// Number of objects that may be inserted or removed in a tree of any size before the order is
+/// renewed.
 const SLACK: usize = 64;
 /// A sparing tree of at most `SMALL` objects is sorted at once. In a larger one, new objects are
 /// sorted in runs of at most about `SMALL` slots.
@@ -34,7 +35,8 @@ const SMALL: usize = 1024;
 pub(super) struct Schedule<const D: usize> {
     /// Leaf surface per object, first measured after the last renewal; `None` until then.
     base: Option<f64>,
-    /// First slot in use since the last renewal only: slots before it were sorted then.
+    /// First slot that was not in use at the last renewal; the objects in earlier slots were sorted
+    /// then.
     ordered: usize,
     /// First slot whose object has not been sorted yet.
     fresh: usize,
@@ -48,8 +50,8 @@ pub(super) struct Schedule<const D: usize> {
     calls: u32,
     /// Whether blocks were written since the last measurement of the surface.
     is_used: bool,
-    /// Objects that came or moved far since the snapshot was taken, which it lacks or has at wrong
-    /// positions. May have repeats and removed objects.
+    /// Objects that were inserted or moved far since the snapshot was taken: the snapshot lacks
+    /// them or has them at wrong positions. May have repeats and removed objects.
     late: Vec<u32>,
     /// Scratch: new objects.
     newcomers: Vec<Item<D>>,
@@ -83,10 +85,10 @@ impl<const D: usize> Tree<D> {
         self.end > self.schedule.fresh
     }
 
-    /// Sorts the objects that came since the last sort among themselves, or all objects if more
-    /// than a third are new. Earlier runs are merged in while they are short, so that there are few
-    /// runs and each object is sorted again only a few times (the logarithmic method of Bentley and
-    /// Saxe 1980). In a sparing tree up to 16 new objects wait for more.
+    /// Sorts the objects inserted since the last sort among themselves, or all objects if more than
+    /// a third are new. Earlier runs are merged in while they are short, so that there are few runs
+    /// and each object is sorted again only a few times (the logarithmic method of Bentley and Saxe
+    /// 1980). In a sparing tree up to 16 new objects wait for more.
     pub(super) fn sort_new(&mut self) {
         let new = self.end - self.schedule.fresh.min(self.end);
         if new * 3 > self.live {
@@ -239,15 +241,16 @@ impl<const D: usize> Tree<D> {
         surface > WORN * base
     }
 
-    /// Returns `true` if too many objects came, or left free slots, since the last renewal.
+    /// Returns `true` if too many objects were inserted since the last renewal, or removed objects
+    /// left too many free slots.
     fn is_spoilt(&self) -> bool {
         let (came, holes) = (self.end - self.schedule.ordered.min(self.end), self.end - self.live);
         came > self.live / 16 + SLACK || holes > self.live / 4 + SLACK
     }
 
     /// Moves the objects to their sorted positions, then refits and commits the tree. Skips objects
-    /// that were removed since the snapshot. Objects that it lacks, and late ones, follow at the
-    /// end, sorted among themselves.
+    /// that were removed since the snapshot. Objects that the snapshot lacks, and late objects,
+    /// follow at the end, sorted among themselves.
     fn apply_snapshot(&mut self) {
         let mut ids = core::mem::take(&mut self.schedule.order);
         let mut is_placed = core::mem::take(&mut self.schedule.is_placed);

@@ -7,7 +7,7 @@ use crate::math::{Mapped, Real, Vector, filled, max_component};
 use fearless_simd::{Bytes, Select, Simd, SimdBase, SimdMask, f32x16, u32x16};
 
 /// Least speed on an axis, as a fraction of the fastest component's power of two. Raising a slower
-/// component to it displaces the box, along the way past a tree, by less than the padding.
+/// component to it displaces the box, while it passes a tree, by less than the padding.
 const SLOWEST: f32 = f32::from_bits(27 << 23);
 
 /// Padding of the moving box, in `f32` rounding units of the largest coordinate.

@@ -14,10 +14,10 @@ impl<const D: usize> Tree<D> {
         hole.unwrap_or_else(|| self.append_slot())
     }
 
-    /// Returns a free slot near a box: descends to the child that grows least in each layer, in the
-    /// lowest one only among leaf blocks with a free lane. `None` if there is no such block or its
-    /// surface would grow by more than [`MAX_GROWTH`]: a large block makes every join expensive,
-    /// whereas new objects at the end are sorted among themselves.
+    /// Returns a free slot near a box: descends in each layer to the child that grows least, in the
+    /// lowest layer only among leaf blocks with a free lane. `None` if there is no such block or
+    /// its surface would grow by more than [`MAX_GROWTH`]: a large block makes every join
+    /// expensive, whereas new objects at the end are sorted among themselves.
     fn hole_near(&self, bounds: &Bounds<D>) -> Option<usize> {
         let mut block = 0;
         for layer in (1..self.layers.len()).rev() {
@@ -39,8 +39,8 @@ impl<const D: usize> Tree<D> {
         Some(block * LANES + slots.iter().position(|&id| id == NONE)?)
     }
 
-    /// Returns `true` if the surface of leaf block `block` would grow by at most [`MAX_GROWTH`]
-    /// through the box, or is zero; `false` if the block is not there.
+    /// Returns `true` if the surface of leaf block `block` is zero, or would grow by at most
+    /// [`MAX_GROWTH`] if the box were added; `false` if the block does not exist.
     pub(super) fn hardly_grows_by(&self, block: usize, bounds: &Bounds<D>) -> bool {
         self.layers[0].bounds.get(block).is_some_and(|block| {
             let own = block.half_surface();

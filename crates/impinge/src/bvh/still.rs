@@ -19,7 +19,7 @@ const SAMPLE: usize = 512;
 #[cfg(feature = "parallel")]
 const PARALLEL_SORT: usize = 4096;
 
-/// A box to be sorted.
+/// A box with its id, sorted by its centre.
 #[derive(Clone, Copy, Debug)]
 struct StillItem<const D: usize> {
     bounds: Bounds<D>,
@@ -27,7 +27,7 @@ struct StillItem<const D: usize> {
 }
 
 impl<const D: usize> StillItem<D> {
-    /// Returns the centre on an axis. Halves come first, so that the sum does not overflow.
+    /// Returns the centre on an axis. Coordinates are halved before they are added, so the sum does not overflow.
     #[inline]
     fn middle(&self, axis: usize) -> f32 {
         self.bounds.lo[axis] * 0.5 + self.bounds.hi[axis] * 0.5
@@ -120,7 +120,7 @@ fn best_cut<const D: usize>(
         let middle = filled(|axis| item.middle(axis));
         middles = middles.merged(&Bounds { lo: middle, hi: middle });
     }
-    // Halves come first, so that the difference does not overflow.
+    // Coordinates are halved before they are subtracted, so the difference does not overflow.
     let spread = |axis: usize| middles.hi[axis] * 0.5 - middles.lo[axis] * 0.5;
     let longest =
         (1..D).fold(0, |best, axis| if spread(axis) > spread(best) { axis } else { best });

@@ -1,9 +1,10 @@
 //! Rays against triangles, many together, in lockstep.
 //!
-//! The next step of a ray depends on late loads and on unpredictable branches. So all rays that open a block do so one
-//! after another, then all rays at leaf blocks test triangles, then all others return to an open block. Within such a
-//! phase no ray depends on the one before, no branch is unpredictable, and loads of several blocks overlap. Each single
-//! ray visits blocks in the order of [`near_first`](super::near_first).
+//! The next step of a single ray waits for loads and depends on unpredictable branches. So all rays
+//! that open a block do so one after another, then all rays at leaf blocks test triangles, then all
+//! other rays return to an open block. Within such a phase no ray depends on the ray before it, no
+//! branch is unpredictable, and loads of several blocks overlap. Each single ray visits blocks in
+//! the order of [`near_first`](super::near_first).
 //!
 //! ```text
 //! to_open   ── open_blocks ────> to_open | at_leaf | to_return
@@ -82,7 +83,8 @@ impl List {
 /// missed.
 type LaneKeys = [u32; LANES];
 
-/// The rays of one search. A ray is in at most one list, which says what it does next.
+/// The rays of one search. The lists hold the next action of each ray; a ray is in at most one
+/// list.
 struct Stream<'a> {
     walks: &'a mut [Walk],
     /// Keys by ray, then by layer.

@@ -38,7 +38,8 @@ pub(super) fn random_box<const D: usize>(state: &mut u64, side: u32) -> Bounds<D
     Bounds { lo, hi: lo.map(|x| x + small_float(next(state, 5)) / 2.0) }
 }
 
-/// Returns the box shifted along each axis by a random multiple of 0.5, up to `max_move / 2`.
+/// Returns the box shifted along each axis by a random multiple of 0.5, of magnitude up to
+/// `max_move / 2`.
 fn near<const D: usize>(old: &Bounds<D>, state: &mut u64, max_move: u32) -> Bounds<D> {
     let shift: [f32; D] =
         filled(|_| small_float(next(state, 2 * max_move + 1)) / 2.0 - small_float(max_move) / 2.0);

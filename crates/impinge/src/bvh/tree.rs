@@ -73,7 +73,7 @@ impl<const D: usize> Layer<D> {
 #[derive(Debug)]
 pub(crate) struct Tree<const D: usize> {
     pub(super) lanes: Lanes,
-    /// Layer 0 first; at least one layer, the last one with at most one block.
+    /// The layers, layer 0 first. There is at least one, and the last one has at most one block.
     pub(super) layers: Vec<Layer<D>>,
     /// By leaf block: the boxes at the last [`Self::commit_boxes`], if `remembers`; see
     /// [`Self::was`].
@@ -83,7 +83,8 @@ pub(crate) struct Tree<const D: usize> {
     pub(super) is_sparing: bool,
     /// Slabs by layer and block, if the owner added them; valid until the boxes change.
     pub(super) slabs: Vec<Vec<Option<BlockSlab<D>>>>,
-    /// Whether [`Self::before`] is stored: always, unless the tree is sparing.
+    /// Whether [`Self::before`] is stored now: always, unless the tree is sparing and no box is
+    /// marked as changed.
     pub(super) remembers: bool,
     /// By slot: the object's id, or [`NONE`].
     pub(super) ids: Vec<u32>,
@@ -163,7 +164,7 @@ impl<const D: usize> Tree<D> {
         Self { is_sparing: true, remembers: false, ..Self::new(lanes) }
     }
 
-    /// Makes the tree a sparing one, for objects that seldom change. Its boxes must be committed.
+    /// Makes the tree sparing, for objects that seldom change. Its boxes must be committed.
     pub(crate) fn spare(&mut self) {
         debug_assert_eq!(self.changed, 0, "a tree with committed boxes");
         (self.is_sparing, self.remembers, self.before) = (true, false, Vec::new());
@@ -171,8 +172,7 @@ impl<const D: usize> Tree<D> {
         self.give_back();
     }
 
-    /// Makes a sparing tree an ordinary one, for objects that change often. Drops a renewal in
-    /// progress.
+    /// Makes a sparing tree ordinary, for objects that change often. Drops a renewal in progress.
     pub(crate) fn spend(&mut self) {
         (self.is_sparing, self.renewal) = (false, None);
         self.remember();
@@ -389,6 +389,7 @@ impl<const D: usize> Tree<D> {
     }
 
     #[inline]
+    /// Sets the change bit of a slot, and counts it if it is new.
     pub(super) fn mark_changed(&mut self, slot: usize) {
         let mask = &mut self.layers[0].changed[slot / LANES];
         let bit = 1 << (slot % LANES);
@@ -397,6 +398,7 @@ impl<const D: usize> Tree<D> {
     }
 
     #[inline]
+    /// Lists a leaf block as written since the last [`Self::commit_boxes`].
     pub(super) fn touch(&mut self, block: usize) {
         if !self.is_touched[block] {
             self.is_touched[block] = true;

@@ -61,8 +61,8 @@ pub(crate) struct TriangleAt<'a> {
 /// distance from the line's origin along and across the line.
 ///
 /// In half units: 12 here and 16 in the exact test, for differences, shears and sums. Together they
-/// make 112 in the area of two such positions. Another 83 are the distance within which the exact
-/// test accepts the sides of a triangle seen edge on; they make 235. The rest is reserve.
+/// make 112 in the area of two such positions. The exact test also accepts the sides of a triangle
+/// seen edge on within a distance of 83, which raises the bound to 235. The rest is a margin.
 const NEAR: f32 = 256.0;
 
 /// Error bound in `f32` rounding units of the largest coordinate: 8 for the conversion from `f64`,

@@ -1,4 +1,5 @@
-//! The three queries of a checker, each for many configurations.
+//! The three queries of a checker for many configurations: any pair, the first pair, the nearest
+//! pair.
 
 use crate::math::order::sort_few;
 use core::ops::Range;
@@ -12,12 +13,12 @@ use crate::batch::{BatchError, Control, Progress};
 use crate::math::simd::Level;
 use crate::math::{Real, Space, max};
 
-/// Angles up to `NEAR_ANGLE` need no reduction. Angles above `FAR_ANGLE` have too few digits after
-/// the point for a reduction to `f32`.
+/// Angles up to `NEAR_ANGLE` radians are converted to `f32` without reduction. Angles above
+/// `FAR_ANGLE` radians are not reduced, since the rounding error of the `f64` would be too large.
 const NEAR_ANGLE: f64 = 4.0;
 const FAR_ANGLE: f64 = 1e8;
 
-/// Processes configurations in packets of 8.
+/// The state of a query that processes configurations in packets of 8, one per SIMD lane.
 struct EightByEight<'a, N: Space<D>, const D: usize> {
     checker: &'a Checker<N, D>,
     configurations: &'a [N],
@@ -41,8 +42,8 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
         }
     }
 
-    /// Scans the configurations of `range` in packets of up to 8, up to the distance `limit`. After
-    /// each scan calls `finish` with the index range of the packet's configurations.
+    /// Scans the configurations of `range` in packets of up to 8 for pairs within the distance
+    /// `limit`. After the scan of a packet, calls `finish` with the range of its configurations.
     fn each(
         &mut self,
         range: Range<usize>,
@@ -70,8 +71,8 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
         scan_at(self.level, robot, &self.checker.surroundings, scratch, search);
     }
 
-    /// Reads the joint values of the nodes in `f32`; returns the total slide of all joints in each
-    /// lane.
+    /// Reads the joint values of the nodes in `f32`. Returns for each lane the sum of the
+    /// magnitudes of the values of all prismatic joints.
     fn read_numbers(&mut self, packet: &Range<usize>) -> LaneRow<f32> {
         let tree = &self.checker.tree;
         let (width, mut slides) = (tree.columns(), [0.0; LANES]);
@@ -94,8 +95,8 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
         slides
     }
 
-    /// Returns the candidate pairs of a lane in their order; all pairs for a lane that the scan
-    /// could not evaluate.
+    /// Returns the candidate pairs of a lane in ascending order. If the scan could not evaluate the
+    /// lane, returns all pairs.
     fn candidates(&self, lane: usize) -> Vec<CandidatePair> {
         if self.search.blind >> lane & 1 == 0 {
             let candidate = self.search.candidates.iter();
@@ -109,8 +110,8 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
     }
 }
 
-/// Returns an angle in `f32`, with an error of little more than the rounding error of 4; NaN above
-/// `FAR_ANGLE`.
+/// Converts an angle to `f32`, modulo a full turn if it is large. The error is little more than the
+/// rounding error of a number near 4. Returns NaN above `FAR_ANGLE`.
 #[inline(always)]
 fn angle<N: Real>(value: N) -> f32 {
     let size = value.as_f64().abs();
@@ -183,8 +184,8 @@ impl<N: Space<D>, const D: usize> EightByEight<'_, N, D> {
         hits
     }
 
-    /// Whether a search of parts finds a pair within the clearance. Also records the result in the
-    /// statistics.
+    /// Returns whether a search of parts finds that a pair is within the clearance. Also records
+    /// the result in the statistics.
     fn search_parts(&mut self, pair: (u32, Other), lane: usize, clearance: N) -> bool {
         let is_hit = self.exact.searched(pair, lane, clearance).is_some();
         self.odds.count(pair, is_hit);
@@ -250,12 +251,12 @@ pub(super) fn nearest<N: Space<D>, const D: usize>(
 }
 
 impl<N: Space<D>, const D: usize> EightByEight<'_, N, D> {
-    /// Returns the nearest pair of a lane up to a limit, the first if several are equally near;
-    /// `None` if there is none.
+    /// Returns the nearest pair of a lane and its distance; the first pair if several are equally
+    /// near. `None` if no pair is within `limit`.
     ///
-    /// Candidates are computed in the order of their lower bounds, those that may touch in pair
-    /// order. So the search ends once the best distance is below the next lower bound, and the
-    /// first of several touching pairs is found.
+    /// Candidates are computed in ascending order of their lower bounds; candidates that may touch
+    /// have the bound zero and are computed in pair order. So the search ends when the next lower
+    /// bound exceeds the best distance, and it returns the first of several touching pairs.
     fn nearest(&mut self, lane: usize, limit: N) -> Option<(N, (u32, Other))> {
         let bound = |candidate: &CandidatePair| max(candidate.lower, 0.0);
         let mut candidates = self.candidates(lane);
@@ -328,8 +329,8 @@ mod tests {
     #[test]
     fn parts_are_searched_where_hulls_touch() {
         let checker = slider(&[(1.0, [0.0; 3]), (1.0, [0.0; 3])], &[[0, 1]]);
-        // The surfaces touch up to the height of the corner above the opposite face, 0.577; the
-        // balls around them up to 1.7.
+        // The surfaces touch up to a slide of 0.577, the height of the corner above the opposite
+        // face. Their bounding balls touch up to a slide of 1.7.
         let rows = [0.6, 0.25, 0.75, 0.5, 1.0, 0.57, 1.25, 0.58, 1.5, 1.65];
         assert_eq!(searches(&checker, &rows).0, 0b10_1010);
         assert_eq!(searches(&checker, &rows), (0b10_1010, vec![6]), "of the first six all");
@@ -338,8 +339,8 @@ mod tests {
 
     #[test]
     fn pairs_that_seldom_touch_are_asked_last() {
-        // In one pair a surface is inside another, so that only the hulls overlap; the other pair
-        // touches in all rows but the last.
+        // In the first pair one surface is inside the other, so that only the hulls overlap. The
+        // second pair touches in all rows except the last.
         let surfaces = [(8.0, [0.0; 3]), (0.5, [1.0; 3]), (1.0, [20.0; 3]), (1.0, [20.0; 3])];
         let checker = slider(&surfaces, &[[0, 1], [2, 3]]);
         let mut rows = [0.3; 17];

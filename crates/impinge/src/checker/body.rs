@@ -1,4 +1,4 @@
-//! Bodies that move with the frames, and obstacles at rest.
+//! Bodies, which move with the frames, and obstacles, which are at rest.
 
 use crate::math::{Pose, Real};
 use crate::shape::ShapeHandle;
@@ -15,7 +15,7 @@ use crate::shape::ShapeHandle;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Body<N: Real, const D: usize> {
-    /// The index of the frame.
+    /// The index of the frame to which the shape is fixed.
     pub frame: usize,
     /// The shape of the body.
     pub shape: ShapeHandle<N, D>,

@@ -30,7 +30,8 @@ pub(super) struct PoseRows<N, const D: usize> {
     translation: [LaneRow<N>; D],
 }
 
-/// A frame with a moving joint, on another such frame or on the world.
+/// A frame with a moving joint. Its parent is another node or the world; frames with fixed joints
+/// in between are merged into `origin`.
 #[derive(Clone, Debug)]
 pub(super) struct Node<N: Real, const D: usize> {
     /// The index of the parent's block of rows: 0 is the world, and the block of node `i` is `i +
@@ -46,14 +47,14 @@ pub(super) struct Node<N: Real, const D: usize> {
 enum Swing<N: Real, const D: usize> {
     /// A revolute joint: the matrices A, B and C of its rotation.
     Turn([Matrix<N, D>; 3]),
-    /// A prismatic joint: its constant rotation, and the direction of its slide in the parent's
-    /// frame.
+    /// A prismatic joint: its constant rotation, and the unit direction of its slide in the
+    /// parent's frame.
     Slide(Matrix<N, D>, Vector<N, D>),
 }
 
 impl<N: Real, const D: usize> Node<N, D> {
-    /// Returns the node of a frame with a joint at `origin` on the parent node; `None` for a fixed
-    /// joint.
+    /// Creates the node of a frame whose joint is at `origin` in the frame of the parent node;
+    /// `None` for a fixed joint.
     pub(super) fn new(parent: usize, origin: &Pose<N, D>, frame: &Frame<N, D>) -> Option<Self> {
         let rotation = origin.rotation;
         let rotation = match frame.joint.motion {
@@ -77,12 +78,12 @@ impl<N: Real, const D: usize> Node<N, D> {
         }
     }
 
-    /// Whether the joint is prismatic, so that its value is a length.
+    /// Returns whether the joint is prismatic, so that its value is a length.
     pub(super) const fn slides(&self) -> bool {
         matches!(self.rotation, Swing::Slide(..))
     }
 
-    /// Converts the node to `f32`; if its parent is the world, its origin is moved by `-shift`.
+    /// Converts the node to `f32`. If its parent is the world, subtracts `shift` from its origin.
     pub(super) fn in_f32(&self, shift: &Vector<N, D>) -> Node<f32, D> {
         let origin = if self.parent == 0 { self.origin - shift } else { self.origin };
         let rotation = match &self.rotation {
@@ -94,8 +95,8 @@ impl<N: Real, const D: usize> Node<N, D> {
         Node { parent: self.parent, origin: origin.map(N::as_f32), rotation }
     }
 
-    /// Returns one column of the node's rotation in its parent's frame, from the sine and the
-    /// cosine of the joint value.
+    /// Returns column `column` of the node's rotation in its parent's frame in each lane, from the
+    /// sine and the cosine of the joint value.
     #[inline(always)]
     fn column<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -116,7 +117,7 @@ impl<N: Real, const D: usize> Node<N, D> {
         )
     }
 
-    /// Returns the node's position in its parent's frame.
+    /// Returns the node's position in its parent's frame in each lane; `number` is the joint value.
     #[inline(always)]
     fn position<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, number: V) -> [V; D] {
         filled(
@@ -133,7 +134,8 @@ impl<N: Real, const D: usize> Node<N, D> {
 }
 
 impl<N: Real, const D: usize> PoseRows<N, D> {
-    /// Returns the identity in all lanes, for the world's block or a block to be overwritten.
+    /// Returns the identity in all lanes: the block of the world, and the initial value of other
+    /// blocks.
     pub(super) fn identity() -> Self {
         let mut rows =
             Self { rotation: [[[N::ZERO; LANES]; D]; D], translation: [[N::ZERO; LANES]; D] };
@@ -193,12 +195,12 @@ impl<N: Real, const D: usize> PoseRows<N, D> {
         )
     }
 
-    /// Returns, as a bit mask, the lanes in which no coordinate is NaN or above `most` in
-    /// magnitude.
+    /// Returns a bit mask of the lanes in which the position is at most `most` in magnitude on each
+    /// axis and the rotation is finite.
     #[inline(always)]
     pub(super) fn lanes_within<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, most: N) -> u8 {
         let most = V::all(simd, most);
-        // A NaN or infinite angle makes the rotation NaN.
+        // A NaN or infinite angle makes the whole rotation NaN, so one of its numbers suffices.
         let mut within = V::load(simd, &self.rotation[0][0]).abs().simd_le(most);
         for axis in 0..D {
             within &= V::load(simd, &self.translation[axis]).abs().simd_le(most);
@@ -208,7 +210,7 @@ impl<N: Real, const D: usize> PoseRows<N, D> {
 }
 
 /// Computes the poses of all nodes for 8 configurations. `numbers` has one row of joint values for
-/// each node; `rows` has the world's block, then one block for each node.
+/// each node. `rows` has the block of the world, followed by one block for each node.
 #[inline(always)]
 pub(super) fn forward<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -221,7 +223,7 @@ pub(super) fn forward<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
         let swing = if node.slides() { [number; 2] } else { sine_cosine(simd, number) };
         let (before, own) = rows.split_at_mut(index + 1);
         let (parent, own) = (&before[node.parent], &mut own[0]);
-        // For a parent that is the world, the product with the identity is skipped; the result is
+        // If the parent is the world, the product with the identity is skipped. The result is
         // bitwise equal.
         let is_inner = node.parent != 0;
         for column in 0..D {
@@ -235,7 +237,7 @@ pub(super) fn forward<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     }
 }
 
-/// Stores vectors, one in each lane.
+/// Stores the vector of each lane, one row for each coordinate.
 #[inline(always)]
 pub(super) fn store<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     from: &[V; D],

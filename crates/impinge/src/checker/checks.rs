@@ -13,15 +13,15 @@ use crate::math::{Pose, Real, Space};
 /// pair.
 pub const NO_PAIR: [u32; 2] = [u32::MAX; 2];
 
-/// Bodies on moving frames, pairs of them that must not touch, and obstacles.
+/// A robot of bodies on moving frames, the pairs of bodies that must not touch, and obstacles.
 ///
-/// Bodies and obstacles share one numbering: obstacle `i` has the index `bodies + i`. Pairs are
-/// ordered by their two indices, the lower index first: first all pairs of body 0, with other
-/// bodies and then with obstacles, then all pairs of body 1, and so on.
+/// Bodies and obstacles share one numbering: obstacle `i` has the index `bodies + i`. The lower
+/// index of a pair comes first, and pairs are ordered by both indices: first all pairs of body 0
+/// with other bodies and then with obstacles, then all pairs of body 1, and so on.
 ///
 /// A configuration is free if no pair touches, or, with a clearance, if all pairs are farther apart
-/// than the clearance. If a frame has a pose that is not finite, the configuration is not free, has
-/// no pair, and its distance is NaN.
+/// than the clearance. If the pose of a frame is not finite, the configuration is not free, has no
+/// pair, and its distance is NaN.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Control};
@@ -69,7 +69,7 @@ pub struct Checker<N: Real, const D: usize> {
     pub(super) hulls: BodyHulls<N, D>,
     pub(super) robot: RobotFilter<D>,
     pub(super) surroundings: Surroundings<D>,
-    /// The pairs of a body and an obstacle that may touch, in ascending order.
+    /// The pairs `[body, obstacle]` that may touch, in ascending order.
     ignored: Vec<[u32; 2]>,
 }
 
@@ -114,7 +114,8 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
     /// Replaces all obstacles; `ignored` has the pairs `[body, obstacle]` that may touch, with both
     /// indices starting at zero.
     ///
-    /// The cost is the distance of each obstacle from a point for each group of balls.
+    /// The cost is one distance between a point and an obstacle for each obstacle and each group of
+    /// at most 8 balls that cover the bodies.
     ///
     /// # Errors
     /// [`CheckerError::NotFinite`], [`CheckerError::Pair`] or [`CheckerError::TooMany`], for the
@@ -234,8 +235,8 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         entries::first_pairs(self, (configurations, clearance), control, out)
     }
 
-    /// Writes the distance of the nearest pair of each configuration up to `limit`, and that pair;
-    /// of equally near pairs the first.
+    /// Writes the nearest pair of each configuration and its distance, if this is at most `limit`.
+    /// The first of several equally near pairs is written.
     ///
     /// A `limit` that is negative or NaN is treated as zero. The limit never changes a distance,
     /// only whether a pair is reported; a low limit saves time.
@@ -276,7 +277,8 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         }
     }
 
-    /// Returns the pairs of bodies in order, then all pairs of a body and an obstacle.
+    /// Returns the pairs of bodies in ascending order, followed by the pairs of a body and an
+    /// obstacle that must not touch, in ascending order.
     pub(super) fn pairs_in_order(&self) -> impl Iterator<Item = (u32, Other)> + '_ {
         let pairs = self.pairs.iter().map(|&[one, other]| (one, Other::Body(other)));
         let bodies = 0..u32::try_from(self.bodies.len()).expect("32 bits can number the bodies");
@@ -302,7 +304,8 @@ pub(super) fn robot<N: Space<D>, const D: usize>(
     RobotFilter::new(tree, placed, pairs)
 }
 
-/// Checks that bodies are on existing frames and have finite poses.
+/// Checks that the number of bodies fits in 32 bits, and that each body is on an existing frame and
+/// has a finite pose.
 fn check_bodies<N: Real, const D: usize>(
     bodies: &[Body<N, D>],
     frames: usize,

@@ -4,7 +4,7 @@ use crate::batch::BatchError;
 use crate::chunks::Cut;
 use crate::math::Real;
 
-/// Slots for the results of [`Checker::nearest`](super::Checker::nearest).
+/// Output columns of [`Checker::nearest`](super::Checker::nearest). Each may be empty.
 ///
 /// ```
 /// use impinge::checker::NearestColumns;
@@ -18,7 +18,9 @@ pub struct NearestColumns<'a, N: Real> {
     /// The distance of the nearest pair: zero if the pair touches, infinite if there is no pair
     /// within the limit, NaN for a configuration that is not finite.
     pub distance: &'a mut [N],
-    /// The nearest pair, with the indices of [`Checker::first_pairs`](super::Checker::first_pairs).
+    /// The nearest pair, with the indices of [`Checker::first_pairs`](super::Checker::first_pairs);
+    /// [`NO_PAIR`](super::NO_PAIR) if no pair is within the limit or the configuration is not
+    /// finite.
     pub pair: &'a mut [[u32; 2]],
 }
 

@@ -1,4 +1,5 @@
-//! Entry points of checkers.
+//! Entry points of checkers: functions whose generic code this crate compiles for each scalar and
+//! dimension.
 
 use super::filter::{RobotFilter, Surroundings};
 use super::frames::OnNode;
@@ -14,7 +15,8 @@ compiled! {
     /// Entry points of checkers, compiled once per scalar type and dimension.
     trait CheckerEntries where feature = "batch";
 
-    /// Writes the poses of objects on the nodes of a tree.
+    /// Writes the poses of objects at constant poses on the nodes of a tree, for each configuration
+    /// in `values`.
     fn place(
         tree: (&FrameTree<N, D>, &[OnNode<N, D>]),
         values: &[N],

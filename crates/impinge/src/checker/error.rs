@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// Why frames, bodies, pairs or obstacles were rejected.
+/// The reason why frames, bodies, pairs or obstacles were rejected.
 ///
 /// ```
 /// use impinge::dim2::checker::{CheckerError, Frame, FrameTree, Joint};
@@ -39,8 +39,8 @@ pub enum CheckerError {
         /// The number of columns.
         columns: usize,
     },
-    /// The axis of a joint is not a unit vector, or its generator is not that of a rotation about a
-    /// unit axis.
+    /// The axis of a prismatic joint is not a unit vector, or the generator of a revolute joint
+    /// does not generate a rotation about a unit axis.
     Axis {
         /// The index of the joint's frame.
         frame: usize,
@@ -70,7 +70,7 @@ pub enum CheckerError {
         /// The pair itself.
         pair: [u32; 2],
     },
-    /// The bodies and obstacles do not fit 32-bit indices.
+    /// The number of bodies and obstacles does not fit in 32 bits.
     TooMany {
         /// The number of bodies and obstacles given.
         given: usize,

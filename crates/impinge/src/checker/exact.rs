@@ -9,7 +9,8 @@ use crate::collide::Placed;
 use crate::math::Space;
 use crate::query::distance_within;
 
-/// The poses of up to 8 configurations in the user's scalar, computed on first use.
+/// Exact queries for a packet of up to 8 configurations. The poses in the user's scalar are
+/// computed on first use.
 pub(super) struct Exact<'a, N: Space<D>, const D: usize> {
     checker: &'a Checker<N, D>,
     configurations: &'a [N],
@@ -32,13 +33,14 @@ impl<'a, N: Space<D>, const D: usize> Exact<'a, N, D> {
         }
     }
 
-    /// Switches to another range of configurations.
+    /// Switches to the packet with the configurations of `range`.
     pub(super) const fn begin(&mut self, range: Range<usize>) {
         self.range = range;
         self.is_placed = false;
     }
 
-    /// Returns the poses of all nodes; computes them on first use.
+    /// Returns the poses of all nodes in the configurations of the packet; computes them on first
+    /// use.
     fn rows(&mut self) -> &[PoseRows<N, D>] {
         if !self.is_placed {
             let tree = &self.checker.tree;
@@ -49,14 +51,15 @@ impl<'a, N: Space<D>, const D: usize> Exact<'a, N, D> {
         &self.rows
     }
 
-    /// Whether all frames of a configuration have finite poses. Computes the poses on first use.
+    /// Returns whether all frames of the configuration in lane `lane` have finite poses.
     pub(super) fn is_finite(&mut self, lane: usize) -> bool {
         let frames = &self.checker.tree.frames;
         let rows = self.rows();
         frames.iter().all(|frame| frame.at(rows, lane).is_finite())
     }
 
-    /// Computes the distance of a pair up to a limit, unless this needs a search of parts.
+    /// Computes the distance of a pair up to `limit`, or returns `Unknown` if this needs a search
+    /// of parts.
     pub(super) fn quick_distance(
         &mut self,
         pair: (u32, Other),
@@ -81,8 +84,8 @@ impl<'a, N: Space<D>, const D: usize> Exact<'a, N, D> {
         }
     }
 
-    /// Returns the distance of a pair up to a limit, by a search of parts for composites; `None` if
-    /// it exceeds `limit`.
+    /// Returns the distance of a pair, `None` if it exceeds `limit`. The parts of composites are
+    /// searched.
     pub(super) fn searched(&mut self, pair: (u32, Other), lane: usize, limit: N) -> Option<N> {
         let [(one, _), (other, _)] = self.solids(pair, lane);
         distance_within(&one, &other, limit)
@@ -114,8 +117,8 @@ impl<'a, N: Space<D>, const D: usize> Exact<'a, N, D> {
     }
 }
 
-/// The result of [`Exact::quick_distance`]: the distance (`None` above the limit), or unknown if a
-/// search of parts is needed.
+/// The result of [`Exact::quick_distance`]: the distance, which is `None` above the limit, or
+/// unknown if a search of parts is needed.
 pub(super) enum QuickDistance<N> {
     Known(Option<N>),
     Unknown,

@@ -14,11 +14,11 @@ use crate::math::{Pose, Real, Space};
 
 /// A tree of frames whose poses are determined by the numbers of a configuration.
 ///
-/// A configuration is a row of `columns` numbers: radians or lengths, according to the joints.
-/// Frames are indexed as given, in any order; a parent may come after its child.
+/// A configuration is a row of `columns` numbers: radians or lengths, according to the joints. The
+/// index of a frame is its position in the list of frames. A parent may come after its child.
 ///
 /// The library computes sines and cosines by its own polynomials. The results are bitwise equal on
-/// every machine, with an error of at most two units in the last place of 1.
+/// every machine, with an absolute error of at most 2 ε.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Control};
@@ -45,13 +45,13 @@ pub struct FrameTree<N: Real, const D: usize> {
     pub(super) nodes: Vec<Node<N, D>>,
     /// The joint of each node.
     pub(super) joints: Vec<Joint<N, D>>,
-    /// The node and the constant pose of each frame.
+    /// For each frame, the node that moves it and its constant pose on that node.
     pub(super) frames: Vec<OnNode<N, D>>,
     columns: usize,
 }
 
-/// A constant pose on a node. `node` is the index of a block of rows: 0 is the world, else the node
-/// index plus one.
+/// A constant pose on a node. `node` is the index of the node's block of rows: 0 for the world,
+/// else the node index plus one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct OnNode<N: Real, const D: usize> {
     pub(super) node: usize,
@@ -60,13 +60,13 @@ pub(super) struct OnNode<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> OnNode<N, D> {
-    /// Returns the node and pose of an object at the constant pose `inner` in this frame.
+    /// Returns the placement of an object that has the constant pose `inner` in this frame.
     pub(super) fn then(&self, inner: &Pose<N, D>) -> Self {
         let pose = self.pose.map_or(*inner, |outer| outer.compose(inner));
         Self { node: self.node, pose: Some(pose) }
     }
 
-    /// Returns the pose, in the world, in a lane.
+    /// Returns the pose in the world frame in lane `lane`.
     pub(super) fn at(&self, rows: &[PoseRows<N, D>], lane: usize) -> Pose<N, D> {
         let on_world = self.node == 0;
         match (&self.pose, on_world) {
@@ -78,8 +78,8 @@ impl<N: Real, const D: usize> OnNode<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> FrameTree<N, D> {
-    /// Builds the tree of the given frames for configurations of `columns` numbers. A column need
-    /// not drive any joint.
+    /// Builds the tree of `frames` for configurations of `columns` numbers. A column need not drive
+    /// any joint.
     ///
     /// # Errors
     /// [`CheckerError::Parent`], [`CheckerError::Loop`], [`CheckerError::Column`],
@@ -104,8 +104,9 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
         Ok(tree)
     }
 
-    /// Appends a node for a frame with a moving joint at `origin`, and returns the frame on that
-    /// node. For a fixed joint appends nothing and returns `origin`.
+    /// Returns the placement of a frame whose joint is at `origin`. If the joint moves, appends a
+    /// node for it; the frame is then the frame of that node. If the joint is fixed, returns
+    /// `origin`.
     fn with_frame(&mut self, origin: &OnNode<N, D>, frame: &Frame<N, D>) -> OnNode<N, D> {
         let at = origin.pose.unwrap_or_else(Pose::identity);
         let Some(node) = Node::new(origin.node, &at, frame) else { return *origin };
@@ -120,13 +121,13 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
         self.frames.len()
     }
 
-    /// Whether there is no frame.
+    /// Returns `true` if there is no frame.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.frames.is_empty()
     }
 
-    /// Returns the count of numbers in a configuration.
+    /// Returns the number of columns: the length of a configuration.
     #[inline]
     #[must_use]
     pub const fn columns(&self) -> usize {
@@ -158,7 +159,8 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
         entries::place((self, &self.frames), configurations, control, rows)
     }
 
-    /// Returns the number of configurations; if there are no columns, returns `wanted`.
+    /// Returns the number of configurations. If there are no columns, returns `wanted`, or 0 if
+    /// that is `None`.
     pub(super) fn count_of(
         &self,
         configurations: &[N],
@@ -173,8 +175,8 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
         }
     }
 
-    /// Reads the joint values of all nodes for up to 8 configurations; the last configuration pads
-    /// the other lanes.
+    /// Reads the joint values of all nodes for the configurations in `range`, at most 8. The last
+    /// configuration fills the remaining lanes.
     pub(super) fn numbers(
         &self,
         configurations: &[N],
@@ -197,7 +199,8 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
     }
 }
 
-/// Implements [`FrameTree::place`]: writes the poses of objects on the nodes of a tree.
+/// Implements [`FrameTree::place`] and [`Checker::place_bodies`](super::Checker::place_bodies):
+/// writes the poses of objects on the nodes of a tree.
 pub(super) fn place<N: Space<D>, const D: usize>(
     (tree, placed): (&FrameTree<N, D>, &[OnNode<N, D>]),
     configurations: &[N],
@@ -221,7 +224,8 @@ pub(super) fn place<N: Space<D>, const D: usize>(
     Progress::new(control).run(count, poses, work)
 }
 
-/// Checks the parent, the column, the numbers and the axis of a frame.
+/// Checks that the parent and the column of a frame exist, its numbers are finite, and its axis is
+/// a unit vector.
 fn check<N: Real, const D: usize>(
     index: usize,
     frame: &Frame<N, D>,
@@ -248,7 +252,7 @@ fn parents_first<N: Real, const D: usize>(
 ) -> Result<Vec<usize>, CheckerError> {
     let depth = |frame: usize| {
         let mut above = frames[frame].parent;
-        // A path longer than the number of frames has a loop.
+        // A path to the root with as many steps as there are frames has a loop.
         for depth in 0..frames.len() {
             let Some(parent) = above else { return Ok(depth) };
             above = frames[parent].parent;

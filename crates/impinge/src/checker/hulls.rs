@@ -1,9 +1,9 @@
-//! Convex hulls of bodies made of triangles or segments. If the hulls of two bodies are apart, so
-//! are the bodies.
+//! Convex hulls of bodies made of triangles or segments. If the hulls of two bodies are apart, the
+//! bodies are apart.
 //!
-//! The separation of two hulls takes one query, that of two meshes a descent of their trees. The
-//! hulls of a robot's meshes rarely touch where the meshes do not, so nearly all remaining descents
-//! find a contact.
+//! The separation of two hulls takes one query, while two meshes take a traversal of their trees.
+//! The hulls of a robot's meshes rarely touch where the meshes do not, so nearly all remaining
+//! traversals find a contact.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -14,24 +14,25 @@ use crate::query::distance_within;
 use crate::shape::{CompositeShape, Geometry, PartSolid, ShapeHandle, TriMesh};
 use crate::tables::ByDimension;
 
-/// The margin, in rounding errors of all lengths, by which hulls must be farther apart than the
-/// limit. The corners of a mesh are outside its hull by at most 32 rounding errors, and the pair
-/// algorithms have an error of a few hundred.
+/// The margin by which hulls must be farther apart than the limit, in units of ε times the sum of
+/// all lengths. The corners of a mesh are outside its hull by at most 32 of these units, and the
+/// pair algorithms have an error of a few hundred.
 const ROUNDING_ERRORS: f64 = 1024.0;
 
-/// The number of requests of a hull before it is computed, which costs as much as some descents. So
-/// a query of a single configuration does not wait for a hull.
+/// The number of requests for a hull before it is computed. A hull costs as much as some
+/// traversals, so a query of a single configuration should not wait for it.
 const REQUESTS_BEFORE: u32 = 16;
 
-/// The hulls of a robot's bodies, each computed after some requests. They change no result.
+/// The hulls of a robot's bodies. Each is computed after [`REQUESTS_BEFORE`] requests. The hulls
+/// never change a result.
 #[derive(Clone, Debug)]
 pub(super) struct BodyHulls<N: Real, const D: usize>(Vec<LazyHull<N, D>>);
 
 #[derive(Debug)]
 struct LazyHull<N: Real, const D: usize> {
     requests: AtomicU32,
-    /// The hull; the inner `None` is for a body that is not made of corners, or whose hull has no
-    /// volume.
+    /// The hull, if it has been computed. The inner `None` is for a body that does not consist of
+    /// triangles and segments, or whose hull has no volume.
     made: OnceLock<Option<ShapeHandle<N, D>>>,
 }
 
@@ -41,8 +42,9 @@ impl<N: Space<D>, const D: usize> BodyHulls<N, D> {
         Self((0..bodies).map(hull).collect())
     }
 
-    /// Whether the hulls of two solids prove that the solids are farther apart than `limit`. Each
-    /// solid comes with the index of its body.
+    /// Returns whether the hulls of two solids prove that the solids are farther apart than
+    /// `limit`. Each solid comes with the index of its body; `None` for an obstacle, which has no
+    /// hull.
     pub(super) fn are_beyond(
         &self,
         solids: [(&Placed<'_, N, D>, Option<u32>); 2],
@@ -60,8 +62,8 @@ impl<N: Space<D>, const D: usize> BodyHulls<N, D> {
         slack.is_finite_number() && distance_within(&one, &other, limit + slack).is_none()
     }
 
-    /// Returns the hull of a body at the body's pose; `None` if the body is not a composite or has
-    /// no hull yet.
+    /// Returns the hull of a body at the body's pose; `None` if the solid is not a composite, is an
+    /// obstacle, or has no hull (yet).
     fn of<'a>(&'a self, body: &Placed<'_, N, D>, number: Option<u32>) -> Option<Placed<'a, N, D>> {
         let parts = body.shape.as_composite()?;
         let hull = self.0[number? as usize].get(parts)?;
@@ -94,8 +96,8 @@ fn bounding_radius<N: Real, const D: usize>(shape: &Geometry<'_, N, D>) -> N {
     (bounds.center().coords.abs() + bounds.half_extents()).norm()
 }
 
-/// Returns the hull of a composite that has only triangles and segments; `None` for other
-/// composites or without a volume.
+/// Returns the convex hull of a composite that consists of triangles and segments; `None` for other
+/// composites, and if the hull has no volume.
 fn hull_of<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
 ) -> Option<ShapeHandle<N, D>> {
@@ -128,7 +130,7 @@ mod tests {
         Placed { pose: Pose::from_translation(position.into()), shape: shape.geometry() }
     }
 
-    /// Returns the result after enough requests for the hull to be computed.
+    /// Returns the result of the last of enough calls for the hulls to be computed.
     fn last_of<const D: usize>(
         hulls: &BodyHulls<f64, D>,
         solids: [(&Placed<'_, f64, D>, Option<u32>); 2],

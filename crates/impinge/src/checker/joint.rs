@@ -1,13 +1,14 @@
-//! Joints: the motion of one frame on another.
+//! Joints, which move a frame relative to its parent frame.
 
 use crate::math::{Matrix, Pose, Real, Unit, Vector};
 
-/// The motion of a frame in its parent's frame, driven by a number of the configuration, or fixed.
+/// A joint: the motion of a frame relative to its parent frame, driven by a number of the
+/// configuration, or fixed.
 ///
-/// A revolute joint rotates by radians about an axis through the frame's origin, in 2D
-/// counter-clockwise; a prismatic joint slides along an axis. The axis is in the frame of the
-/// joint. The joint value is the number in a column of the configuration, times a factor, plus an
-/// offset: so one column can drive several joints.
+/// A revolute joint rotates about an axis through the frame's origin, in 2D counter-clockwise; a
+/// prismatic joint slides along an axis. The axis is in the frame of the joint. The joint value, in
+/// radians or as a length, is the number in a column of the configuration times a factor plus an
+/// offset. So one column can drive several joints.
 ///
 /// ```
 /// use impinge::dim3::checker::Joint;
@@ -29,9 +30,9 @@ pub struct Joint<N: Real, const D: usize> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum JointMotion<N: Real, const D: usize> {
     Fixed,
-    /// A rotation with this generator: v ↦ axis × v, in 2D a rotation by 90°.
+    /// A rotation with this generator: v ↦ axis × v in 3D, the rotation by 90° in 2D.
     Turn(Matrix<N, D>),
-    /// A shift along a unit vector.
+    /// A translation along this unit vector.
     Slide(Vector<N, D>),
 }
 
@@ -48,8 +49,8 @@ impl<N: Real, const D: usize> Joint<N, D> {
         Self::driven(JointMotion::Slide(axis.into_inner()), column)
     }
 
-    /// Returns a joint with the rotation exp(θ K), for the number θ in a column and the generator
-    /// K: v ↦ axis × v for a unit axis in 3D, a rotation by 90° in 2D.
+    /// Returns a joint with the rotation exp(θ K), where θ is the number in a column and K the
+    /// generator. In 3D the generator is v ↦ axis × v for a unit axis, in 2D a rotation by 90°.
     ///
     /// ```
     /// use impinge::dim2::checker::Joint;
@@ -66,13 +67,13 @@ impl<N: Real, const D: usize> Joint<N, D> {
         Self { motion, column, factor: N::ONE, offset: N::ZERO }
     }
 
-    /// Returns the joint with another factor of its number; 1 by default.
+    /// Returns the joint with its number multiplied by `factor`, which is 1 by default.
     #[must_use]
     pub const fn with_factor(self, factor: N) -> Self {
         Self { factor, ..self }
     }
 
-    /// Returns the joint with another offset, which is added to its number; 0 by default.
+    /// Returns the joint with `offset` added to the product of its number and factor; 0 by default.
     #[must_use]
     pub const fn with_offset(self, offset: N) -> Self {
         Self { offset, ..self }
@@ -91,8 +92,8 @@ impl<N: Real, const D: usize> Joint<N, D> {
         number * self.factor + self.offset
     }
 
-    /// Whether the axis is a unit vector, or the generator that of a rotation about a unit axis, up
-    /// to rounding. Other values would stretch the bodies.
+    /// Returns whether the axis is a unit vector, or the generator generates a rotation about a
+    /// unit axis, up to rounding. Other values would scale the bodies.
     pub(super) fn has_unit_axis(&self) -> bool {
         let is_one = |x: N| (x - N::ONE).abs() <= N::lit(64.0) * N::EPSILON;
         match &self.motion {
@@ -105,7 +106,7 @@ impl<N: Real, const D: usize> Joint<N, D> {
         }
     }
 
-    /// Whether all its numbers are finite.
+    /// Returns whether all numbers of the joint are finite.
     pub(super) fn is_finite(&self) -> bool {
         let of_motion = match &self.motion {
             JointMotion::Fixed => true,
@@ -134,9 +135,9 @@ impl<N: Real> Joint<N, 3> {
     }
 }
 
-/// A frame, placed on its parent frame or on the world.
+/// A frame that a joint connects to its parent frame or to the world.
 ///
-/// The pose of the frame in the parent is `origin ∘ motion of the joint`.
+/// The pose of the frame in its parent's frame is `origin ∘ motion of the joint`.
 ///
 /// ```
 /// use impinge::dim2::checker::{Frame, Joint};
@@ -153,7 +154,7 @@ impl<N: Real> Joint<N, 3> {
 pub struct Frame<N: Real, const D: usize> {
     /// The index of the parent frame; `None` for the world.
     pub parent: Option<usize>,
-    /// The pose of its joint in the parent's frame.
+    /// The pose of the joint in the frame of the parent.
     pub origin: Pose<N, D>,
     /// The motion of the frame relative to `origin`.
     pub joint: Joint<N, D>,

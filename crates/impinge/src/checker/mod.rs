@@ -1,4 +1,4 @@
-//! The configuration checker: decides which of many configurations of a robot are free of
+//! The configuration checker, which computes which of many configurations of a robot are free of
 //! collisions.
 //!
 //! ```text
@@ -13,16 +13,17 @@
 //!   distance        [ 0.3 ]  [ 0.0 ]  [ 0.1 ]   …        Checker::nearest
 //! ```
 //!
-//! Eight configurations are placed and tested side by side, in `f32` with a margin for all rounding
-//! errors. Undecided pairs are left to [`proximity`](crate::query::proximity()) and
-//! [`distance`](crate::query::distance()) at the poses of [`Checker::place_bodies`]. So all results
-//! are bitwise equal to the results of those queries, on any number of threads.
+//! Eight configurations are placed and tested at a time in SIMD lanes, in `f32` with a margin for
+//! all rounding errors. Pairs that this filter cannot decide are computed by
+//! [`proximity`](crate::query::proximity()) and [`distance`](crate::query::distance()) at the poses
+//! of [`Checker::place_bodies`]. So all results are bitwise equal to the results of these queries,
+//! for any number of threads.
 //!
 //! Balls are tested in SIMD lanes against balls, boxes, capsules, segments, cylinders and
-//! half-spaces. Other bodies are covered by balls and other obstacles by their boxes; each pair
-//! that these do not separate takes one exact query. Bodies of triangles or segments also have
-//! convex hulls: their parts are searched only where hulls touch. In a query for any pair, the
-//! pairs whose searches mostly found nothing come last.
+//! half-spaces. Other bodies are covered by balls, and other obstacles by their boxes; each pair
+//! whose covers are not apart takes one exact query. Bodies of triangles or segments also have
+//! convex hulls, and their parts are searched only if the hulls touch. [`Checker::are_free`]
+//! searches pairs whose earlier searches mostly found no contact last.
 //!
 //! Lanes across configurations follow W. Thomason, Z. Kingston and L. E. Kavraki, "Motions in
 //! Microseconds via Vectorized Sampling-Based Planning" (2024).

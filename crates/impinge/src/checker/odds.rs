@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 
 use super::filter::Other;
 
-/// For each pair, the number of part searches, and how many of them found a contact.
+/// For each pair, the number of part searches, and the number of searches that found the pair
+/// within the clearance.
 ///
-/// Any touching pair decides a configuration, so pairs that seldom touch are searched last. The
-/// order changes no result.
+/// A configuration is not free if any pair touches, so pairs that seldom touch are searched last.
+/// The order changes no result.
 #[derive(Debug, Default)]
 pub(super) struct PairOdds(BTreeMap<(u32, Other), [u32; 2]>);
 
@@ -24,7 +25,7 @@ impl PairOdds {
         self.0.get(&pair).map_or(0, |[searches, _]| *searches)
     }
 
-    /// Whether more than half of the searches of a pair found nothing.
+    /// Returns whether more than half of the part searches of a pair found nothing.
     pub(super) fn are_poor(&self, pair: (u32, Other)) -> bool {
         self.0.get(&pair).is_some_and(|[searches, hits]| 2 * hits < *searches)
     }

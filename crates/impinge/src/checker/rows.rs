@@ -1,4 +1,4 @@
-//! Output slots with several values per configuration.
+//! An output column with several values for each configuration.
 
 use crate::chunks::Cut;
 
@@ -13,7 +13,7 @@ impl<'a, T> RowsOf<'a, T> {
         Self { slots, width }
     }
 
-    /// The number of rows.
+    /// Returns the number of rows; 0 if `width` is 0.
     pub(super) fn rows(&self) -> usize {
         self.slots.len().checked_div(self.width).unwrap_or(0)
     }

@@ -1,4 +1,4 @@
-//! Tests that all instruction sets give the same results.
+//! Tests that the results of the scan are equal for all instruction sets.
 
 use super::chain::{LANES, LaneRow};
 use super::filter::{CollisionSearch, ScanScratch, SearchMode, scan_at};
@@ -47,7 +47,8 @@ fn arm<N: Space<D>, const D: usize>(turn: fn(usize) -> Joint<N, D>) -> Checker<N
     checker
 }
 
-/// Returns the result of a search as text, and the number of configurations that touch.
+/// Returns the state of a search after a scan as text, and the number of configurations in which a
+/// pair certainly touches.
 fn found<N: Space<D>, const D: usize>(
     (level, mode): (Level, SearchMode),
     checker: &Checker<N, D>,
@@ -76,7 +77,7 @@ fn agree<N: Space<D>, const D: usize>(checker: &Checker<N, D>) {
             hits += expected.1;
         }
     }
-    // There are three searches of 200 packets.
+    // Each of the three modes searches 200 packets of 8 configurations.
     assert!((480..4320).contains(&hits), "{hits} of 4800 configurations touch");
 }
 

@@ -7,9 +7,9 @@
 //!       rejected if between² > (extent1 + extent2 + limit)² (1 + 2⁻⁶)
 //! ```
 //!
-//! A ball around the origin of its frame contains a solid at any rotation. So the balls of two
-//! solids, whose radii cost little to read, and the difference of their positions reject most
-//! pairs, without computing a rotation, an order of the two, or a feature.
+//! A ball around the origin of its frame contains a solid at any rotation. The radii of the two
+//! balls cost little to read. Together with the difference of the positions they reject most pairs
+//! before a rotation, the canonical order or a feature is computed.
 //!
 //! A pair is rejected only if the algorithms would reject it. Their errors are some hundred epsilon
 //! of the lengths of the pair, and all of these are at most twice the distance of the origins if
@@ -19,7 +19,8 @@
 use crate::math::{Mapped, Pose, Real, Vector, max, max_component, min};
 use crate::shape::{Geometry, Kind, Shape};
 
-/// Factor by which a squared distance must exceed the squared lengths that it is compared with.
+/// Factor by which a squared distance must exceed the square of the summed lengths to reject a
+/// pair.
 const ROOM: f64 = 1.0 + 1.0 / 64.0;
 
 /// Two shapes and the vector from the origin of the first to the origin of the second, in any
@@ -31,7 +32,7 @@ pub(crate) struct Apart<'a, N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Apart<'_, N, D> {
-    /// Returns whether a ball is known around both shapes.
+    /// Returns whether both shapes have a known bounding ball around the origins of their frames.
     #[inline]
     pub(crate) fn has_balls(&self) -> bool {
         let is_without = |shape: &Geometry<'_, N, D>| {
@@ -40,8 +41,9 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
         !self.shapes.iter().any(is_without)
     }
 
-    /// Returns the result of [`Self::is_beyond`] if it is cheaper than the call: for two balls, and
-    /// for shapes without known balls, which are never beyond. `None` for other pairs.
+    /// Returns the result of [`Self::is_beyond`] for pairs that cost less to decide than the call:
+    /// two balls, and pairs with a shape without a known ball, which are never beyond. `None` for
+    /// other pairs.
     #[inline]
     pub(crate) fn is_known_beyond(&self, limit: N) -> Option<bool> {
         if let [Kind::Ball(one), Kind::Ball(other)] = self.shapes.mapped(|shape| shape.0) {
@@ -103,7 +105,7 @@ pub(crate) struct ReachBounds<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> ReachBounds<N, D> {
-    /// Returns the bounds of a shape.
+    /// Computes the bounds of a shape from its geometry and its local bounding box.
     pub(crate) fn of(shape: &dyn Shape<N, D>) -> Self {
         let (geometry, aabb) = (shape.geometry(), shape.local_aabb());
         Self {
@@ -114,7 +116,7 @@ impl<N: Real, const D: usize> ReachBounds<N, D> {
         }
     }
 
-    /// Returns whether rotating the shape changes it: [`Geometry::turns`].
+    /// Returns whether a rotation changes the shape: [`Geometry::turns`].
     #[inline]
     pub(crate) const fn turns(&self) -> bool {
         self.turns
@@ -123,12 +125,13 @@ impl<N: Real, const D: usize> ReachBounds<N, D> {
     /// Returns an upper bound of the distance of the shape's points from the origin of its frame;
     /// infinite if no bound is known.
     pub(crate) fn reach(&self) -> N {
-        // NaN for the box of a half-space, which proves nothing.
+        // The box of a half-space is unbounded and gives NaN, for which `extent` is returned.
         let corner = (self.middle.abs() + self.half).norm();
         if corner < self.extent { corner } else { self.extent }
     }
 
-    /// Returns [`Apart::is_beyond`] for the shapes with these bounds.
+    /// Returns [`Apart::is_beyond`] for shapes with the bounds `self` and `other`; `between` is the
+    /// vector between the origins of their frames.
     #[inline]
     pub(crate) fn is_clear_of(&self, other: &Self, between: &Vector<N, D>, limit: N) -> bool {
         exceeds(between.norm_squared(), max_distance(self.extent + other.extent, limit))
@@ -155,7 +158,7 @@ impl<N: Real, const D: usize> ReachBounds<N, D> {
             }
             widest = max(widest, max(away[one].abs() - first, back[one].abs() - second));
         }
-        // Subnormal lengths have too few digits.
+        // Subnormal lengths have a large relative rounding error.
         widest > least && least > N::MIN_POSITIVE
     }
 }
@@ -166,9 +169,9 @@ fn max_distance<N: Real>(extents: N, limit: N) -> N {
     extents + max(limit, N::ZERO)
 }
 
-/// Returns whether the square exceeds that of `distance` by `ROOM`. Subnormal squares are not precise
-/// and never exceed. NaN and infinity on the right are never exceeded; infinity on the left exceeds
-/// finite numbers.
+/// Returns whether `squared` exceeds the square of `distance` by the factor [`ROOM`]. False if
+/// `squared` is subnormal, because its relative error is large, and if either is NaN or the square
+/// of `distance` overflows. An infinite `squared` exceeds every finite square.
 #[inline]
 fn exceeds<N: Real>(squared: N, distance: N) -> bool {
     squared > distance * distance * N::lit(ROOM) && squared > N::MIN_POSITIVE
@@ -203,7 +206,8 @@ mod tests {
         assert_eq!(ReachBounds::of(&plane).reach(), f64::INFINITY, "it has no end");
     }
 
-    /// A solid of any kind that has a ball, with sizes from zero to one.
+    /// Draws a random solid of the kind with the given number, with sizes from zero to one. All of
+    /// these kinds have a known bounding ball.
     type Draw<N, const D: usize> = fn(&mut Random, usize) -> Box<dyn Shape<N, D>>;
 
     fn solid_2d<N: Real>(random: &mut Random, kind: usize) -> Box<dyn Shape<N, 2>> {
@@ -248,8 +252,8 @@ mod tests {
         }
     }
 
-    /// Asserts that rejected pairs are beyond the limit for the algorithms: close to where
-    /// rejection begins, at all scales, and where world coordinates are coarse.
+    /// Asserts that the algorithms find no separation within the limit for any rejected pair. The
+    /// distance of the origins is 0.97 to 1.03 times the distance at which the balls are rejected.
     fn rejects_no_more<N: Space<D>, const D: usize>(
         (draw, kinds): (Draw<N, D>, usize),
         turn: fn(&mut Random) -> Pose<N, D>,
@@ -267,7 +271,8 @@ mod tests {
             let share =
                 N::lit(0.97 + 0.0005 * f64::from(u32::try_from(round % 120).expect("small")));
             let away = pose12.translation.normalize() * (max_distance * share);
-            // Computed as from positions that far from the world's origin.
+            // In odd rounds, rounds the difference as for positions 10⁶ away from the world's
+            // origin.
             let far = Vector::<N, D>::repeat(N::lit([0.0, 1e6][round % 2]));
             let between = (far + away) - far;
             let pair = Pair {
@@ -283,7 +288,7 @@ mod tests {
                     pair_poses = pair.pose12
                 );
             }
-            // Nearer than the balls allow.
+            // Moves most pairs closer than the balls allow, where only the boxes can reject them.
             let mut nearer = pair;
             nearer.pose12.translation *= N::lit([1.0, 0.8, 0.6, 0.4][round % 4]);
             if bounds[0].has_box_clear_of(&bounds[1], &nearer.pose12, limit) {

@@ -1,13 +1,14 @@
 //! Computes contacts: from two shapes and their poses to the points of a manifold.
 //!
-//! This layer lies between the algorithms on convex sets, which use no shapes ([`crate::convex`]),
-//! and the public queries ([`crate::query`]). From bottom to top:
+//! This layer lies between the algorithms on convex sets, which do not depend on shape types
+//! ([`crate::convex`]), and the public queries ([`crate::query`]). From bottom to top:
 //!
-//! - [`pair`] puts two shapes in canonical order, and one in the frame of the other;
+//! - [`pair`] puts two shapes in canonical order and computes their relative pose;
 //! - [`separation`] computes the signed distance, normal and nearest points of two solids;
-//! - [`manifold`] computes contact points from them: supporting features, clipping, reduction, ids;
-//! - [`batch`] does both for 8 pairs at a time, of the kinds that are most frequent in worlds;
-//! - [`parts`] finds the pairs of parts of two composites that matter, and their separation;
+//! - [`manifold`] computes contact points of two solids: supporting features, clipping, reduction,
+//!   ids;
+//! - [`batch`] computes separations and contact points of the most frequent pairs, 8 at a time;
+//! - [`parts`] finds the near pairs of parts of two composites, and their separation;
 //! - [`mesh`] builds manifolds of a composite: parts are gathered, culled in packets ([`packet`]),
 //!   separated, their normals filtered by the surface, and their points merged into patches.
 

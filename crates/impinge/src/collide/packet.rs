@@ -1,8 +1,9 @@
-//! Corners of the parts of a surface side by side, for computing with 8 parts at a time.
+//! Corners of the parts of a surface, in structure-of-arrays layout for computing with 8 parts at
+//! once.
 //!
 //! ```text
 //!   corners[c][axis][lane]     c: corner 0, 1, 2 of the part; a segment has its second end twice
-//!                              lane: part `tile * 8 + lane` of a list; the last part fills up
+//!                              lane: part `tile * 8 + lane` of a list; spare lanes repeat the last
 //! ```
 //!
 //! `mesh/part_cache.rs` keeps lists of packets, called tiles. `mesh/cull.rs`,
@@ -27,7 +28,7 @@ impl<N: Real, const D: usize> PartPacket<N, D> {
         Self { corners: [[[N::ZERO; LANES]; D]; 3] }
     }
 
-    /// Copies part `lane` of another packet into the lane `at`.
+    /// Copies the part in lane `lane` of `given` into lane `at` of this packet.
     #[inline]
     pub(crate) fn copy(&mut self, at: usize, given: &Self, lane: usize) {
         for (rows, given) in self.corners.iter_mut().zip(&given.corners) {

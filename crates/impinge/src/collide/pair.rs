@@ -1,13 +1,13 @@
 //! Two solids and their relative pose: the input of every pair algorithm.
 //!
 //! ```text
-//!   given order      canonical order                 pose12: of `second` in the frame of `first`
-//!   (A, B)  --->     first <= second by kind,        answers are computed in canonical order, and
+//!   argument order   canonical order                 pose12: of `second` in the frame of `first`
+//!   (A, B)  --->     first <= second by kind,        results are computed in canonical order, and
 //!   (B, A)  --->     then position, pose, numbers    flipped back if `swapped`
 //! ```
 //!
-//! `pose12` is computed from the difference of the positions, so two solids near each other lose no
-//! digits far from the world's origin. The rotation of a ball is ignored.
+//! `pose12` is computed from the difference of the positions, so the relative pose of close solids
+//! has no large rounding error far from the world's origin. The rotation of a ball is ignored.
 
 use core::cmp::Ordering;
 
@@ -59,12 +59,12 @@ pub(crate) struct Placed<'a, N: Real, const D: usize> {
     pub(crate) shape: Geometry<'a, N, D>,
 }
 
-/// A shape whose full pose is computed only if it is near: its position is read first, and its
-/// rotation is converted to a matrix only by [`Self::placed`].
+/// A placed shape whose rotation is converted to a matrix only by [`Self::placed`]. Tests that
+/// reject distant pairs need only its position.
 pub(crate) trait Placing<'a, N: Real, const D: usize> {
     fn shape(&self) -> Geometry<'a, N, D>;
 
-    /// Returns the position of the frame's origin in the world.
+    /// Returns the world position of the origin of the shape's frame.
     fn translation(&self) -> Vector<N, D>;
 
     fn placed(&self) -> Placed<'a, N, D>;
@@ -88,15 +88,15 @@ impl<'a, N: Real, const D: usize> Placing<'a, N, D> for Placed<'a, N, D> {
 }
 
 /// Returns the pair in an order that does not depend on the order of the arguments, and whether
-/// that order is the reverse of theirs.
+/// that order is the reverse of the argument order.
 ///
-/// Every result about two solids is computed in this order and flipped at the end, so that swapping
+/// Every result for two solids is computed in this order and flipped at the end, so that swapping
 /// the arguments flips the result bit for bit. Kinds come in the order of
-/// [`crate::shape::ShapeKind`]. Equal kinds are ordered by their world translations along an
-/// [`askew`] direction, then by all coordinates, then by rotation (a ball has none), then by their
-/// own numbers. Solids that agree in all of these are the same, and so is the answer. (The numbers
-/// of a user's support map are its rounding and its support points along the axes and the
-/// diagonals; those of a composite are its parts'.)
+/// [`crate::shape::ShapeKind`]. Solids of one kind are ordered by their world translations along an
+/// [`askew`] direction, then by all coordinates, then by rotation (a ball has none), then by the
+/// numbers that define them. Solids that agree in all of these are identical, so their order does
+/// not change the result. A user's support map is compared by its rounding radius and its support
+/// points along the axes and the diagonals. Composites are compared part by part.
 #[inline]
 pub(crate) fn canonical<'a, N: Real, const D: usize>(
     pose1: &Pose<N, D>,
@@ -118,7 +118,7 @@ pub(crate) fn canonical<'a, N: Real, const D: usize>(
 pub(crate) struct Ordered<'p, 'a, N: Real, const D: usize> {
     pub(crate) first: &'p Placed<'a, N, D>,
     pub(crate) second: &'p Placed<'a, N, D>,
-    /// Whether this order is the reverse of the arguments' order.
+    /// Whether this order is the reverse of the argument order.
     pub(crate) swapped: bool,
 }
 
@@ -140,7 +140,7 @@ impl<'p, 'a, N: Real, const D: usize> Ordered<'p, 'a, N, D> {
     }
 
     /// Returns whether one of the two is a composite, for which [`Between`](super::parts::Between)
-    /// computes the answers.
+    /// computes the results.
     #[inline]
     pub(crate) fn has_composite(&self) -> bool {
         let is_composite = |placed: &Placed<'a, N, D>| placed.shape.as_composite().is_some();
@@ -148,10 +148,10 @@ impl<'p, 'a, N: Real, const D: usize> Ordered<'p, 'a, N, D> {
     }
 }
 
-/// Returns whether the order of [`canonical`] is the reverse of the arguments' order.
+/// Returns whether the order of [`canonical`] is the reverse of the argument order.
 ///
-/// Solids of one kind come in either order equally often. The result is computed as a value, not by
-/// a branch, so that mispredictions do not stall on distant memory.
+/// For solids of one kind, both orders are equally frequent. The result is computed as a value, not
+/// by a branch, because a mispredicted branch would stall on loads from distant memory.
 #[inline]
 pub(crate) fn is_swapped<N: Real, const D: usize>(
     pose1: &Pose<N, D>,
@@ -168,8 +168,8 @@ pub(crate) fn is_swapped<N: Real, const D: usize>(
     if kind1 == kind2 { is_beyond } else { kind1 > kind2 }
 }
 
-/// Compares two placed solids by the order of [`canonical`]; equal if nothing distinguishes the
-/// solids and their poses.
+/// Compares two placed solids by the order of [`canonical`]. `Equal` only if kinds, poses and
+/// defining numbers are all equal.
 #[inline]
 pub(crate) fn order<N: Real, const D: usize>(
     placed1: &Placed<'_, N, D>,
@@ -201,15 +201,16 @@ fn compare<N: Real, const D: usize>(
     }
 }
 
-/// Returns the signed distance from one solid's position to the other's along an [`askew`]
-/// direction. With this direction, the order does not change for solids that vibrate on each other,
-/// or stand in a grid.
+/// Returns the signed distance from the position of the first solid to that of the second along an
+/// [`askew`] direction. Unlike along a coordinate axis, small vibrations do not change its sign for
+/// solids that are stacked or stand in a grid.
 #[inline]
 fn signed_distance<N: Real, const D: usize>(pose1: &Pose<N, D>, pose2: &Pose<N, D>) -> N {
     askew(&(pose2.translation - pose1.translation))
 }
 
-/// Compares solids of one kind whose signed distance does not decide.
+/// Compares solids of one kind whose signed distance is zero or NaN, by poses, then by defining
+/// numbers.
 #[cold]
 fn compare_at_length<N: Real, const D: usize>(
     pose1: &Pose<N, D>,
@@ -296,7 +297,7 @@ fn numbers<N: Real, const D: usize>(kind: &Kind<'_, N, D>) -> Vec<N> {
     }
 }
 
-/// Returns the coordinates of some points in a row.
+/// Returns the coordinates of the points, one point after another.
 fn coordinates<N: Real, const D: usize>(points: &[Point<N, D>]) -> Vec<N> {
     points.iter().flat_map(|point| point.coords.as_slice().to_vec()).collect()
 }

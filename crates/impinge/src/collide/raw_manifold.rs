@@ -1,37 +1,39 @@
-//! Manifolds as the narrow phase keeps them: small, flat, in the frame of the first solid.
+//! Contact manifolds in the form stored by the narrow phase: compact, in the frame of the first
+//! solid.
 //!
 //! ```text
-//!   RawManifold  normal | ids | points: [RawPoint; 4 in place] ...    sorted by id
+//!   RawManifold  normal | ids | points: [RawPoint; 4 inline] ...      sorted by id
 //!   RawPoint     point1 | distance | feature1, feature2 | id | code
 //!                point2 = point1 + normal · distance
 //! ```
 //!
 //! The `code` of a point of a box pair identifies its features and its slot in a batch
-//! (`collide/batch/boxes/choose.rs`); 0 stands for neither. Code that makes a point of a convex
-//! pair, or changes its features, must set `code` to 0, because the batch kernels trust it. Points
-//! of composite pieces (`mesh/scene.rs`) may keep a code that does not fit their features; no
-//! kernel reads them.
+//! (`collide/batch/boxes/choose.rs`); 0 stands for neither. Code that creates a point of a convex
+//! pair, or changes its features, must set `code` to 0, because the batch kernels rely on it.
+//! Points of composite pieces (`mesh/scene.rs`) may keep a code that does not match their features;
+//! no kernel reads these codes.
 
 use smallvec::SmallVec;
 
 use crate::math::{Point, Pose, Real, Vector};
 use crate::shape::FeatureId;
 
-/// Request for a manifold.
+/// Parameters of the computation of a manifold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ManifoldRequest<N: Real> {
-    /// Points farther apart than this are dropped; zero or more.
+    /// Largest distance of a contact point, zero or more. Farther points are dropped unless `sine`
+    /// admits them.
     pub(crate) prediction: N,
-    /// Sine of the angle by which the solids may turn. A point is also kept if turning about the
-    /// nearest point by that angle would bring it within `prediction`.
+    /// Sine of the angle by which the solids may rotate. A point is also kept if a rotation by that
+    /// angle about the nearest point would bring it within `prediction`.
     pub(crate) sine: N,
     /// Largest number of points.
     pub(crate) max_points: usize,
 }
 
 impl<N: Real> ManifoldRequest<N> {
-    /// Request for solids that may turn by `angle` radians. Angles above a right angle count as a
-    /// right angle, where points come nearest; a negative angle or NaN counts as zero.
+    /// Makes the request for solids that may rotate by `angle` radians. Angles above a right angle
+    /// count as a right angle, where the sine is largest; a negative angle or NaN counts as zero.
     pub(crate) fn new(prediction: N, angle: N, max_points: usize) -> Self {
         let sine = if angle > N::frac_pi_2() {
             N::ONE
@@ -44,7 +46,7 @@ impl<N: Real> ManifoldRequest<N> {
     }
 }
 
-/// One point of a manifold: `point1` on the first solid, `point1 + normal · distance` on the second.
+/// A contact point: `point1` on the first solid, `point1 + normal · distance` on the second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RawPoint<N: Real, const D: usize> {
     pub(crate) point1: Point<N, D>,
@@ -52,9 +54,9 @@ pub(crate) struct RawPoint<N: Real, const D: usize> {
     pub(crate) distance: N,
     pub(crate) feature1: FeatureId,
     pub(crate) feature2: FeatureId,
-    /// Number of the contact within its pair; kept while it lasts.
+    /// Id of the contact within its pair of solids; constant while the contact lasts.
     pub(crate) id: u32,
-    /// Code by which the builder recognises the point's features; 0 for most builders.
+    /// Code of the point's features for the batch kernels of boxes; 0 for points of other builders.
     pub(crate) code: u32,
 }
 
@@ -62,8 +64,8 @@ pub(crate) struct RawPoint<N: Real, const D: usize> {
 pub(crate) type RawPoints<N, const D: usize> = SmallVec<[RawPoint<N, D>; 32]>;
 
 impl<N: Real, const D: usize> RawPoint<N, D> {
-    /// Swaps the solids: moves the point to the frame of the second solid, in which the first lies
-    /// at `pose21`.
+    /// Swaps the solids: moves the point to the frame of the second solid, in which the pose of the
+    /// first is `pose21`, and clears its code.
     pub(crate) fn flip(&mut self, pose21: &Pose<N, D>, normal: &Vector<N, D>) {
         self.point1 = pose21.point(&(self.point1 + normal * self.distance));
         core::mem::swap(&mut self.feature1, &mut self.feature2);
@@ -78,20 +80,20 @@ impl<N: Real, const D: usize> Default for RawPoint<N, D> {
     }
 }
 
-/// Points with one normal, in the frame of the first solid. The points follow the fields that most
-/// readers need, so that few points are read from one cache line.
+/// Contact points with a common normal, in the frame of the first solid. The order of the fields is
+/// fixed, so that the normal, the ids and the first points are adjacent in memory.
 #[derive(Debug, PartialEq)]
 #[repr(C)]
 pub(crate) struct RawManifold<N: Real, const D: usize> {
-    /// Unit, from the first solid to the second.
+    /// Unit vector from the first solid to the second.
     pub(crate) normal: Vector<N, D>,
     /// Source of the ids of new points.
     pub(crate) ids: PairIds,
-    /// Empty if the solids are farther apart than the prediction.
+    /// Contact points, sorted by id. Empty if the solids are farther apart than the prediction.
     pub(crate) points: SmallVec<[RawPoint<N, D>; 4]>,
     /// Pose of the second solid in the frame of the first when the points were computed, which
-    /// places old points on the second. `None` if it is not kept: for boxes, balls and segments,
-    /// whose vertices are recognised by their ids.
+    /// places old points on the second. `None` for pairs of balls, boxes, segments and capsules,
+    /// whose kernels store no pose.
     pub(crate) pose12: Option<Pose<N, D>>,
 }
 
@@ -108,7 +110,7 @@ impl<N: Real, const D: usize> Clone for RawManifold<N, D> {
     }
 }
 
-/// Counter of the ids given to the contacts of one pair.
+/// Counter that assigns the ids of the contacts of one pair.
 ///
 /// It outlives the contacts: a contact that ended and comes back gets a new id. A pair with several
 /// manifolds passes one counter through all of them.
@@ -119,7 +121,7 @@ pub(crate) struct PairIds {
 }
 
 impl PairIds {
-    /// Returns an id not given before; wraps around after 2³².
+    /// Returns the next id; ids repeat after 2³² calls.
     pub(crate) fn next(&mut self) -> u32 {
         let number = self.given;
         self.given = number.wrapping_add(1);
@@ -135,7 +137,7 @@ impl<N: Real, const D: usize> Default for RawManifold<N, D> {
 }
 
 impl<N: Real, const D: usize> RawManifold<N, D> {
-    /// Sorts the points by id; they are few, and mostly sorted.
+    /// Sorts the points by id, by insertion: there are few points, and they are mostly sorted.
     #[inline(never)]
     pub(crate) fn sort_points(&mut self) {
         for next in 1..self.points.len() {
@@ -147,8 +149,8 @@ impl<N: Real, const D: usize> RawManifold<N, D> {
         }
     }
 
-    /// Swaps the solids; `pose21` is the current pose of the first in the frame of the second. If
-    /// the old pose is not kept, the points stay where they are on the first solid.
+    /// Swaps the solids; `pose21` is the current pose of the first in the frame of the second. The
+    /// points are transformed by the inverse of `pose12`, or by `pose21` if `pose12` is `None`.
     pub(crate) fn flip(&mut self, pose21: &Pose<N, D>) {
         let Self { normal, pose12, points, .. } = self;
         let old21 = pose12.as_ref().map_or(*pose21, Pose::inverse);
@@ -157,7 +159,7 @@ impl<N: Real, const D: usize> RawManifold<N, D> {
         *pose12 = pose12.map(|_| old21);
     }
 
-    /// Returns the index of the deepest point, the first of equals; 0 for an empty manifold.
+    /// Returns the index of the deepest point, the first in a tie; 0 for an empty manifold.
     #[cfg(test)]
     pub(crate) fn deepest(&self) -> usize {
         let mut deepest = 0;

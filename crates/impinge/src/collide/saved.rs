@@ -1,4 +1,4 @@
-//! Contact points of saved worlds, as the narrow phase keeps them.
+//! Serialized form of the contact manifolds in saved worlds.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,8 @@ use crate::math::Real;
 use crate::math::numbers::{Damage, NumberSource, Numbers};
 use crate::shape::FeatureId;
 
-/// The features, id and code of a contact point; its numbers are stored apart.
+/// Features, id and code of a contact point. Its coordinates and distance are in the manifold's
+/// list of numbers.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct PointRecord {
     features: [FeatureId; 2],
@@ -37,19 +38,20 @@ impl PointRecord {
     }
 }
 
-/// A manifold.
+/// Serialized form of a [`RawManifold`].
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct ManifoldRecord<N: Real> {
     ids: PairIds,
-    /// The normal, the points with their distances, and the pose if it is kept.
+    /// The normal, then the position and distance of each point, then the pose if `has_pose` is
+    /// true.
     numbers: Numbers<N>,
     points: Vec<PointRecord>,
     has_pose: bool,
 }
 
 impl<N: Real, const D: usize> RawManifold<N, D> {
-    /// The manifold as data.
+    /// Returns the serialized form of the manifold.
     pub(crate) fn record(&self) -> ManifoldRecord<N> {
         let Self { normal, ids, points, pose12 } = self;
         let mut numbers = Numbers::of(normal.iter().copied());
@@ -60,7 +62,7 @@ impl<N: Real, const D: usize> RawManifold<N, D> {
 }
 
 impl<N: Real> ManifoldRecord<N> {
-    /// The manifold of the data.
+    /// Rebuilds the manifold; fails if there are too few or too many numbers.
     pub(crate) fn restore<const D: usize>(&self) -> Result<RawManifold<N, D>, Damage> {
         self.numbers.all(|numbers| {
             let normal = numbers.vector()?;

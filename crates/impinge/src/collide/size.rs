@@ -1,7 +1,7 @@
-//! Size of a pair of solids, for lengths that are proportional to it.
+//! Size of a pair of solids: the unit of lengths that are proportional to the pair.
 //!
 //! The tolerances in `manifold/ids.rs` (`SHARE`, `REACH`) and in `manifold/mod.rs` (`SLACK`) are
-//! fractions of this size; `batch` computes it in lanes.
+//! fractions of this size; `batch` computes it for several pairs at a time.
 
 use crate::math::{Point, Real, Vector, min};
 use crate::shape::{Geometry, Kind, SupportMap};

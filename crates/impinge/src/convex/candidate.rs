@@ -3,8 +3,8 @@
 use super::difference::{Difference, Vertex};
 use crate::math::{Real, Vector};
 
-/// Unit vector from the first core to the second, and the height that proves how far it separates
-/// them.
+/// A unit vector from the first core to the second, and its height, which proves by how much it
+/// separates them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SupportCandidate<N: Real, const D: usize> {
     pub(super) normal: Vector<N, D>,

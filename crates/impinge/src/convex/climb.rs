@@ -1,4 +1,4 @@
-//! Local search for the normal of an overlap with the largest height, from a good one.
+//! Local search for the normal of an overlap with the largest height, starting from a good normal.
 
 use super::candidate::SupportCandidate;
 use super::difference::{Difference, Moved, rounding_error};
@@ -6,20 +6,21 @@ use super::gjk::nearest_normal;
 use super::simplex::Simplicial;
 use crate::math::{Vector, max, unit_or};
 
-/// Cap on the number of steps; each step searches a nearest point.
+/// Cap on the number of steps; each step searches for at least one nearest point.
 const STEPS: usize = 40;
 /// Cap on the doublings of one step.
 const DOUBLINGS: usize = 16;
 
 /// Raises the height of `best` to a local maximum, up to the cap on the steps.
 ///
-/// The difference is moved along the normal `n` by `D` until it is free of the origin. The normal
-/// `m` of its nearest point then maximises `h(m) + D m·n`. As `m·n` is largest at `n`, the height
-/// of `m` is at least that of `n`. This is the proximal point method (R. T. Rockafellar, "Monotone
-/// Operators and the Proximal Point Algorithm", 1976), which also works at the kinks of `h`, the
-/// normals of flat faces. If heights hardly differ nearby, its steps are short, so each step is
-/// doubled while the height grows. If doubling does not raise the height, the ascent may follow a
-/// curved ridge: then each trial is first moved back to the ridge by a step of the method.
+/// The difference is moved along the normal `n` by a distance `s`, so that it is free of the
+/// origin. The normal `m` of its nearest point then maximises `h(m) + s m·n`. As `m·n` is largest
+/// at `n`, the height of `m` is at least that of `n`. This is the proximal point method (R. T.
+/// Rockafellar, "Monotone Operators and the Proximal Point Algorithm", 1976), which also works at
+/// the kinks of `h`, the normals of flat faces. If heights hardly differ nearby, its steps are
+/// short, so each step is doubled while the height grows. If doubling does not raise the height,
+/// the ascent may follow a curved ridge: then each trial is first moved back to the ridge by a step
+/// of the method.
 pub(super) fn climb<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &mut SupportCandidate<N, D>,

@@ -19,7 +19,7 @@ pub(super) fn tolerance<N: Real>() -> N {
     max(rounding_error(), N::lit(1.0 / 1_099_511_627_776.0))
 }
 
-/// A point of the difference, and the points of the two cores of which it is the difference.
+/// A point of the difference, and the points of the two cores that it comes from.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Vertex<N: Real, const D: usize> {
     /// `on2 − on1`.
@@ -29,7 +29,7 @@ pub(crate) struct Vertex<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Vertex<N, D> {
-    /// Returns the origin, to fill arrays with.
+    /// Returns the vertex at the origin, as a placeholder in arrays.
     pub(super) fn zero() -> Self {
         let zero = Vector::<N, D>::zeros();
         Self { point: zero, on1: zero, on2: zero }
@@ -72,8 +72,8 @@ pub(crate) trait Difference<N: Real, const D: usize> {
         [None, None]
     }
 
-    /// Returns the extreme point on the part of one core that contains `on`: of the first core the
-    /// highest along the unit vector `normal`, or of the second the lowest.
+    /// Returns the extreme point on the part of one core that contains `on`: the highest point
+    /// along the unit vector `normal` for the first core, the lowest for the second.
     fn branch(&self, is_second: bool, on: &Vector<N, D>, normal: &Vector<N, D>) -> Branch<N, D>;
 
     /// Returns the best normal of a difference that contains the origin, if the caller of the
@@ -140,7 +140,7 @@ where
         })
     }
 
-    /// Declares both cores as hulls of points.
+    /// Declares that both cores are hulls of points.
     pub(super) fn between_flat_cores(self) -> Self {
         Self { is_flat: true, ..self }
     }

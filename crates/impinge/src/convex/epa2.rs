@@ -109,7 +109,8 @@ fn from_extent<N: Real>(difference: &dyn Difference<N, 2>) -> Result<EpaRing<N>,
     if ring.len() > 2 {
         return Ok(ring_of(&ring));
     }
-    // A segment through the origin, or nearly: its depth perpendicular to it is zero.
+    // The difference is a segment through the origin, or nearly: its depth perpendicular to it is
+    // zero.
     Err(locate(difference, &best_of(difference, &[left]), &ring))
 }
 
@@ -134,8 +135,8 @@ fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut EpaRing<N>) -> Se
                 let mix = Mix::nearest(&best, &[side.start, next]);
                 return finish(difference, &best, &mix, &vertices(ring, &best));
             }
-            // Flat sides are close already; smooth parts are found faster by Newton's method than
-            // by growing.
+            // On flat sides the gap closes at once; on smooth parts Newton's method is faster than
+            // growing.
             if converges(difference, &mut best) {
                 return locate(difference, &best, &vertices(ring, &best));
             }

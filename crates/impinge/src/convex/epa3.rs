@@ -35,7 +35,7 @@ const COARSE: f64 = 1.0 / 1024.0;
 /// Cosine of the angle to the face's normal within which the normal found by Newton's method is the
 /// only local maximum.
 const SAME_SUMMIT: f64 = 1.0 - 1.0 / 64.0;
-/// Largest gap of a face near a maximum already found at which Newton's method is not run again.
+/// Largest gap at which Newton's method is not run again for a face near a known maximum.
 const FINE: f64 = 1.0 / 65536.0;
 /// Cosine of the angle between face and maximum within which Newton's method is not run again.
 const SAME_PLACE: f64 = 1.0 - 1.0 / 2048.0;
@@ -60,7 +60,8 @@ pub(super) fn deepest<N: Real>(
     }
 }
 
-/// Returns a better separation from the rings of round sides; `None` if there is none.
+/// Returns a separation with a larger height than `grown`, from the rings of normals of round
+/// sides; `None` if there is none.
 fn beside<N: Real>(
     difference: &dyn Difference<N, 3>,
     vertices: &[Vertex<N, 3>],
@@ -92,7 +93,8 @@ fn from_simplex<N: Real>(difference: &dyn Difference<N, 3>, simplex: &Simplex<N,
     }
 }
 
-/// Returns whether the volume is not small relative to the largest face and longest edge at `a`.
+/// Returns whether the tetrahedron is no sliver: its volume is not small relative to its largest
+/// face and its longest edge at `a`.
 fn is_thick<N: Real>([a, b, c, d]: &[Vertex<N, 3>; 4]) -> bool {
     let (e, f, g) = (b.point - a.point, c.point - a.point, d.point - a.point);
     let (ef, fg, ge) = (cross(&e, &f), cross(&f, &g), cross(&g, &e));
@@ -101,7 +103,8 @@ fn is_thick<N: Real>([a, b, c, d]: &[Vertex<N, 3>; 4]) -> bool {
     ef.dot(&g).abs() > N::lit(THICK) * area * length
 }
 
-/// Returns whether the area is not small relative to the longest edge, nor that edge to the pair.
+/// Returns whether the area is not small relative to the longest edge, and that edge is not small
+/// relative to the pair, whose size is about 1.
 fn is_wide<N: Real>([a, b, c]: &[Vertex<N, 3>; 3]) -> bool {
     let (e, f, g) = (b.point - a.point, c.point - a.point, c.point - b.point);
     let length = max(max(e.norm(), f.norm()), g.norm());
@@ -125,7 +128,8 @@ fn from_segment<N: Real>(difference: &dyn Difference<N, 3>, [a, b]: [Vertex<N, 3
     if found > rounding_error() {
         return from_triangle(difference, [a, b, c]);
     }
-    // A segment through the origin, or nearly: all directions perpendicular to it are equal.
+    // The difference is a segment through the origin, or nearly: all directions perpendicular to it
+    // are equal.
     Err(locate(difference, &best_of(difference, &[u, v]), &[a, b]))
 }
 
@@ -142,7 +146,8 @@ fn from_triangle<N: Real>(
     if max(height, depth) > rounding_error() {
         return Ok([a, b, c, if height > depth { above } else { below }]);
     }
-    // A flat disk through the origin, or nearly: its depth along its normal is zero.
+    // The difference is a flat disk through the origin, or nearly: its depth along its normal is
+    // zero.
     Err(locate(difference, &best_of(difference, &[normal]), &[a, b, c]))
 }
 
@@ -189,7 +194,7 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
                 let mix = Mix::nearest(&best, &corners);
                 return finish(difference, &best, &mix, hull.vertices());
             }
-            // Flat faces are close; smooth parts are found faster by Newton's method than by
+            // On flat faces the gap closes at once; on smooth parts Newton's method is faster than
             // growing.
             if converges(difference, &mut best) {
                 hull.keep(&[best.vertex]);
@@ -282,7 +287,7 @@ impl<N: Real> Summit<N> {
     }
 
     /// Returns the maximum that Newton's method finds from a face, if its normal is close to the
-    /// face's normal, so that no other lies between.
+    /// face's normal, so that no other maximum lies between them.
     fn beside(
         difference: &dyn Difference<N, 3>,
         hull: &Hull<N>,
@@ -304,7 +309,8 @@ fn climb_on<N: Real>(
     hull: &Hull<N>,
     best: &mut SupportCandidate<N, 3>,
 ) {
-    // A better normal than the best can only be beyond a face that is nearer.
+    // A normal better than `best` can only lie beyond a face that is nearer than the depth of
+    // `best`.
     let nearer = hull.nearer_than(-best.height - tolerance());
     let mut starts: Vec<_> =
         nearer.map(|outward| SupportCandidate::along(difference, -outward)).collect();

@@ -44,6 +44,7 @@ enum Outcome {
     Near,
 }
 
+/// State of a search for the nearest point.
 struct GjkSearch<N: Real, const D: usize> {
     simplex: Simplex<N, D>,
     /// Best normal so far; its height is the largest lower bound of the distance.
@@ -57,7 +58,7 @@ struct GjkSearch<N: Real, const D: usize> {
     /// Whether the lower bound used is the height of `last`, whose points face each other, not the
     /// height of `best`.
     for_points: bool,
-    /// The search ends at a point nearer than this.
+    /// The search ends with [`Outcome::Near`] at a point nearer to the origin than this.
     near: N,
 }
 
@@ -86,7 +87,8 @@ where
 }
 
 /// Computes [`solve`]. With a `rounding`, the search ends at a certain overlap of the cores
-/// inflated by it (see [`overlaps`]). If the cores are apart, the result has the same bits.
+/// inflated by it (see [`overlaps`]). If the cores are apart, the result equals that of [`solve`]
+/// bit for bit.
 pub(super) fn answer<N, S, const D: usize>(
     difference: &S,
     start: &Vector<N, D>,
@@ -195,7 +197,7 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
 
     /// Returns whether the inflated difference certainly contains a ball around the origin. For
     /// solids that lie symmetrically, the search from their centres ends with the origin on a
-    /// corner, edge or face of the simplex; a second search from a skew axis avoids that.
+    /// corner, edge or face of the simplex; a second search from a skew axis avoids this case.
     fn clears(&self, difference: &impl Difference<N, D>, radius: N) -> bool {
         self.is_clear() || overlaps(difference, &skew_axis(), radius, N::ZERO)
     }

@@ -39,6 +39,7 @@ type Horizon = SmallVec<[[u16; 2]; 24]>;
 /// Indices of faces.
 type FaceIndices = SmallVec<[usize; 16]>;
 
+/// A closed polytope inside the difference.
 pub(super) struct Hull<N: Real> {
     vertices: SmallVec<[Vertex<N, 3>; 32]>,
     faces: SmallVec<[EpaFace<N>; 48]>,

@@ -63,20 +63,20 @@ use gjk::Answer;
 /// the first; `pose12` is the pose of the second in that frame.
 ///
 /// `None` if the solids are certainly farther apart than `limit`: a plane separates them by more,
-/// beyond rounding. At a distance of exactly `limit` the answer is `Some`; with an infinite limit
-/// it always is, for finite input. NaN or infinity in the pose gives `None`.
+/// beyond rounding. At a distance of exactly `limit` the result is `Some`. With an infinite limit
+/// and finite input it is always `Some`. NaN or infinity in the pose gives `None`.
 ///
 /// `distance` is the height of `normal`. Let `s` be the sum of the bounding radii of the cores and
-/// of the distance of their origins. `distance` falls short of the exact value by a few
-/// `N::EPSILON · s` for flat-faced cores and for curved ones that provide their curvature
-/// ([`SupportMap::curved_support`]); for other curved ones by about the larger of that and
-/// `2⁻⁴⁰ · s`. If a whole ring of normals is nearly as good, as deep in nearly coaxial cylinders or
-/// cones, the ring of a round side is searched ([`SupportMap::round_side`]). Only if there is none,
-/// and all normals nearby are about as good, as in the middle of a ball, a local search gives the
-/// result, which may fall short by more. The points lie on the cores to the same accuracy; on curved
-/// cores without curvature to about its square root at worst. Of several equally good normals (for
-/// coincident centres, say) the same one is chosen each time. Cores that are single coincident
-/// points have no direction: the first axis is taken.
+/// of the distance of their origins. `distance` falls short of the exact value by a few `N::EPSILON
+/// · s` for flat-faced cores and for curved ones that provide their curvature
+/// ([`SupportMap::curved_support`]); for other curved ones by about the larger of that and `2⁻⁴⁰ ·
+/// s`. If a whole ring of normals is nearly as good, as for deep overlaps of nearly coaxial
+/// cylinders or cones, the ring of a round side is searched ([`SupportMap::round_side`]). If there
+/// is no round side, and all normals nearby are about as good, as in the middle of a ball, a local
+/// search gives the result; then `distance` may fall short by more. The points lie on the cores to
+/// the same accuracy; on curved cores without curvature to about its square root at worst. Among
+/// equally good normals, as for coincident centres, the choice is deterministic. Cores that are
+/// single coincident points have no direction: the first axis is taken.
 ///
 /// Cost: about ten support points of each solid if the cores are apart, a few dozen if they
 /// overlap, some hundreds at most.
@@ -113,7 +113,8 @@ where
 }
 
 /// Computes [`separation`] for solids whose cores are hulls of points, without the steps for curved
-/// cores. The search starts along the unit vector `start`, if it is given.
+/// cores. The search starts along the unit vector `start`; `None` stands for the line of the
+/// centres.
 pub(crate) fn flat_separation<N, A, B, const D: usize>(
     a: &A,
     b: &B,
@@ -150,11 +151,10 @@ where
 }
 
 /// Returns whether two solids certainly overlap. The proof is a simplex of points of the core
-/// difference that contains a ball around the origin, far larger than rounding errors, or two core
-/// points whose distance is smaller than the sum of the radii by as much. `false` proves nothing.
-/// It is also returned if the depth along the line of their centres is less than `min_depth`, in
-/// units of the pair.
-/// pair.
+/// difference that contains a ball around the origin, far larger than rounding errors.
+/// Alternatively it is two core points whose distance is below the sum of the radii by more than
+/// the radius of that ball. `false` proves nothing; it is also returned if the depth along the line
+/// of the centres is less than `min_depth`, in units of the pair.
 ///
 /// If the result is `true`, [`separation`] returns a negative distance. Cost: the support points
 /// until a separating plane or such a simplex is found, about four.
@@ -190,8 +190,8 @@ where
     distance_of_pair(&CorePair::new(a, b, pose12)?, [a.rounding(), b.rounding()], limit)
 }
 
-/// Returns the distance of [`flat_separation`], or zero if a certain overlap is found during the
-/// search.
+/// Returns the distance of [`flat_separation`], or zero if a certain overlap, as defined by
+/// [`overlap`], is found during the search.
 pub(crate) fn flat_distance<N, A, B, const D: usize>(
     a: &A,
     b: &B,
@@ -207,8 +207,8 @@ where
     distance_of_pair(&pair, [a.rounding(), b.rounding()], limit)
 }
 
-/// Returns the distance of [`separation_by`], or zero if a certain overlap is found during the
-/// search.
+/// Returns the distance of [`separation_by`], or zero if a certain overlap, as defined by
+/// [`overlap`], is found during the search.
 pub(crate) fn distance_by<N, A, B, const D: usize>(
     a: &A,
     b: &B,

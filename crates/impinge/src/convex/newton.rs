@@ -1,11 +1,11 @@
-//! Newton's method on a good normal of curved cores, up to rounding.
+//! Newton's method on the normals of curved cores: refines a good normal up to rounding.
 
 use super::candidate::SupportCandidate;
 use super::difference::{Difference, rounding_error};
 use super::simplex::Simplicial;
 use crate::math::{Vector, unit};
 
-/// Cap on the number of steps; one or two are enough after the other iterations.
+/// Cap on the number of steps; after the other iterations one or two are enough.
 const STEPS: usize = 6;
 
 /// Runs Newton's method on the sphere of normals, raising `best`. Returns whether it ended at a
@@ -44,8 +44,8 @@ fn across<N: Simplicial<D>, const D: usize>(v: &Vector<N, D>, n: &Vector<N, D>) 
 }
 
 /// Returns the step that makes the slope zero, by conjugate gradients (M. Hestenes and E. Stiefel,
-/// 1952). There are `D − 1` directions perpendicular to a normal, so as many rounds are exact.
-/// `None` if the height is not concave.
+/// 1952). There are `D − 1` directions perpendicular to a normal, so `D − 1` rounds give the exact
+/// step. `None` if the height is not concave.
 fn step<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,

@@ -18,10 +18,11 @@ pub(crate) struct Peak<N: Real, const D: usize> {
     pub(crate) normal: Vector<N, D>,
     /// Whether it is the normal of a flat face, so that no normal near it is slightly better.
     pub(crate) is_exact: bool,
-    /// Whether it is one of a ring of normals of a round side, of which others may be slightly
-    /// better.
+    /// Whether it belongs to the ring of normals of a round side, where another normal may be
+    /// slightly better.
     pub(crate) is_ring: bool,
-    /// Points of the first core, of which some mix faces a mix of `on2` along the normal.
+    /// Points of the first core. A weighted mean of them faces a weighted mean of `on2` along the
+    /// normal.
     pub(crate) on1: SmallVec<[Vector<N, D>; 8]>,
     /// Points of the second core.
     pub(crate) on2: SmallVec<[Vector<N, D>; 8]>,
@@ -34,7 +35,7 @@ pub(crate) trait Peaks<N: Real, const D: usize> {
     fn best(&self, shrink: N, gap: N) -> Option<Peak<N, D>>;
 }
 
-/// Returns the separation for this normal, polished if cores are curved.
+/// Returns the separation along the normal of `peak`, polished unless that is exact.
 pub(super) fn at_peak<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     peak: &Peak<N, D>,

@@ -1,15 +1,16 @@
-//! Newton's method for curved cores: from a normal with half of its digits to all of them.
+//! Newton's method for curved cores: refines a normal with an error of about the square root of the
+//! tolerance to rounding error.
 //!
-//! Support points alone find a normal of curved cores up to about the square root of the accuracy
-//! of its height, and the last digits of the height slowly. If a core provides how its support
+//! With support points alone, the error of a normal of curved cores is about the square root of the
+//! error of its height, and the height itself converges slowly. If a core provides how its support
 //! points move ([`SupportMap::curved_support`](crate::shape::SupportMap::curved_support)), Newton's
-//! method computes the rest. At the best normal `n`, a few points `a` of the first core are equally
-//! extreme, and a few points `b` of the second, and some mix of them faces along the normal: `Σ w b
-//! − Σ u a = λ n`, with weights that are not negative and sum to one. The derivatives with respect
-//! to `n`, the weights and `λ` give linear equations for a step. Combining active sets and
-//! curvature in this way is the VU-decomposition of C. Lemaréchal, F. Oustry and C. Sagastizábal,
-//! "The U-Lagrangian of a Convex Function" (2000). The normal after a step is accepted only by its
-//! height, as everywhere in this module.
+//! method computes both to rounding error. At the best normal `n`, a few points `a` of the first
+//! core are equally extreme, and so are a few points `b` of the second. Some weighted means of both
+//! face each other along the normal: `Σ w b − Σ u a = λ n`, with weights that are not negative and
+//! sum to one. The derivatives with respect to `n`, the weights and `λ` give linear equations for a
+//! step. Combining active sets and curvature in this way is the VU-decomposition of C. Lemaréchal,
+//! F. Oustry and C. Sagastizábal, "The U-Lagrangian of a Convex Function" (2000). The normal after
+//! a step is accepted only by its height, as everywhere in this module.
 
 use smallvec::SmallVec;
 
@@ -19,12 +20,13 @@ use super::simplex::Simplicial;
 use super::witness::Mix;
 use crate::math::{Mapped, Real, Vector, max, min, unit};
 
-/// Cap on the steps. A normal with a quarter of its digits takes two, and one for each point that
-/// becomes active or inactive. Along a ring of equally good normals, as for solids with almost the
-/// same axis, long steps leave the ring and the next ones return to it: up to twenty.
+/// Cap on the steps. A normal with an error of about the fourth root of epsilon takes two, and one
+/// for each point that becomes active or inactive. Along a ring of equally good normals, as for
+/// solids with almost the same axis, long steps leave the ring and the next ones return to it: up
+/// to twenty.
 const STEPS: usize = 24;
 /// Largest distance by which an active point may be less extreme than the most extreme one, along a
-/// normal that is not yet polished. In units of the square root of the tolerance, which is the
+/// normal that is not yet polished: in units of the square root of the tolerance, which is the
 /// error of such a normal.
 const SLACK: f64 = 8.0;
 /// Length of the longest step; Newton's method does not converge from farther away.
@@ -32,7 +34,7 @@ const LONGEST: f64 = 0.25;
 /// Largest number of equations, in 3D: those of the step, and one for the weight of each active
 /// point but the first of each core.
 const ROWS: usize = 5;
-/// One column for each unknown, and one for the right side.
+/// Number of columns: one for each unknown, and one for the right side.
 const COLUMNS: usize = ROWS + 1;
 const RIGHT: usize = ROWS;
 
@@ -47,8 +49,8 @@ struct ActiveSet<N: Real, const D: usize> {
 /// accurate as the normal before the last step. `best` may be improved even if the result is
 /// `None`.
 ///
-/// Does nothing for flat cores. A point that the next normal finds below the active ones becomes
-/// active; one with a negative weight becomes inactive.
+/// Does nothing for flat cores. A point that the next normal finds beyond the active points becomes
+/// active; a point with a negative weight becomes inactive.
 pub(super) fn polish<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &mut SupportCandidate<N, D>,
@@ -147,8 +149,9 @@ fn activate<N: Simplicial<D>, const D: usize>(
     sides.iter().all(|side| !side.branches.is_empty()).then_some(())
 }
 
-/// Drops points that are not extreme even if the normal is wrong by the square root of the rounding
-/// error; then the least extreme ones, until no more are left than determine a normal.
+/// Drops points that are not extreme even if the normal has an error of the square root of the
+/// tolerance. Then drops the least extreme points until at most `D + 1` are left, enough to
+/// determine a normal.
 fn keep_extreme<N: Simplicial<D>, const D: usize>(
     sides: &mut [ActiveSet<N, D>; 2],
     normal: &Vector<N, D>,
@@ -205,7 +208,7 @@ impl<N: Simplicial<D>, const D: usize> ActiveSet<N, D> {
         self.branches.iter().zip(&self.weights).fold(zero, |sum, (b, &weight)| sum + b.on * weight)
     }
 
-    /// Adds the derivative of the mix with respect to the normal.
+    /// Adds the derivative of the mix with respect to the normal to the first `D` rows and columns.
     fn add_bend(&self, rows: &mut [[N; COLUMNS]; ROWS]) {
         for (branch, &weight) in self.branches.iter().zip(&self.weights) {
             let Some(bend) = &branch.bend else { continue };
@@ -239,8 +242,8 @@ impl<N: Simplicial<D>, const D: usize> ActiveSet<N, D> {
     }
 }
 
-/// Adds the points that the last normal found beyond the active ones, by more than rounding, while
-/// they can determine a normal; returns whether any was added.
+/// Adds the support points of the current normal that lie beyond the active points of their core by
+/// more than rounding, up to `D + 1` active points in total. Returns whether any was added.
 fn add_lower<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     current: &SupportCandidate<N, D>,

@@ -12,7 +12,8 @@ pub(super) type Bundle<N, const D: usize> = SmallVec<[Vertex<N, D>; 16]>;
 
 /// Cap on the number of support points computed.
 const ROUNDS: usize = 40;
-/// Number of points kept; of more, the highest along the best normal are dropped.
+/// Largest number of points in the bundle; if there are more, the highest along the best normal are
+/// dropped.
 const KEPT: usize = 8;
 
 /// Raises the height of `best` to the maximum, for a difference that does not contain the origin.

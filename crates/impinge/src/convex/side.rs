@@ -2,10 +2,10 @@
 //!
 //! If the axes of two solids nearly coincide, or a small solid is near the axis of a large one, a
 //! whole ring of normals has about the same height. A growing polytope does not find the best of
-//! them before its cap, and a local search makes tiny steps. But for solids with exactly the same
-//! axis, the best normals form the ring of a side, just as the best normal of two polygons, in the
-//! half-plane through the axis, is the normal of an edge. So the heights along the ring of each
-//! side are searched, as a function of one angle with few maxima.
+//! them before its cap, and a local search makes tiny steps. If two solids have exactly the same
+//! axis, the problem is one of two polygons in a half-plane through the axis: the best normal is
+//! that of an edge, and rotated about the axis it forms the ring of a round side. So the ring of
+//! each side is searched: the height is a function of one angle with few maxima.
 
 use smallvec::SmallVec;
 
@@ -16,23 +16,24 @@ use super::polish::polish;
 use super::witness::Mix;
 use crate::math::{Mapped, Real, Vector, cross, filled, unit};
 
-/// Number of normals of a ring that are tried first.
+/// Number of evenly spaced normals of a ring that are sampled first.
 const SAMPLES: usize = 16;
-/// Angle between two of these normals, in radians.
+/// Angle between two adjacent samples, in radians.
 const PITCH: f64 = core::f64::consts::TAU / 16.0;
 /// Cap on the number of maxima that are searched.
 const TOPS: usize = 3;
-/// Largest difference, along the axis, between the component of a normal and that of the side's
-/// normals for which the ring is searched.
+/// Largest difference between the components along the axis of a normal and of the side's normals
+/// at which the ring is searched.
 const NEAR: f64 = 1.0 / 16.0;
-/// Largest difference of heights in a ring that counts as even, in units of the pair.
+/// Largest difference between the heights of opposite normals of a ring at which the ring is
+/// searched, in units of the pair.
 const MAX_UNEVENNESS: f64 = 1.0 / 8.0;
 /// Fraction of an interval that is left after a step of the golden section.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
-/// Cap on the steps of the golden section; so many shrink an interval to 1e-9 of its length.
+/// Cap on the steps of the golden section: 43 steps shrink an interval to 1e-9 of its length.
 const STEPS: usize = 43;
 
-/// A polished normal of a ring with a larger height than a given one, and the points that are
+/// A polished normal of a ring with a larger height than the known one, and the points that are
 /// lowest along it, or nearly so.
 pub(super) struct Better<N: Real> {
     pub(super) best: SupportCandidate<N, 3>,
@@ -61,7 +62,9 @@ pub(super) fn better<N: Real>(
 /// A circle of unit vectors, parametrised by an angle.
 #[derive(Clone, Copy)]
 struct NormalRing<N: Real> {
+    /// Axis of the round side, a unit vector.
     axis: Vector<N, 3>,
+    /// Component of the normals along the axis.
     rise: N,
     /// Unit vectors perpendicular to the axis and to each other.
     from: Vector<N, 3>,
@@ -84,7 +87,7 @@ impl<N: Real> NormalRing<N> {
         self.axis * self.rise + (self.from * cosine + self.aside * sine) * away
     }
 
-    /// Returns the same ring with angles measured from its normal at `angle`.
+    /// Returns the ring with angles measured from its normal at `angle`.
     fn rotated(&self, angle: N) -> Option<Self> {
         Self::near(self.axis, self.rise, &self.at(angle))
     }
@@ -119,8 +122,8 @@ impl<N: Real> NormalRing<N> {
         best
     }
 
-    /// Returns the angles of the samples that are no lower than both neighbours, at most `TOPS`,
-    /// the highest ones.
+    /// Returns the angles of the samples that are no lower than both neighbours; if there are more
+    /// than `TOPS`, those of the highest.
     fn tops(&self, difference: &dyn Difference<N, 3>) -> SmallVec<[N; TOPS]> {
         let mut next = N::ZERO;
         let samples: [(N, N); SAMPLES] = filled(|_| {

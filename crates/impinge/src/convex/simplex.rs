@@ -9,7 +9,7 @@
 //!
 //!    Part `i` is the volume (area, length) with corner `i` replaced by the origin. The origin lies
 //!    beyond the facet opposite to corner `i` if part `i` and the whole differ in sign. A simplex
-//!    that is flat up to `rounding_error` has no sign, so all its facets compete.
+//!    that is flat up to `rounding_error` has no sign, so all its facets are searched.
 //! ```
 //!
 //! Deciding by the signs of volumes, and falling back to the faces of a simplex instead of dividing
@@ -22,7 +22,7 @@ use super::Separation;
 use super::difference::{Difference, Vertex, rounding_error};
 use crate::math::{Real, Vector};
 
-/// A scalar type, with the parts of the algorithms that depend on the dimension `D`.
+/// A scalar type, with those parts of the algorithms that depend on the dimension `D`.
 pub(crate) trait Simplicial<const D: usize>: Real {
     /// Returns the point of the hull of one to `D + 1` points that is nearest to the origin.
     fn nearest(points: &[Vector<Self, D>]) -> NearestOfSimplex<Self, D>;
@@ -32,8 +32,8 @@ pub(crate) trait Simplicial<const D: usize>: Real {
     /// for fewer points.
     fn clears(points: &[Vector<Self, D>], radius: Self) -> bool;
 
-    /// Calls `visit` with a vector perpendicular to the differences of each choice of `D` of the
-    /// points; it need not have unit length.
+    /// Calls `visit` with a normal of the facet through each choice of `D` of the points; it need
+    /// not have unit length.
     fn visit_facets(points: &[Vector<Self, D>], visit: &mut dyn FnMut(&Vector<Self, D>));
 
     /// Returns the separation of a difference that contains the origin, or misses it only by
@@ -48,7 +48,7 @@ pub(crate) trait Simplicial<const D: usize>: Real {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NearestOfSimplex<N: Real, const D: usize> {
     /// The nearest point, computed from the feature that it lies on, not as a weighted sum of
-    /// corners. So its direction is accurate however near the origin is.
+    /// corners. So its direction is accurate even if it is very close to the origin.
     pub(super) point: Vector<N, D>,
     /// Squared length of `point`.
     pub(super) squared: N,
@@ -76,7 +76,7 @@ impl<N: Real, const D: usize> NearestOfSimplex<N, D> {
         Self::new(*point, weights)
     }
 
-    /// Returns whether all of these corners have a positive weight.
+    /// Returns whether all of `corners` have a positive weight.
     pub(super) fn weighs<const K: usize>(&self, corners: [usize; K]) -> bool {
         corners.iter().all(|&corner| self.weights[corner] > N::ZERO)
     }
@@ -127,7 +127,7 @@ pub(crate) struct Simplex<N: Real, const D: usize> {
     vertices: [Vertex<N, D>; 4],
     /// Copies of the points in `vertices`, in contiguous memory.
     points: [Vector<N, D>; 4],
-    /// Weights of the points in the nearest point, as given to [`Self::keep`].
+    /// Weights of the points in the nearest point, as set by [`Self::keep`].
     weights: [N; 4],
     len: usize,
 }
@@ -150,7 +150,7 @@ impl<N: Simplicial<D>, const D: usize> Simplex<N, D> {
         &self.points[..self.len]
     }
 
-    /// Returns the weights of the points, as given to [`Self::keep`]; zero for points added later.
+    /// Returns the weights of the points, as set by [`Self::keep`]; zero for points added later.
     pub(super) fn weights(&self) -> &[N] {
         &self.weights[..self.len]
     }

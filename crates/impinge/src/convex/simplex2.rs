@@ -35,7 +35,8 @@ impl<N: Real> Simplicial<2> for N {
     }
 }
 
-/// Computes [`nearest_on_segment`] with the direction from the edge alone, which suffices in 2D.
+/// Computes [`nearest_on_segment`], but with the nearest point along the normal of the edge, which
+/// is exact in 2D.
 fn nearest_on_side<N: Real>(points: &[Vector<N, 2>], [i, j]: [usize; 2]) -> NearestOfSimplex<N, 2> {
     let nearest = nearest_on_segment(points, [i, j]);
     if nearest.weights[i] == N::ZERO || nearest.weights[j] == N::ZERO {
@@ -54,8 +55,8 @@ fn nearest_in_triangle<N: Real>(points: &[Vector<N, 2>]) -> NearestOfSimplex<N, 
     let (e, f) = (b - a, c - a);
     let area = cross2(&e, &f);
     let longest = max(max(e.norm_squared(), f.norm_squared()), (c - b).norm_squared());
-    // The triangle is flat up to rounding: the sign of its area is unknown, and all three sides
-    // compete.
+    // If the triangle is flat up to rounding, the sign of its area is unknown, and all three sides
+    // are searched.
     let flat = area * area <= rounding_error::<N>() * rounding_error::<N>() * longest;
     let (on_b, on_c) = (-cross2(&a, &f) / area, -cross2(&e, &a) / area);
     let weights = [N::ONE - on_b - on_c, on_b, on_c];

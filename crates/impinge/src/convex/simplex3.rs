@@ -51,7 +51,8 @@ fn nearest_on_triangle<N: Real>(
     let squared = normal.norm_squared();
     let longest = max(max(e.norm_squared(), f.norm_squared()), (c - b).norm_squared());
     let flat = squared <= rounding_error::<N>() * rounding_error::<N>() * longest;
-    // Coordinates of the origin in the frame of the sides from `a`; errors grow only like 1/size.
+    // Barycentric coordinates of the origin's projection. Their errors grow only in inverse
+    // proportion to the triangle's size.
     let (on_b, on_c) = (-normal.dot(&cross(a, &f)) / squared, -normal.dot(&cross(&e, a)) / squared);
     let on_a = N::ONE - on_b - on_c;
     let mut best: Option<NearestOfSimplex<N, 3>> = None;
@@ -87,13 +88,15 @@ fn nearest_in_tetrahedron<N: Real>(points: &[Vector<N, 3>]) -> NearestOfSimplex<
         volume = normal.dot(&(points[i] - points[corner]));
         largest = max(largest, normal.norm_squared());
     }
-    // Lower than the noise over its largest face: signs are unknown, and all four faces compete.
+    // If the height over the largest face is below the rounding error, the signs are unknown, and
+    // all four faces are searched.
     let flat = volume * volume <= rounding_error::<N>() * rounding_error::<N>() * largest;
     let mut best: Option<NearestOfSimplex<N, 3>> = None;
     for (part, face) in parts.into_iter().zip(FACES) {
         if flat || part * volume <= N::ZERO {
             let found = nearest_on_triangle(points, face);
-            // Beyond a face and above its inside: no other point of the tetrahedron is nearer.
+            // The origin is beyond a face and projects into it, so no other point of the
+            // tetrahedron is nearer.
             if !flat && found.weighs(face) {
                 return found;
             }

@@ -13,9 +13,9 @@ use super::gjk::nearest_simplex;
 use super::simplex::{Simplex, Simplicial};
 use crate::math::{Point, Real, Vector, max, unit};
 
-/// Cap on the number of vertices tried.
+/// Cap on the number of vertices that are added to a mix.
 const ROUNDS: usize = 32;
-/// Cap on the number of searches for points.
+/// Cap on the number of nearest-point searches in [`search`].
 const SEARCHES: usize = 16;
 
 /// A point of each core, both mixed from core points with the same weights.
@@ -104,12 +104,13 @@ pub(super) fn placed<N: Simplicial<D>, const D: usize>(
     }
 }
 
-/// Returns the fraction of the offset by which the first point moves, if the points are well aside
-/// of each other.
+/// Returns the fraction of the offset between the two points, perpendicular to the normal, by which
+/// the first point is moved; the second is moved by the rest.
 ///
-/// On a curved surface a point may be moved: it leaves the surface only by the square of the
-/// distance. At an edge it may not be moved. A supporting plane halfway between the normal and the
-/// offset decides.
+/// A point of a curved surface may be moved, because it leaves the surface only by the square of
+/// the distance. A point of an edge must stay. The supporting planes in a direction halfway between
+/// the normal and the offset give the distance by which each point would leave its core; the point
+/// with the larger distance stays.
 fn share<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,
@@ -120,7 +121,8 @@ fn share<N: Simplicial<D>, const D: usize>(
     let Some((aside, _)) = unit(&(away - normal * normal.dot(&away))) else { return N::HALF };
     let Some((slant, _)) = unit(&(normal + aside)) else { return N::HALF };
     let ends = difference.lowest(&slant);
-    // Distance by which each point leaves its core if it moves by the whole offset.
+    // Distance by which each point leaves its core if it moves by the whole offset; negative
+    // inside.
     let beyond1 = slant.dot(&(mix.on2 - across - ends.on1));
     let beyond2 = slant.dot(&(ends.on2 - mix.on1 - across));
     if max(beyond1, beyond2) <= N::ZERO {
@@ -133,7 +135,7 @@ fn share<N: Simplicial<D>, const D: usize>(
 }
 
 /// Returns the separation with the points of `mix` if they fit; else with a mix of `vertices` or,
-/// if that does not fit either, with points that are searched for.
+/// if that does not fit either, with the points that [`search`] finds.
 pub(super) fn finish<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,
@@ -146,8 +148,8 @@ pub(super) fn finish<N: Simplicial<D>, const D: usize>(
     locate(difference, best, vertices)
 }
 
-/// Returns the separation with a mix of `vertices` or, if that does not fit, with points searched
-/// for.
+/// Returns the separation with a mix of `vertices` or, if that does not fit, with the points that
+/// [`search`] finds.
 pub(super) fn locate<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,
@@ -157,7 +159,7 @@ pub(super) fn locate<N: Simplicial<D>, const D: usize>(
     if mix.meets(best) { placed(best, &mix, N::HALF) } else { search(difference, best, &mix) }
 }
 
-/// Returns the separation with points that are searched for, or with those of `mix` if they fit
+/// Returns the separation with the points of further searches, or with those of `mix` if they fit
 /// better.
 ///
 /// The difference is moved along the normal until it is well away from the origin. Its nearest
@@ -187,8 +189,8 @@ fn search<N: Simplicial<D>, const D: usize>(
             break;
         }
     }
-    // If the new height is lower by more than rounding, points slightly aside are the smaller
-    // error; in `f32` this never happens.
+    // If the new height is lower by more than rounding, the old normal with slightly offset points
+    // is the smaller error; in `f32` this never happens.
     let found = if found.height < best.height - N::TWO * rounding_error() { *best } else { found };
     let share = share(difference, &found, &mix);
     placed(&found, &mix, share)
@@ -215,7 +217,8 @@ fn mix<N: Simplicial<D>, const D: usize>(
         }
         simplex.push(next);
         nearest = N::nearest(simplex.points());
-        // Judged by the mix that the weights give, because slivers give poor weights.
+        // Compares the mixes, not the distances of `nearest`, because the weights of slivers are
+        // inaccurate.
         let mut found = Mix::by(&simplex, &nearest.weights);
         if nearest.enclosed && found.miss(target) > rounding_error::<N>() * rounding_error() {
             found = Mix::of_facets(&simplex, found, target);

@@ -1,6 +1,6 @@
-//! Colours.
+//! Colours of debug drawing.
 
-/// A colour in sRGB with an opacity.
+/// An sRGB colour with an opacity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Color {
     /// Red, green and blue, each from 0 to 255.

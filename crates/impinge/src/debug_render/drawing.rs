@@ -12,14 +12,15 @@ use crate::shape::ShapeHandle;
 /// A function that returns the colour of an object; `None` selects the colour of the style.
 type ObjectColor = dyn Fn(CollisionObjectHandle) -> Option<Color> + Send + Sync;
 
-/// Draws worlds, shapes and queries with a back end, and caches the meshes of the shapes.
+/// The front end of debug drawing: draws worlds, shapes and queries with a back end, and caches the
+/// meshes of the shapes.
 ///
-/// The mesh of each shape is built when it is first drawn. The mesh is kept, for the shape that a
-/// handle shares, until [`Self::world`] is called and no other handle of the shape exists.
-/// Positions are world coordinates. The drawing order follows the order of the handles, and the
-/// same world gives the same picture. Objects that are not finite, such as the box of a half-space,
-/// are not drawn. This type does not begin or end the frames of a back end, since a frame may have
-/// several drawings.
+/// The mesh of each shape is built when the shape is first drawn. It is shared by all handles of
+/// the shape, and [`Self::world`] removes it after all other handles have been dropped. Positions
+/// are world coordinates. Objects are drawn in the order of their handles, so equal worlds give
+/// equal pictures. Objects that are not finite, such as the box of a half-space, are not drawn.
+/// This type does not begin or end the frames of a back end, since a frame may contain several
+/// drawings.
 ///
 /// ```
 /// use impinge::debug_render::{Color, DebugDrawing, DebugOptions, DebugRender, Drawn};
@@ -75,14 +76,14 @@ impl<N: Space<D>, const D: usize> Default for DebugDrawing<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
-    /// Returns a drawing without cached meshes.
+    /// Creates a drawing with these options and without cached meshes.
     #[must_use]
     pub fn new(options: DebugOptions<N>) -> Self {
         Self { options, object_color: None, meshes: BTreeMap::new() }
     }
 
-    /// Returns the drawing with object colours from a function of the handle. Where the function
-    /// returns `None`, the colour of the style is used.
+    /// Returns the drawing with the function `color`, which returns the colour of an object from
+    /// its handle. If it returns `None`, the object has the colour of the style.
     ///
     /// ```
     /// use impinge::debug_render::{Color, DebugDrawing, DebugOptions};
@@ -114,7 +115,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         self.options = options;
     }
 
-    /// Returns the mesh of a shape, and builds it on the first call; see [`ShapeMesh::of`].
+    /// Returns the mesh of a shape, which is built on the first call; see [`ShapeMesh::of`].
     pub fn mesh(&mut self, shape: &ShapeHandle<N, D>) -> &ShapeMesh<N, D> {
         let options = self.options.mesh;
         let address = core::ptr::from_ref(&**shape).addr();
@@ -167,7 +168,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
     }
 }
 
-/// Draws the edges of a box, if all its coordinates are finite.
+/// Draws the edges of a box; nothing if a coordinate is not finite.
 pub(super) fn draw_box<N: Space<D>, const D: usize>(
     aabb: &Aabb<N, D>,
     style: &Style<N>,
@@ -192,7 +193,7 @@ pub(super) fn draw_box<N: Space<D>, const D: usize>(
     }
 }
 
-/// Whether all coordinates of two points are finite.
+/// Returns whether all coordinates of two points are finite.
 pub(super) fn are_finite<N: Real, const D: usize>(points: [&Point<N, D>; 2]) -> bool {
     points.into_iter().flat_map(Point::iter).all(|x| x.is_finite_number())
 }

@@ -5,21 +5,22 @@ use crate::math::{Point, Real, Space};
 use crate::procedural::MIN_SUBDIVISIONS;
 use crate::shape::Shape;
 
-/// The mesh that draws a shape: lines and, if the shape has a surface or an interior, triangles.
+/// The mesh for drawing a shape: lines and, if the shape has a surface or an interior, triangles.
 ///
-/// The lines are those usual in drawings: edges of a box, circles of a ball. In 2D the triangles
-/// fill the shape, in 3D they are its surface; segments and polylines have none. A triangle in 3D,
-/// alone or in a mesh, has one side: that from which its corners run counter-clockwise.
+/// The lines are the outlines that are usual in drawings: edges of a box, great circles of a ball.
+/// In 2D the triangles fill the shape, in 3D they are its surface; segments and polylines have no
+/// triangles. A triangle shape in 3D, alone or in a mesh, has one mesh triangle, for the side from
+/// which its corners are counter-clockwise.
 ///
-/// Lines and triangles whose corners coincide are left out, and each line occurs once. A shape
-/// without extent is one vertex.
+/// Lines without length and triangles with two equal corners are left out, and each line occurs
+/// once. The mesh of a shape without extent is one vertex.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShapeMesh<N: Real, const D: usize> {
     /// A hash of all other fields. Equal meshes have equal hashes, in every program and on every
     /// machine; different meshes have different hashes, except for collisions of 64 bits. A back
     /// end can use it as a cache key.
     pub id: u64,
-    /// The corners of all lines and triangles.
+    /// The ends of all lines and the corners of all triangles.
     pub vertices: Vec<Point<N, D>>,
     /// The vertex indices of each line.
     pub lines: Vec<[u32; 2]>,
@@ -27,7 +28,7 @@ pub struct ShapeMesh<N: Real, const D: usize> {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// The resolution of curved shapes, and the extent of unbounded ones.
+/// The resolution of curved shapes, and the drawn extent of half-spaces.
 ///
 /// ```
 /// use impinge::debug_render::MeshOptions;
@@ -37,19 +38,19 @@ pub struct ShapeMesh<N: Real, const D: usize> {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshOptions<N: Real> {
-    /// The number of parts of a full turn; 24 by default. Clamped to the range from 3 to
+    /// The number of segments of a full circle; 24 by default. Clamped to the range from 3 to
     /// [`Self::MAX_SUBDIVISIONS`].
     pub subdivisions: u32,
-    /// The extent, around its origin, of the square (in 2D the line) that represents a half-space;
-    /// 10 by default. A half-space is not drawn if this is not finite.
+    /// The distance from the origin of a half-space to the sides of the square (in 2D the ends of
+    /// the line) that represents it; 10 by default. If it is not finite, half-spaces are not drawn.
     pub half_space_extent: N,
 }
 
 impl<N: Real> MeshOptions<N> {
-    /// The maximum number of parts of a full turn: finer circles look the same on a screen.
+    /// The maximum number of segments of a full circle; finer circles look equal on a screen.
     pub const MAX_SUBDIVISIONS: u32 = 256;
 
-    /// Returns the number of parts of a full turn, clamped to the supported range.
+    /// Returns the number of segments of a full circle, clamped to the supported range.
     pub(super) fn parts_of_turn(&self) -> u32 {
         self.subdivisions.clamp(MIN_SUBDIVISIONS, Self::MAX_SUBDIVISIONS)
     }
@@ -64,11 +65,11 @@ impl<N: Real> Default for MeshOptions<N> {
 impl<N: Space<D>, const D: usize> ShapeMesh<N, D> {
     /// Returns the lines and triangles of a shape, in its own frame.
     ///
-    /// The vertices of round shapes lie on the surface, up to rounding. The mesh of a composite has
-    /// the meshes of its parts at their poses, with each seam once. A user's convex shape is
-    /// sampled by its support points in the directions of a ball's vertices. A half-space is drawn
-    /// as a square (in 2D a line) of [`MeshOptions::half_space_extent`] with short marks on its
-    /// solid side.
+    /// The vertices of round shapes lie on the surface, up to rounding. The mesh of a composite
+    /// consists of the meshes of its parts at their poses; vertices and lines that parts share
+    /// occur once. A custom convex shape is sampled by its support points in the directions of a
+    /// ball's vertices. A half-space is drawn as a square (in 2D a line) of
+    /// [`MeshOptions::half_space_extent`] with short marks on its solid side.
     ///
     /// The cost is O(n log n) for n vertices, so cache the result, as
     /// [`DebugDrawing`](super::DebugDrawing) does.

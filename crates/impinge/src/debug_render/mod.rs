@@ -1,11 +1,12 @@
 //! Debug drawing of shapes, boxes, contacts and queries. Feature `debug_render`.
 //!
-//! A back end implements [`DebugRender`], which has one required method: a line with a colour and
-//! the [kind](Drawn) of object that it belongs to. By default everything else is drawn with lines.
+//! A back end implements [`DebugRender`]. Its only required method draws a line with a colour and
+//! the [kind](Drawn) of object that the line belongs to. By default everything except text is drawn
+//! with lines.
 //!
-//! A [`DebugDrawing`] calls the back end: [`DebugDrawing::world`] with all of a world, other
-//! methods with a shape, contacts, or a query and its result. [`DebugOptions`] selects what is
-//! drawn and in which colours.
+//! A [`DebugDrawing`] calls the back end: [`DebugDrawing::world`] draws a whole world, other
+//! methods draw a shape, contacts, or a query and its result. [`DebugOptions`] selects the kinds of
+//! objects to draw, and their colours.
 //!
 //! ```
 //! use impinge::debug_render::{Color, DebugDrawing, DebugRender, Drawn};

@@ -15,8 +15,7 @@ use crate::math::Real;
 pub struct Style<N: Real> {
     /// The colour of lines, points and texts.
     pub color: Color,
-    /// The size of points and normals, as a world length. Other objects have their own size and
-    /// ignore it.
+    /// The size of points and normals, as a length in the world. Other kinds of objects ignore it.
     pub size: N,
 }
 
@@ -28,7 +27,7 @@ impl<N: Real> Style<N> {
     }
 }
 
-/// The style of each kind of object; `None` leaves the kind out, which costs nothing.
+/// The style of each kind of object. Kinds with `None` are not drawn and cost no time.
 ///
 /// Each field is named after the variant of [`Drawn`](super::Drawn) that the back end receives. By
 /// default shapes, contact points and normals, and queries are drawn. Sizes suit objects of size 1;
@@ -47,26 +46,27 @@ impl<N: Real> Style<N> {
 pub struct DebugOptions<N: Real> {
     /// The shapes of objects.
     pub object: Option<Style<N>>,
-    /// The tight boxes of objects.
+    /// The smallest boxes around the objects.
     pub tight_box: Option<Style<N>>,
-    /// The boxes of objects in the broad phase, if the broad phase has boxes.
+    /// The loosened boxes of the objects in the broad phase, if the broad phase has such boxes.
     pub loosened_box: Option<Style<N>>,
     /// The boxes of the nodes of the broad phase's trees, if it has trees.
     pub tree_node: Option<Style<N>>,
     /// Contact points, on both shapes.
     pub contact_point: Option<Style<N>>,
-    /// For each contact, a line from the point on the first shape to the point on the second, whose
-    /// length is the depth; the depth as a text; and the normal as an arrow of the style's size.
+    /// For each contact three objects: a line from the point on the first shape to the point on the
+    /// second, whose length is the depth; the depth as text; and the normal as an arrow whose
+    /// length is the style's size.
     pub contact_normal: Option<Style<N>>,
     /// The area between the points of a manifold that has three or more.
     pub manifold: Option<Style<N>>,
-    /// Lines between two objects that are near each other, and between closest points.
+    /// Lines between the objects of pairs with proximity, and between closest points.
     pub proximity: Option<Style<N>>,
     /// Rays, boxes and shapes of queries, and the path of a moving shape.
     pub query: Option<Style<N>>,
     /// The hits of queries: points and normals.
     pub query_hit: Option<Style<N>>,
-    /// The resolution of shapes.
+    /// The resolution and extent of the meshes of shapes.
     pub mesh: MeshOptions<N>,
 }
 

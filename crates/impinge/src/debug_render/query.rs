@@ -8,7 +8,7 @@ use crate::query::{ClosestPoints, Contact, Impact, RayIntersection};
 use crate::shape::ShapeHandle;
 use crate::tables::ByDimension;
 
-/// A shape that moves along a straight line without rotating, as given to a query.
+/// A shape that moves along a straight line without rotating: the input of a shape cast.
 ///
 /// ```
 /// use impinge::debug_render::SweptShape;
@@ -29,9 +29,9 @@ pub struct SweptShape<'a, N: Space<D>, const D: usize> {
     pub shape: &'a ShapeHandle<N, D>,
     /// The position of the shape at time zero.
     pub position: N::Isometry,
-    /// The velocity of the shape in the world, per unit of time.
+    /// The velocity of the shape in the world frame: its displacement per unit of time.
     pub velocity: Vector<N, D>,
-    /// The time at which the path ends; may be infinite.
+    /// The time at which the motion ends; may be infinite.
     pub max_time: N,
 }
 
@@ -46,7 +46,7 @@ impl<N: Space<D>, const D: usize> SweptShape<'_, N, D> {
 
 impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
     /// Draws the contacts of one manifold: points, normals, depths and, for at least three
-    /// contacts, the area.
+    /// contacts, the area between them.
     ///
     /// ```
     /// use impinge::debug_render::{Color, DebugDrawing, DebugRender, Drawn};
@@ -67,7 +67,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
     /// let mut points = Points(Vec::new());
     /// DebugDrawing::default().contacts(found, &mut points);
     /// assert_eq!(points.0, [Point::new(1.0, 0.0), Point::new(0.5, 0.0)]);
-    /// // Of a manifold: `drawing.contacts(view.contacts().map(|point| point.contact), …)`.
+    /// // For a manifold view: `drawing.contacts(view.contacts().map(|point| point.contact), …)`.
     /// ```
     pub fn contacts(
         &self,
@@ -92,7 +92,8 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         }
     }
 
-    /// Draws triangles from the centre of a manifold to its points, in order around it.
+    /// Draws the area of a manifold as triangles from its centre to its points, in order of their
+    /// angle around the normal. Does nothing for less than three contacts.
     fn area(&self, contacts: &[Contact<N, D>], renderer: &mut dyn DebugRender<N, D>) {
         let (Some(style), [first, _, _, ..]) = (self.options.manifold, contacts) else { return };
         let between =
@@ -110,8 +111,8 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         }
     }
 
-    /// Draws closest points and a line between them; nothing for solids that touch or are too far
-    /// apart.
+    /// Draws closest points and a line between them; draws nothing if the solids touch or are
+    /// farther apart than the margin.
     pub fn closest_points(
         &self,
         found: &ClosestPoints<N, D>,
@@ -135,8 +136,8 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
 
     /// Draws a ray up to `max_time`, and its hits with their normals.
     ///
-    /// An unlimited ray is drawn to its last hit, and one without hits for one unit of time. A ray
-    /// that is not finite is not drawn.
+    /// If `max_time` is not finite, the ray is drawn to its last hit or, without hits, for one unit
+    /// of time. A ray that is not finite is not drawn.
     pub fn ray(
         &self,
         ray: &Ray<N, D>,
@@ -155,8 +156,8 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         }
     }
 
-    /// Draws a moving shape at its start, at the hit and at the end of its path, and the impact
-    /// with its normal. An infinite path has no end.
+    /// Draws a moving shape at the start, at the hit and at the end of its path, and the impact
+    /// with its normal. If the path is infinite, its end is not drawn.
     pub fn cast(
         &mut self,
         sweep: &SweptShape<'_, N, D>,
@@ -183,7 +184,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         }
     }
 
-    /// Draws a point that was hit, and the normal there unless it is zero.
+    /// Draws the point of a hit, and the normal there unless it is zero.
     fn hit(&self, at: &Point<N, D>, normal: &Vector<N, D>, renderer: &mut dyn DebugRender<N, D>) {
         let Some(style) = self.options.query_hit else { return };
         if !are_finite([at, &(at + normal)]) {
@@ -199,14 +200,14 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
 /// Formats a length with four significant digits.
 fn shortened<N: Real>(length: N) -> String {
     let length = length.as_f64();
-    // Parsed again to remove trailing zeros. Adding zero makes a zero positive.
+    // Parsing the text again removes trailing zeros. Adding zero makes a zero positive.
     let rounded = format!("{length:.3e}").parse().unwrap_or(length) + 0.0;
     let is_tiny = rounded != 0.0 && rounded.abs() < 1e-4;
     if is_tiny { format!("{rounded:e}") } else { rounded.to_string() }
 }
 
-/// Returns a number from 0 to 4 that grows with the angle of (x, y) from the x axis, along the
-/// square `|x| + |y| = 1`. Zero for the zero vector.
+/// Returns a number from 0 to 4 that grows with the angle of (x, y), counter-clockwise from the x
+/// axis. It is the position along the square `|x| + |y| = 1`, and zero for the zero vector.
 fn diamond_angle<N: Real>(x: N, y: N) -> N {
     let sum = x.abs() + y.abs();
     let part = if sum > N::ZERO { y / sum } else { N::ZERO };

@@ -1,28 +1,29 @@
-//! The interface of back ends.
+//! The trait that back ends implement.
 
 use super::{Color, ShapeMesh};
 use crate::math::{Point, Space, Vector, unit};
 use crate::tables::ByDimension;
 
-/// The kind of object that a line, point or text belongs to, so that a back end can have layers.
+/// The kind of object that a line, a point or another primitive belongs to. A back end can use it
+/// for layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Drawn {
     /// The shape of an object.
     Object,
-    /// The smallest box of an object.
+    /// The smallest box around an object.
     TightBox,
-    /// The box of an object in the broad phase.
+    /// The loosened box of an object in the broad phase.
     LoosenedBox,
     /// The box of a node of the broad phase's tree.
     TreeNode,
     /// A contact point, on one of the shapes.
     ContactPoint,
-    /// The normal of a contact and its depth.
+    /// The normal and the depth of a contact.
     ContactNormal,
     /// The area spanned by the points of a manifold.
     Manifold,
-    /// Two objects that are near each other.
+    /// A line between two objects or points that are near each other.
     Proximity,
     /// The input of a query: a ray, a box, a moving shape.
     Query,
@@ -30,17 +31,18 @@ pub enum Drawn {
     QueryHit,
 }
 
-/// A back end of debug drawing: a picture, a window, a file, a network.
+/// A back end of debug drawing, which draws to a picture, a window, a file or a network.
 ///
-/// Lengths and positions are in world coordinates. Only [`line`](Self::line) is required; by
-/// default the other methods use it, and text is not drawn. The scalar and the dimension are those
-/// of the drawing, so a back end for both dimensions implements the trait twice, or for all `D`.
+/// Lengths and positions are in world coordinates. Only [`line`](Self::line) is required. By
+/// default the other methods draw lines, and text is not drawn. `N` and `D` are the scalar and the
+/// dimension of the drawing. So a back end for 2D and 3D implements the trait twice, or for all
+/// `D`.
 ///
 /// ```
 /// use impinge::debug_render::{Color, DebugRender, Drawn};
 /// use impinge::dim2::math::Point;
 ///
-/// /// Counts lines by what they belong to.
+/// /// Counts lines by the kind of object.
 /// #[derive(Default)]
 /// struct Count(std::collections::BTreeMap<Drawn, u32>);
 ///
@@ -67,8 +69,8 @@ pub trait DebugRender<N: Space<D>, const D: usize> {
         }
     }
 
-    /// Draws an arrow. By default its head is a fifth of its length; an arrow without length is a
-    /// line between equal points.
+    /// Draws an arrow; by default a line with a head of a fifth of its length. An arrow without
+    /// length is drawn as a line between equal points.
     fn arrow(&mut self, from: &Point<N, D>, to: &Point<N, D>, color: Color, what: Drawn) {
         self.line([*from, *to], color, what);
         let along = to - from;
@@ -96,10 +98,10 @@ pub trait DebugRender<N: Space<D>, const D: usize> {
         }
     }
 
-    /// Draws a shape; by default its lines.
+    /// Draws a shape at a pose; by default the lines of its mesh.
     ///
-    /// The mesh of a shape does not change, and keeps its [`id`](ShapeMesh::id). A back end with a
-    /// mesh cache stores the mesh on the first call, and then needs only the id and the pose.
+    /// The mesh of a shape and its [`id`](ShapeMesh::id) do not change. A back end with a mesh
+    /// cache can store the mesh on the first call; later it needs only the id and the pose.
     fn mesh(&mut self, mesh: &ShapeMesh<N, D>, pose: &N::Isometry, color: Color, what: Drawn) {
         let pose = N::pose(pose);
         for ends in &mesh.lines {
@@ -108,7 +110,7 @@ pub trait DebugRender<N: Space<D>, const D: usize> {
         }
     }
 
-    /// Begins a frame that shows the state at a time; by default does nothing.
+    /// Begins a frame that shows the state at time `time`; by default does nothing.
     fn begin_frame(&mut self, time: f64) {
         let _ = time;
     }

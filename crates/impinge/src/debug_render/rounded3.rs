@@ -1,10 +1,10 @@
-//! Polyhedra inflated by a radius, drawn as offset faces, cylinder parts around edges, and ball
-//! parts around corners.
+//! Surfaces of polyhedra inflated by a radius: offset faces, cylinder patches around edges, and
+//! sphere patches around corners.
 //!
 //! Every vertex is a corner plus the radius times a unit vector between the normals of the faces at
 //! that corner (the Gauss map of the polyhedron), so it lies on the surface up to rounding.
-//! Neighbouring parts compute a common vertex from the same numbers, so it has the same bits in
-//! both.
+//! Neighbouring patches compute a common vertex from equal numbers, so its bits are equal in both
+//! patches.
 
 use std::collections::BTreeMap;
 
@@ -12,20 +12,20 @@ use super::sketch::Sketch;
 use crate::math::{Point, Real, Vector, cross, unit, unit_or};
 use crate::shape::Feature;
 
-/// The flat faces of a solid and their adjacency across sides.
+/// The flat faces of a solid, their adjacency, and the radius.
 struct Inflation<'a, N: Real> {
     faces: &'a [Feature<N, 3>],
-    /// The index of the face that has a side from the first point to the second; points are
-    /// identified by their bits.
+    /// For each directed side, from its first point to its second, the index of the face that has
+    /// it. Points are identified by their bits.
     face_of_side: BTreeMap<[[u64; 3]; 2], usize>,
     radius: N,
-    /// The cosine of the largest angle between neighbouring directions of an arc.
+    /// The cosine of the greatest allowed angle between neighbouring directions of an arc.
     cosine: N,
 }
 
 /// Adds the surface of a polyhedron inflated by a radius, with the outlines of its faces and the
-/// arcs at the ends of its edges. Returns false, and adds nothing, unless each side of a face
-/// belongs to exactly two faces and no corner is as sharp as a needle.
+/// arcs at the ends of its edges. Returns `false` and adds nothing if a side does not belong to
+/// exactly two faces, or if a corner is too sharp (see [`middle_of`]).
 pub(super) fn inflated<N: Real>(
     sketch: &mut Sketch<N, 3>,
     faces: &[Feature<N, 3>],
@@ -43,7 +43,7 @@ pub(super) fn inflated<N: Real>(
         return false;
     }
     let Some(corners) = solid.corners() else { return false };
-    // Nothing fails from here on.
+    // All checks have passed, so the sketch may be changed.
     for (index, face) in faces.iter().enumerate() {
         let moved: Vec<_> = face.vertices.iter().map(|v| solid.moved(v, &normal(face))).collect();
         sketch.ring(&moved);
@@ -56,17 +56,17 @@ pub(super) fn inflated<N: Real>(
     true
 }
 
-/// A corner of the polyhedron, and the part of the ball around it.
+/// A corner of the polyhedron, and the directions that bound its sphere patch.
 struct RoundedCorner<N: Real> {
     point: Point<N, 3>,
-    /// The directions on the border of the part, clockwise seen from outside.
+    /// The directions on the border of the patch, clockwise seen from outside.
     around: Vec<Vector<N, 3>>,
-    /// A direction inside the part.
+    /// A direction inside the patch.
     middle: Vector<N, 3>,
 }
 
 /// Returns the central direction of the directions around a corner. `None` if they form nearly a
-/// whole circle, as at the end of a needle, where their sum is mostly rounding error.
+/// full circle, as at the tip of a needle: their sum is then mostly rounding error.
 fn middle_of<N: Real>(around: &[Vector<N, 3>]) -> Option<Vector<N, 3>> {
     let sum = around.iter().fold(Vector::<N, 3>::zeros(), |sum, direction| sum + direction);
     let (direction, length) = unit(&sum)?;
@@ -79,7 +79,8 @@ fn sides<N: Real>(face: &Feature<N, 3>) -> impl Iterator<Item = [Point<N, 3>; 2]
     face.vertices.iter().zip(next).map(|(a, b)| [*a, *b])
 }
 
-/// Returns the key of a corner; all faces of a solid have bitwise equal coordinates for it.
+/// Returns the bits of a corner's coordinates as a key. All faces of a solid have bitwise equal
+/// coordinates of a common corner.
 fn bits<N: Real>(point: Point<N, 3>) -> [u64; 3] {
     // Adding zero makes zeros positive.
     [0, 1, 2].map(|axis| (point[axis] + N::ZERO).bits())
@@ -91,28 +92,29 @@ fn normal<N: Real>(face: &Feature<N, 3>) -> Vector<N, 3> {
 }
 
 impl<N: Real> Inflation<'_, N> {
-    /// Whether the reverse of each side is also a side, and every side has a length.
+    /// Returns whether the reverse of each side is also a side, and no side has the length zero.
     fn is_closed(&self) -> bool {
         self.face_of_side.keys().all(|[a, b]| a != b && self.face_of_side.contains_key(&[*b, *a]))
     }
 
-    /// Returns the point of the surface over a corner in a direction.
+    /// Returns the point of the inflated surface that lies in a unit direction from a corner.
     fn moved(&self, corner: &Point<N, 3>, direction: &Vector<N, 3>) -> Point<N, 3> {
         corner + direction * self.radius
     }
 
-    /// Returns the face beyond a side; `None` if there is none.
+    /// Returns the other face that has a side; `None` if there is none.
     fn beyond(&self, [a, b]: [Point<N, 3>; 2]) -> Option<usize> {
         self.face_of_side.get(&[bits(b), bits(a)]).copied()
     }
 
-    /// Returns the directions from the normal of a face to the normal of the face beyond a side.
-    /// Exchanging the two faces may change their bits; see [`Self::ordered_arc`].
+    /// Returns unit directions from the normal of a face to the normal of the face beyond a side,
+    /// both included. Exchanging the two faces may change the bits of the directions; see
+    /// [`Self::ordered_arc`].
     fn arc(&self, face: usize, side: [Point<N, 3>; 2]) -> Vec<Vector<N, 3>> {
         let Some(other) = self.beyond(side) else { return Vec::new() };
         let [first, last] = [face, other].map(|index| normal(&self.faces[index]));
-        // Two sides of a flat solid have opposite normals: the direction midway is away from the
-        // solid.
+        // The two faces of a flat solid have opposite normals. The direction midway between them is
+        // then perpendicular to the side, away from the solid.
         let along = side[1] - side[0];
         let outward = unit_or(&cross(&along, &first), first);
         let middle =
@@ -126,8 +128,8 @@ impl<N: Real> Inflation<'_, N> {
     /// Appends the directions after `first` up to `last`, each midway between its neighbours.
     fn bisect(&self, first: Vector<N, 3>, last: Vector<N, 3>, arc: &mut Vec<Vector<N, 3>>) {
         let middle = unit_or(&(first + last), last);
-        // A right angle takes at most six halvings at the finest option. Equal directions, and
-        // opposite ones, which have no middle, are not halved.
+        // A right angle takes at most six bisections at the finest resolution. Equal directions are
+        // not bisected, nor are opposite directions, which have no middle.
         let apart = first.dot(&last);
         let is_between = middle.dot(&first) > apart && middle.dot(&last) > apart;
         if apart < self.cosine && is_between {
@@ -138,7 +140,7 @@ impl<N: Real> Inflation<'_, N> {
         }
     }
 
-    /// Adds the cylinder part around a side, once for both faces.
+    /// Adds the cylinder patch around a side, once for both faces.
     fn around_edge(&self, sketch: &mut Sketch<N, 3>, face: usize, [a, b]: [Point<N, 3>; 2]) {
         if self.beyond([a, b]).is_none_or(|other| other <= face) {
             return;
@@ -146,7 +148,7 @@ impl<N: Real> Inflation<'_, N> {
         for pair in self.arc(face, [a, b]).windows(2) {
             let [a1, a2] = [0, 1].map(|index| self.moved(&a, &pair[index]));
             let [b1, b2] = [0, 1].map(|index| self.moved(&b, &pair[index]));
-            // The face is on the left of the side from `a` to `b`, this part on its right.
+            // The face is on the left of the side from `a` to `b`, the patch on its right.
             sketch.triangle([&b1, &a1, &a2]);
             sketch.triangle([&b1, &a2, &b2]);
             sketch.line([&a1, &a2]);
@@ -154,7 +156,7 @@ impl<N: Real> Inflation<'_, N> {
         }
     }
 
-    /// Returns all corners; `None` if one is as sharp as a needle.
+    /// Returns all corners; `None` if a corner is too sharp (see [`middle_of`]).
     fn corners(&self) -> Option<Vec<RoundedCorner<N>>> {
         let mut begun = BTreeMap::new();
         for (index, face) in self.faces.iter().enumerate() {
@@ -169,8 +171,8 @@ impl<N: Real> Inflation<'_, N> {
         begun.into_values().map(corner).collect()
     }
 
-    /// Returns the directions around the start of a side of a face, clockwise seen from outside.
-    /// Proceeds from face to face, each beyond the side that leaves the corner.
+    /// Returns the directions around the start point of a side of the face `start`, clockwise seen
+    /// from outside. In each step it moves to the face beyond the side that leaves the corner.
     fn directions_around(&self, start: usize, side: [Point<N, 3>; 2]) -> Vec<Vector<N, 3>> {
         let (mut face, mut side, mut around) = (start, side, Vec::new());
         for _ in 0..self.face_of_side.len() {
@@ -189,8 +191,8 @@ impl<N: Real> Inflation<'_, N> {
         around
     }
 
-    /// Returns an arc computed from the face with the lower index, so that its bits equal those of
-    /// the cylinder part.
+    /// Returns [`Self::arc`], computed from the face with the lower index. So its bits equal the
+    /// bits that the cylinder patch uses.
     fn ordered_arc(&self, face: usize, [a, b]: [Point<N, 3>; 2]) -> Vec<Vector<N, 3>> {
         match self.beyond([a, b]) {
             Some(other) if other < face => self.arc(other, [b, a]).into_iter().rev().collect(),
@@ -198,8 +200,8 @@ impl<N: Real> Inflation<'_, N> {
         }
     }
 
-    /// Adds the ball part around a corner, inside a loop of directions, as rings around its central
-    /// direction.
+    /// Adds the sphere patch around a corner, as rings around its central direction up to its
+    /// border.
     fn patch(&self, sketch: &mut Sketch<N, 3>, corner: &RoundedCorner<N>) {
         let RoundedCorner { point, around, middle } = corner;
         let steps = |direction: &Vector<N, 3>| {
@@ -219,8 +221,8 @@ impl<N: Real> Inflation<'_, N> {
             for ring in 0..rings {
                 let [p1, p2] = [ring, ring + 1].map(|ring| on_ring(p, ring));
                 let [q1, q2] = [ring, ring + 1].map(|ring| on_ring(q, ring));
-                // The loop is clockwise. Next to the centre the second triangle has no area and is
-                // left out.
+                // The border is clockwise. Next to the centre the second triangle has two equal
+                // corners and is left out.
                 sketch.triangle([&p1, &q2, &p2]);
                 sketch.triangle([&p1, &q1, &q2]);
             }

@@ -1,4 +1,4 @@
-//! A mesh under construction, and the shapes that 2D and 3D share.
+//! A mesh under construction, and the sketches of shapes whose algorithm is common to 2D and 3D.
 
 use crate::tables::ByDimension;
 use crate::tables::entries;
@@ -9,7 +9,8 @@ use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Space, filled};
 use crate::shape::{CompositeShape, Geometry, Kind, Plane};
 
-/// The number of marks from the centre of a half-space's square to its side.
+/// The number of marks between the centre of a half-space's square and its side, the mark on the
+/// side included.
 const MARKS: i32 = 2;
 
 /// A mesh under construction. Equal points share one vertex. Lines and triangles with a point that
@@ -42,13 +43,14 @@ impl<N: Real, const D: usize> Sketch<N, D> {
         self.mesh
     }
 
-    /// Returns the number of parts of a full turn.
+    /// Returns the number of segments of a full circle.
     pub(super) fn parts_of_turn(&self) -> u32 {
         self.options.parts_of_turn()
     }
 
-    /// Returns the index of the vertex at a local point, and appends the vertex if it is new;
-    /// `None` if the point is not finite.
+    /// Returns the index of the vertex at a point in the frame of the current part, and appends the
+    /// vertex if it is new. `None` if the point is not finite or 32 bits cannot number the
+    /// vertices.
     fn vertex(&mut self, local: &Point<N, D>) -> Option<u32> {
         // Adding zero makes zeros positive, so that equal points have equal bits.
         let point = self.pose.point(local).map(|x| x + N::ZERO);
@@ -62,7 +64,7 @@ impl<N: Real, const D: usize> Sketch<N, D> {
         Some(number)
     }
 
-    /// Adds a line, unless it has no length or was added before.
+    /// Adds a line, unless its ends are equal or it has been added before.
     pub(super) fn line(&mut self, ends: [&Point<N, D>; 2]) {
         let [Some(a), Some(b)] = ends.map(|end| self.vertex(end)) else { return };
         if a != b && self.lines.insert([a.min(b), a.max(b)]) {
@@ -86,7 +88,8 @@ impl<N: Real, const D: usize> Sketch<N, D> {
         }
     }
 
-    /// Adds a convex polygon, counter-clockwise, as triangles that meet at its first corner.
+    /// Adds a convex polygon with counter-clockwise corners as triangles that share its first
+    /// corner.
     pub(super) fn fan(&mut self, points: &[Point<N, D>]) {
         let Some((first, others)) = points.split_first() else { return };
         for side in others.windows(2) {
@@ -106,13 +109,13 @@ impl<N: Space<D>, const D: usize> Sketch<N, D> {
         }
     }
 
-    /// Adds the square (in 2D the line) around the origin that represents a half-space, with marks
-    /// into the solid.
+    /// Adds the square (in 2D the line) around the origin that represents a half-space, with short
+    /// lines into its solid side.
     fn half_space(&mut self, plane: &Plane<N, D>) {
         let extent = self.options.half_space_extent;
         let [u, v] = <N::Algorithms>::tangents(plane.normal()).map(|tangent| tangent * extent);
-        // Counter-clockwise seen from outside; in 2D the second tangent is zero, and so are two
-        // sides.
+        // The corners are counter-clockwise seen from outside. In 2D the second tangent and the
+        // length of two sides are zero.
         let corners = [u + v, v - u, -u - v, u - v].map(Point::from);
         self.ring(&corners);
         self.fan(&corners);
@@ -126,7 +129,8 @@ impl<N: Space<D>, const D: usize> Sketch<N, D> {
         }
     }
 
-    /// Adds the parts that searches find, which excludes the holes and ghosts of height fields.
+    /// Adds the parts that a search of the whole space finds. The holes and ghost parts of height
+    /// fields are not among them.
     fn composite(&mut self, composite: &dyn CompositeShape<N, D>) {
         let (outer, mut parts) = (self.pose, Vec::new());
         composite.search().overlapping(&Aabb::unbounded(), &mut |part| parts.push(part));
@@ -135,8 +139,8 @@ impl<N: Space<D>, const D: usize> Sketch<N, D> {
             let part = composite.part(index);
             self.pose = outer.compose(&part.pose);
             let geometry = part.solid.geometry();
-            // Parts must not be composites; a user's composite that violates this could recurse
-            // without end.
+            // Parts must not be composites. A custom composite that violates this could cause an
+            // endless recursion.
             if geometry.as_composite().is_none() {
                 self.add(geometry);
             }

@@ -5,7 +5,7 @@ use crate::math::{Point, Real, Vector, cross2, perp, unit};
 use crate::procedural::plane;
 use crate::shape::{Ball, Kind, Rounded, SupportMap};
 
-/// Adds a convex solid in 2D.
+/// Adds the outline of a convex solid in 2D and the triangles that fill it.
 pub(crate) fn sketch2<N: Real>(solid: Kind<'_, N, 2>, sketch: &mut Sketch<N, 2>) {
     let outline = outline(solid, sketch.parts_of_turn());
     sketch.ring(&outline);
@@ -13,7 +13,7 @@ pub(crate) fn sketch2<N: Real>(solid: Kind<'_, N, 2>, sketch: &mut Sketch<N, 2>)
 }
 
 /// Returns the corners around a convex solid, counter-clockwise: two for a segment, none for a
-/// shape that is not convex.
+/// half-space or a composite.
 fn outline<N: Real>(solid: Kind<'_, N, 2>, parts: u32) -> Vec<Point<N, 2>> {
     match solid {
         Kind::Ball(ball) => plane::ball(ball, parts).points,
@@ -30,13 +30,13 @@ fn outline<N: Real>(solid: Kind<'_, N, 2>, parts: u32) -> Vec<Point<N, 2>> {
     }
 }
 
-/// Returns the directions around a circle, counter-clockwise from x.
+/// Returns unit directions around a circle, counter-clockwise from the x axis.
 fn directions<N: Real>(parts: u32) -> Vec<Vector<N, 2>> {
     let unit = Ball::new(N::ONE);
     plane::ball(&unit, parts).points.into_iter().map(|point| point.coords).collect()
 }
 
-/// Returns support points around a solid.
+/// Returns the support points of a solid in the directions around a circle.
 fn sampled<N: Real>(map: &dyn SupportMap<N, 2>, parts: u32) -> Vec<Point<N, 2>> {
     directions(parts).iter().map(|direction| map.support_point(direction)).collect()
 }
@@ -59,8 +59,8 @@ fn rounded<N: Real>(solid: &Rounded<N, 2>, parts: u32) -> Vec<Point<N, 2>> {
 }
 
 /// Returns the outline of a convex polygon inflated by `radius`. The polygon is counter-clockwise,
-/// without sides of length zero. The outline has the sides, moved outwards, and an arc around each
-/// corner.
+/// without sides of length zero. The outline consists of the sides, moved outwards, and an arc
+/// around each corner.
 fn inflated<N: Real>(corners: &[Point<N, 2>], radius: N, parts: u32) -> Vec<Point<N, 2>> {
     let around = directions::<N>(parts);
     if let [corner] = corners {
@@ -69,7 +69,7 @@ fn inflated<N: Real>(corners: &[Point<N, 2>], radius: N, parts: u32) -> Vec<Poin
     let normal = |(a, b): (&Point<N, 2>, &Point<N, 2>)| {
         unit(&(b - a)).map_or_else(Vector::<N, 2>::zeros, |(along, _)| -perp(&along))
     };
-    // The unit normal of each side to its right, which is outwards.
+    // For each side, the unit normal to its right, which points outwards.
     let next = corners.iter().cycle().skip(1);
     let normals: Vec<_> = corners.iter().zip(next).map(normal).collect();
     let before = normals.iter().cycle().skip(normals.len().saturating_sub(1));

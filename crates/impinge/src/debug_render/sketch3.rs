@@ -1,4 +1,4 @@
-//! Surfaces and lines of 3D solids.
+//! Triangles and lines of 3D solids.
 
 use super::rounded3::inflated;
 use super::sketch::Sketch;
@@ -9,7 +9,7 @@ use crate::shape::{
     TaperedCapsule,
 };
 
-/// Adds a convex solid in 3D.
+/// Adds the surface of a convex solid in 3D and the lines that are usual in drawings of it.
 pub(crate) fn sketch3<N: Real>(solid: Kind<'_, N, 3>, sketch: &mut Sketch<N, 3>) {
     let parts = sketch.parts_of_turn();
     match solid {
@@ -39,7 +39,7 @@ pub(crate) fn sketch3<N: Real>(solid: Kind<'_, N, 3>, sketch: &mut Sketch<N, 3>)
         }
         Kind::Cuboid(solid) => cuboid(sketch, solid),
         Kind::Polytope(hull) => {
-            // The hull's own edges: a face with many corners has no diagonals.
+            // The lines are the edges of the hull, so faces with many corners have no diagonals.
             let ends = hull.edges().iter().map(|edge| edge.vertices);
             for [a, b] in ends.map(|ends| ends.map(|end| &hull.vertices()[end as usize])) {
                 sketch.line([a, b]);
@@ -64,13 +64,15 @@ fn surface<N: Real>(sketch: &mut Sketch<N, 3>, surface: &TriangleSurface<N>) {
     }
 }
 
-/// Returns the points of a circle in the plane of two vectors, from the first towards the second.
+/// Returns `parts` points of the circle (or ellipse) around `center` with the half axes `axes`,
+/// from the first axis towards the second.
 fn circle<N: Real>(center: &Point<N, 3>, axes: [Vector<N, 3>; 2], parts: u32) -> Vec<Point<N, 3>> {
     let around = plane::ball(&Ball::new(N::ONE), parts).points;
     around.iter().map(|toward| center + axes[0] * toward.x + axes[1] * toward.y).collect()
 }
 
-/// Adds the images, under `at`, of the three unit circles in the planes of two axes.
+/// Adds three closed lines: the images, under the map `at`, of the unit circles in the three
+/// coordinate planes.
 fn great_circles<N: Real>(sketch: &mut Sketch<N, 3>, at: impl Fn(&Vector<N, 3>) -> Point<N, 3>) {
     let axes = [Vector::<N, 3>::x(), Vector::<N, 3>::y(), Vector::<N, 3>::z()];
     for axis in 0..3 {
@@ -82,14 +84,14 @@ fn great_circles<N: Real>(sketch: &mut Sketch<N, 3>, at: impl Fn(&Vector<N, 3>) 
 }
 
 /// Adds the outlines of a tapered capsule in two planes through its axis, and the circles where its
-/// balls begin.
+/// side touches the balls at its ends.
 fn round_ends<N: Real>(sketch: &mut Sketch<N, 3>, capsule: &TaperedCapsule<N, 3>) {
     let (parts, center) = (sketch.parts_of_turn(), capsule.segment().center());
     let axis = unit_or(&(capsule.segment().b() - capsule.segment().a()), Vector::<N, 3>::y());
     let (u, v) = orthonormal_basis(&axis);
     let [radius1, radius2] = capsule.radii();
-    // The 2D capsule that generates the solid by revolution. Sizes beyond the range of the scalar
-    // give no outline.
+    // The 2D capsule that generates the solid by revolution. If it cannot be constructed, since
+    // numbers overflow, there are no outlines.
     let flat = TaperedCapsule::<N, 2>::try_new(capsule.half_height(), radius1, radius2);
     for (flat, across) in flat.iter().flat_map(|flat| [(flat, u), (flat, v)]) {
         let outline = plane::tapered_capsule(flat, parts).points;
@@ -107,7 +109,8 @@ fn round_ends<N: Real>(sketch: &mut Sketch<N, 3>, capsule: &TaperedCapsule<N, 3>
     }
 }
 
-/// Adds a box. Corner `i` has the positive half extent on the axes whose bits are set in `i`.
+/// Adds a box. Corner `i` has the positive half extent on the axes whose bits are set in `i`, else
+/// the negative one.
 fn cuboid<N: Real>(sketch: &mut Sketch<N, 3>, cuboid: &Cuboid<N, 3>) {
     let corner = |index| cuboid.vertex(FeatureId::Vertex(index));
     for axis in [1, 2, 4] {
@@ -118,7 +121,7 @@ fn cuboid<N: Real>(sketch: &mut Sketch<N, 3>, cuboid: &Cuboid<N, 3>) {
     surface(sketch, &space::cuboid(cuboid));
 }
 
-/// Adds the rims and four lines between them.
+/// Adds the surface of a cylinder, its rims, and four lines between them.
 fn cylinder<N: Real>(sketch: &mut Sketch<N, 3>, solid: &Cylinder<N>) {
     let parts = sketch.parts_of_turn();
     let (radius, up) = (solid.radius(), Vector::<N, 3>::y() * solid.half_height());
@@ -134,7 +137,7 @@ fn cylinder<N: Real>(sketch: &mut Sketch<N, 3>, solid: &Cylinder<N>) {
     }
 }
 
-/// Adds the rim and four lines to the apex.
+/// Adds the surface of a cone, its rim, and four lines from the rim to the apex.
 fn cone<N: Real>(sketch: &mut Sketch<N, 3>, solid: &Cone<N>) {
     let parts = sketch.parts_of_turn();
     let apex = Point::from(Vector::<N, 3>::y() * solid.half_height());
@@ -147,7 +150,7 @@ fn cone<N: Real>(sketch: &mut Sketch<N, 3>, solid: &Cone<N>) {
     }
 }
 
-/// Returns the first `count` faces of a solid.
+/// Returns the first `count` faces of a solid, with their normals.
 fn faces<N: Real>(solid: &dyn ConvexPolyhedron<N, 3>, count: usize) -> Vec<Feature<N, 3>> {
     let face = |index| {
         let mut face = Feature::default();
@@ -158,8 +161,8 @@ fn faces<N: Real>(solid: &dyn ConvexPolyhedron<N, 3>, count: usize) -> Vec<Featu
     (0..).map(face).take(count).collect()
 }
 
-/// Adds a rounded solid: exactly if the inner shape has flat faces; other shapes, and flat boxes,
-/// are sampled by support points.
+/// Adds a rounded solid, with exact faces and patches if the inner shape is a box, a triangle or a
+/// hull. Other shapes, and shapes that [`inflated`] rejects, are sampled by support points.
 fn rounded<N: Real>(sketch: &mut Sketch<N, 3>, solid: &Rounded<N, 3>) {
     let faces = match solid.inner().0 {
         Kind::Cuboid(cuboid) => faces(cuboid, 6),

@@ -12,9 +12,10 @@ use crate::world::{CollisionObject, CollisionWorld};
 impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
     /// Draws a world: everything for which [`options`](Self::options) has a style.
     ///
-    /// Shapes and boxes are drawn at the objects' current positions, everything else as of the last
-    /// update. Two objects of a pair with proximity are joined by a line between their nearest
-    /// points, or between their origins if they intersect; disjoint objects are not joined.
+    /// Shapes and tight boxes are drawn at the current positions of the objects. Contacts, boxes of
+    /// the broad phase, and the list of pairs with proximity are as of the last update. For a pair
+    /// with proximity, a line is drawn between the nearest points of the objects, or between their
+    /// origins if they intersect. For disjoint objects no line is drawn.
     ///
     /// The cost is O(n) for n drawn objects, plus sorting the contacts by handles, plus a mesh for
     /// each shape that was not drawn before.
@@ -36,7 +37,8 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         self.proximities(world, renderer);
     }
 
-    /// Draws the boxes of the broad phase's nodes. They come first, so that they cover nothing.
+    /// Draws the boxes of the broad phase's nodes. They are drawn first, so that they do not cover
+    /// other objects.
     fn tree_nodes<T>(&self, world: &CollisionWorld<N, D, T>, renderer: &mut dyn DebugRender<N, D>) {
         if let Some(style) = &self.options.tree_node {
             let mut draw = |aabb: &Aabb<N, D>| draw_box(aabb, style, Drawn::TreeNode, renderer);
@@ -61,7 +63,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         }
     }
 
-    /// Draws the contacts of all pairs, sorted by handles: views come in memory order.
+    /// Draws the contacts of all pairs, sorted by handles, since views come in memory order.
     fn manifolds<T>(&self, world: &CollisionWorld<N, D, T>, renderer: &mut dyn DebugRender<N, D>) {
         let DebugOptions { contact_point, contact_normal, manifold, .. } = self.options;
         if contact_point.or(contact_normal).or(manifold).is_none() {

@@ -1,9 +1,10 @@
-//! The pair filter with the dimension filled in.
+//! The trait of pair filters with the dimension filled in.
 
 use super::world::CollisionObject;
 use crate::math::Real;
 
-/// Decides which pairs may exist at all; see [`crate::world::BroadPhasePairFilter`].
+/// A filter that decides which pairs of objects may exist; see
+/// [`crate::world::BroadPhasePairFilter`].
 ///
 /// Closures that take two references to objects and return a `bool` implement this trait.
 ///
@@ -22,8 +23,8 @@ use crate::math::Real;
 /// world.register_broad_phase_pair_filter("parity", SameParity);
 /// ```
 pub trait BroadPhasePairFilter<N: Real, T>: Send + Sync {
-    /// Returns `true` if the two objects may interact. The handle of `co1` is smaller than that of
-    /// `co2`.
+    /// Returns `true` if the two objects may interact. The handle of `co1` is smaller than the
+    /// handle of `co2`.
     fn is_pair_valid(&self, co1: &CollisionObject<N, T>, co2: &CollisionObject<N, T>) -> bool;
 }
 

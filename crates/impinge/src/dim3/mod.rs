@@ -1,8 +1,8 @@
 //! 3D: every name of the library with the dimension filled in.
 //!
 //! A type here is the generic type of the same name at the crate's root with `D` = 3:
-//! `dim3::world::CollisionWorld<N, T>` is `world::CollisionWorld<N, 3, T>`. The modules follow the
-//! user guide; [`prelude`] re-exports the names that common programs need.
+//! `dim3::world::CollisionWorld<N, T>` is `world::CollisionWorld<N, 3, T>`. The module [`prelude`]
+//! re-exports the names that common programs need.
 //!
 //! ```
 //! use impinge::dim3::math::{Isometry, Vector};
@@ -32,14 +32,14 @@
 mod filter;
 pub mod prelude;
 
-/// Simple volumes that enclose shapes.
+/// Bounding volumes of shapes.
 pub mod bounding_volume {
     pub use crate::bounding_volume::{AabbError, BoundingSphereError, BoundingVolume};
     pub use crate::shape::{aabb, bounding_sphere};
 
     /// An axis-aligned box in 3D.
     pub type Aabb<N> = crate::bounding_volume::Aabb<N, 3>;
-    /// A ball that encloses something.
+    /// A ball that encloses a shape.
     pub type BoundingSphere<N> = crate::bounding_volume::BoundingSphere<N, 3>;
 }
 
@@ -93,15 +93,15 @@ pub mod batch {
     pub type ManifoldRows<N> = crate::batch::ManifoldRows<N, 3>;
 }
 
-/// Tests which of many configurations of a robot are free of collisions.
+/// The configuration checker: tests which of many configurations of a robot are free of collisions.
 pub mod checker {
     pub use crate::checker::{CheckerError, NO_PAIR, NearestColumns};
 
-    /// Bodies on moving frames, and obstacles.
+    /// A robot of bodies on moving frames, and obstacles.
     pub type Checker<N> = crate::checker::Checker<N, 3>;
-    /// A tree of frames.
+    /// A tree of frames whose joints are driven by a configuration.
     pub type FrameTree<N> = crate::checker::FrameTree<N, 3>;
-    /// A frame on its parent.
+    /// A frame that a joint connects to its parent.
     pub type Frame<N> = crate::checker::Frame<N, 3>;
     /// The motion of a frame relative to its parent.
     pub type Joint<N> = crate::checker::Joint<N, 3>;
@@ -122,8 +122,8 @@ pub mod broad_phase {
 
 /// The narrow phase: contacts and proximities of the pairs that the broad phase proposes.
 ///
-/// Traits to implement have the dimension as a parameter: `ContactDispatcher<N, 3>`, `Shape<N, 3>`,
-/// `NarrowPhase<N, 3, T>`.
+/// The traits to implement have the dimension as a parameter: `ContactDispatcher<N, 3>`, `Shape<N,
+/// 3>`, `NarrowPhase<N, 3, T>`.
 pub mod narrow_phase {
     pub use crate::narrow_phase::{
         CollisionObjectHandle, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,
@@ -132,15 +132,15 @@ pub mod narrow_phase {
     };
     pub use crate::world::{NarrowPhase, ProximityPairs};
 
-    /// Pairs with their contacts, as a narrow phase returns them.
+    /// An iterator over the pairs of a narrow phase with their contacts.
     pub type ContactPairs<'a, N> = crate::world::ContactPairs<'a, N, 3>;
     /// The narrow phase of a new world: contacts and proximities.
     pub type DefaultNarrowPhase<N> = crate::narrow_phase::DefaultNarrowPhase<N, 3>;
-    /// Chooses the library's own contact algorithm for every two solids.
+    /// The dispatcher that selects the library's contact algorithm for every pair of shapes.
     pub type DefaultContactDispatcher = crate::narrow_phase::DefaultContactDispatcher<3>;
-    /// Chooses the library's own proximity algorithm for every two solids.
+    /// The dispatcher that selects the library's proximity algorithm for every pair of shapes.
     pub type DefaultProximityDispatcher = crate::narrow_phase::DefaultProximityDispatcher<3>;
-    /// Computes the contacts of any two built-in solids.
+    /// The contact algorithm of the library, for a pair of built-in shapes.
     pub type PairManifoldGenerator<N> = crate::narrow_phase::PairManifoldGenerator<N, 3>;
     /// A boxed contact algorithm.
     pub type ContactAlgorithm<N> = crate::narrow_phase::ContactAlgorithm<N, 3>;
@@ -158,13 +158,13 @@ pub mod narrow_phase {
     pub type ObjectTable<N> = crate::narrow_phase::ObjectTable<N, 3>;
 }
 
-/// Events: changes between two updates.
+/// Events: the contacts and proximities that began or ended in an update.
 pub mod events {
     pub use crate::narrow_phase::{ContactEvent, Events, ProximityEvent};
     pub use crate::query::Proximity;
 }
 
-/// Objects, and the pairs that touch as of the last update.
+/// Worlds of objects, and the pairs that touch as of the last update.
 pub mod world {
     pub use super::filter::BroadPhasePairFilter;
     pub use crate::narrow_phase::{
@@ -180,19 +180,19 @@ pub mod world {
     pub type CollisionObject<N, T> = crate::world::CollisionObject<N, 3, T>;
     /// The objects of a world.
     pub type CollisionObjects<N, T> = crate::world::CollisionObjects<N, 3, T>;
-    /// Selects the objects that a query considers.
+    /// A filter that selects the objects that a query considers.
     pub type QueryFilter<'a, N, T> = crate::world::QueryFilter<'a, N, 3, T>;
-    /// An object near the point or solid of a query.
+    /// An object near the point or shape of a query, with the distance.
     pub type NearObject<'a, N, T> = crate::world::NearObject<'a, N, 3, T>;
-    /// Shapes and filters of the user's own that saved worlds name.
+    /// The custom shapes and filters to which saved worlds refer by name.
     #[cfg(feature = "serde")]
     pub type Registry<N, T> = crate::world::Registry<N, 3, T>;
-    /// A world as data.
+    /// A world as serializable data.
     #[cfg(feature = "serde")]
     pub type SavedWorld<N, T> = crate::world::SavedWorld<N, 3, T>;
 }
 
-/// Queries about one solid or two.
+/// Queries of one shape or of two shapes.
 pub mod query {
     pub use crate::narrow_phase::{ContactPrediction, contact_manifolds};
     pub use crate::query::{
@@ -202,13 +202,13 @@ pub mod query {
         witness,
     };
 
-    /// A half-line.
+    /// A ray: a half-line with a start and a velocity.
     pub type Ray<N> = crate::query::Ray<N, 3>;
-    /// The time and place at which a ray meets a solid.
+    /// The hit of a ray: the time, the normal, the part and the feature.
     pub type RayIntersection<N> = crate::query::RayIntersection<N, 3>;
     /// Rays that are cast together; see [`crate::query::RayBatch`].
     pub type RayBatch<'a, N> = crate::query::RayBatch<'a, N, 3>;
-    /// The point of a solid that is nearest to a given one.
+    /// The projection of a point onto a shape: the nearest point of the shape.
     pub type PointProjection<N> = crate::query::PointProjection<N, 3>;
     /// The points of two solids that are nearest to each other.
     pub type ClosestPoints<N> = crate::query::ClosestPoints<N, 3>;
@@ -240,7 +240,7 @@ pub mod query {
     pub type ContactManifold<N> = crate::query::ContactManifold<N, 3>;
 }
 
-/// The solids.
+/// The shapes: convex solids, half-spaces and composites.
 pub mod shape {
     #[cfg(feature = "serde")]
     pub use crate::shape::SavedShape;
@@ -258,9 +258,9 @@ pub mod shape {
     pub type Capsule<N> = crate::shape::Capsule<N, 3>;
     /// A half-space: all points behind a plane.
     pub type HalfSpace<N> = crate::shape::Plane<N, 3>;
-    /// Another name of [`HalfSpace`], which is preferred.
+    /// An alias of [`HalfSpace`], which is the preferred name.
     pub type Plane<N> = crate::shape::Plane<N, 3>;
-    /// A straight line between two points.
+    /// A straight line segment between two points.
     pub type Segment<N> = crate::shape::Segment<N, 3>;
     /// A filled triangle.
     pub type Triangle<N> = crate::shape::Triangle<N, 3>;
@@ -272,13 +272,13 @@ pub mod shape {
     pub type Ellipsoid<N> = crate::shape::Ellipsoid<N, 3>;
     /// A surface of triangles.
     pub type TriMesh<N> = crate::shape::TriMesh<N, 3>;
-    /// A line of segments, open or closed.
+    /// A chain of segments, open or closed.
     pub type Polyline<N> = crate::shape::Polyline<N, 3>;
     /// A vertex, an edge or a face, with its points.
     pub type Feature<N> = crate::shape::Feature<N, 3>;
-    /// The form in which queries read a shape.
+    /// The geometry of a shape, as queries read it.
     pub type Geometry<'a, N> = crate::shape::Geometry<'a, N, 3>;
-    /// One of the solids that a composite is made of.
+    /// A part of a composite: a solid and its pose.
     pub type Part<'a, N> = crate::shape::Part<'a, N, 3>;
     /// The solid of a part.
     pub type PartSolid<'a, N> = crate::shape::PartSolid<'a, N, 3>;
@@ -290,7 +290,7 @@ pub mod shape {
     pub type ShapeHandle<N> = crate::shape::ShapeHandle<N, 3>;
 }
 
-/// Shapes computed from points.
+/// Convex hulls of points, and shapes made from them.
 pub mod transformation {
     pub use crate::transformation::{
         IndexedHull, convex_hull3 as convex_hull, convex_shape3 as convex_shape,
@@ -314,7 +314,7 @@ pub mod procedural {
     pub use crate::procedural::{MAX_SUBDIVISIONS, MIN_SUBDIVISIONS, TriangleSurface};
 }
 
-/// Searches among a user's boxes.
+/// Search trees over boxes of the user.
 ///
 /// ```
 /// use impinge::dim3::bounding_volume::Aabb;
@@ -332,9 +332,9 @@ pub mod partitioning {
     pub type BoxTree<N> = crate::partitioning::BoxTree<N, 3>;
 }
 
-/// Numbers, vectors and poses under names that are equal in both dimensions, as examples use them.
+/// Scalars, vectors and poses, under the same names in `dim2` and `dim3`.
 ///
-/// They are nalgebra's types; [`na`] re-exports the rest of that library.
+/// The vectors and isometries are types of nalgebra, which [`na`] re-exports.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Rotation, Vector};
@@ -366,6 +366,6 @@ pub mod math {
     pub type Matrix<N> = na::Matrix3<N>;
 }
 
-/// Nalgebra, in the version that the library uses; its vectors and poses for this dimension have
-/// short names in [`math`].
+/// Nalgebra, in the version that the library uses. Its vectors and isometries for this dimension
+/// have short names in [`math`].
 pub use crate::math::na;

@@ -1,9 +1,9 @@
 //! The names that common programs need, for a glob import: the world and its events, the shapes,
-//! vectors and poses, and the queries about two shapes, in 3D.
+//! vectors and poses, and the queries of two shapes, in 3D.
 //!
 //! A name that you define or import takes precedence over one of a glob import. All other names are
-//! in the modules beside this one. A file imports one prelude, of `dim2` or of `dim3`, since the
-//! names are equal.
+//! in the other modules of this dimension. Import only one prelude in a file, of `dim2` or of
+//! `dim3`, since their names are equal.
 //!
 //! ```
 //! use impinge::dim3::prelude::*;

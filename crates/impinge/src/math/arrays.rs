@@ -1,7 +1,7 @@
 //! SIMD vectors emulated by arrays of 8 numbers, for targets without SIMD.
 //!
-//! The operations are functions that are not inlined. Inlining them would turn a kernel of a
-//! thousand operations into functions with thousands of loops, which takes compilers too long.
+//! The operations are functions that are not inlined. Inlining would turn a kernel of a thousand
+//! operations into a function with thousands of loops, which takes too long to compile.
 
 use crate::math::filled;
 use core::ops::{
@@ -15,7 +15,7 @@ use super::simd::{Simd, SimdMask, Wide};
 /// The number of lanes in a vector.
 const LANES: usize = 8;
 
-/// The set of vector types that every machine supports.
+/// The vector types of this file as a SIMD level, which every machine supports.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Arrays;
 

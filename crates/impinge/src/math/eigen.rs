@@ -1,25 +1,28 @@
 //! Eigenvalues and eigenvectors of small symmetric matrices, bitwise equal on every platform.
 //!
-//! Uses Jacobi rotations, each of which makes one off-diagonal element zero. They need only square
-//! roots and divisions, and are accurate for small eigenvalues of positive matrices beside large
-//! ones (Demmel and Veselić, "Jacobi's method is more accurate than QR", 1992).
+//! Uses Jacobi rotations, each of which makes one off-diagonal element zero. They need only
+//! arithmetic and square roots. Small eigenvalues of positive definite matrices have a small
+//! relative error even if other eigenvalues are much larger (Demmel and Veselić, "Jacobi's method
+//! is more accurate than QR", 1992).
 
 use super::real::f64_power_of_two_below;
 use super::{Matrix, Vector};
 
-/// The maximum number of sweeps over all elements. Each sweep squares the error; five are usual.
+/// The maximum number of sweeps over all off-diagonal elements. Near the end each sweep squares the
+/// error, so about five sweeps suffice.
 const MAX_SWEEPS: usize = 32;
 
-/// An element is negligible if it is at most this fraction of the geometric mean of its two
-/// diagonal elements: it is then rounding error of the matrix.
+/// An off-diagonal element is negligible if its magnitude is at most this fraction of the geometric
+/// mean of the diagonal elements in its row and its column. It is then a rounding error of the
+/// matrix.
 const NEGLIGIBLE: f64 = 8.0 * f64::EPSILON;
 
 /// Returns the eigenvalues of a finite symmetric matrix, and a rotation whose columns are the
 /// eigenvectors: `matrix = rotation · diagonal · rotationᵀ`.
 ///
-/// Each rotation is by at most 45°. So the eigenvectors of a nearly diagonal matrix are near the
-/// axes, in their order, and those of a diagonal matrix are the axes. Scaling the matrix by powers
-/// of two scales the eigenvalues exactly.
+/// Each Jacobi rotation is by at most 45°. So the eigenvectors of a diagonal matrix are the axes,
+/// and the eigenvectors of a nearly diagonal matrix are near the axes, in the order of the axes.
+/// Scaling the matrix by powers of two scales the eigenvalues exactly.
 pub(crate) fn symmetric_eigen<const D: usize>(
     matrix: &Matrix<f64, D>,
 ) -> (Vector<f64, D>, Matrix<f64, D>) {
@@ -102,7 +105,7 @@ mod tests {
         let plane = Matrix::<f64, 2>::new(2.0, 1.0, 1.0, 2.0);
         let values = check(&plane);
         assert!((values - Vector::<f64, 2>::new(1.0, 3.0)).norm() < 1e-15, "{values}");
-        // The matrix of a line: two of the three eigenvalues are zero.
+        // A matrix of rank 1: two of the three eigenvalues are zero.
         let line = V3::new(1.0, 2.0, -2.0);
         let values = check(&(line * line.transpose()));
         assert!((values.sum() - 9.0).abs() < 1e-14 && values.amin() < 1e-15, "{values}");
@@ -126,7 +129,8 @@ mod tests {
         }
     }
 
-    /// Tests that a small eigenvalue keeps its digits where the matrix has them.
+    /// Tests that an eigenvalue of magnitude 1e-17 beside an eigenvalue of 1 has a small relative
+    /// error.
     #[test]
     fn small_values_beside_large_ones() {
         let graded = M3::new(1.0, 1e-6, 0.0, 1e-6, 1e-9, 1e-13, 0.0, 1e-13, 1e-18);

@@ -2,9 +2,9 @@
 //!
 //! The method is from Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust
 //! Geometric Predicates" (1997): a rounded determinant with a bound on its error and, if the bound
-//! does not decide, the exact determinant as an unevaluated sum of doubles. Two stages suffice
-//! here, as the second is rare. The sign is exact unless a product underflows, which for
-//! coordinates scaled to 1 takes differences below 1e-90. The sign may then be wrong, but the
+//! does not decide the sign, the exact determinant as an unevaluated sum of doubles. Two stages
+//! suffice here, as the second is rare. The sign is exact unless a product underflows, which needs
+//! differences below 1e-90 for coordinates of magnitude 1. The sign may then be wrong, but the
 //! callers still terminate.
 
 use crate::math::Mapped;
@@ -16,10 +16,11 @@ use super::{Point, Vector};
 type P2 = Point<f64, 2>;
 type P3 = Point<f64, 3>;
 
-/// A sum of nonoverlapping doubles, smallest first; empty for zero.
+/// A number as an unevaluated sum of nonoverlapping doubles in order of increasing magnitude; empty
+/// for zero.
 type Expansion = SmallVec<[f64; 32]>;
 
-/// Splits a double into two halves of 26 bits (Dekker, Veltkamp).
+/// Splits a double into the sum of two doubles with 26 significant bits each (Dekker, Veltkamp).
 fn split(a: f64) -> (f64, f64) {
     let c = 134_217_729.0 * a;
     let high = c - (c - a);
@@ -35,7 +36,7 @@ fn two_product(a: f64, b: f64) -> (f64, f64) {
     (product, a_low * b_low - error)
 }
 
-/// Adds one double to an expansion, exactly.
+/// Adds a double to an expansion without rounding error.
 fn grow(expansion: &mut Expansion, addend: f64) {
     let mut carry = addend;
     let mut kept = 0;
@@ -53,7 +54,7 @@ fn grow(expansion: &mut Expansion, addend: f64) {
     }
 }
 
-/// Returns `a − b`, exactly.
+/// Returns `a − b` as an expansion, without rounding error.
 fn difference(a: f64, b: f64) -> Expansion {
     let (high, low) = sum_and_error(a, -b);
     let mut expansion = Expansion::new();
@@ -62,7 +63,7 @@ fn difference(a: f64, b: f64) -> Expansion {
     expansion
 }
 
-/// Adds `sign · a · b` to an expansion, exactly.
+/// Adds `sign · a · b` to the expansion `sum` without rounding error. `sign` is 1 or −1.
 fn add_product(sum: &mut Expansion, a: &[f64], b: &[f64], sign: f64) {
     for &x in a {
         for &y in b {
@@ -73,7 +74,7 @@ fn add_product(sum: &mut Expansion, a: &[f64], b: &[f64], sign: f64) {
     }
 }
 
-/// Returns `a · d − b · c`, exactly.
+/// Returns `a · d − b · c` as an expansion, without rounding error.
 fn minor(a: &[f64], b: &[f64], c: &[f64], d: &[f64]) -> Expansion {
     let mut sum = Expansion::new();
     add_product(&mut sum, a, d, 1.0);
@@ -81,12 +82,14 @@ fn minor(a: &[f64], b: &[f64], c: &[f64], d: &[f64]) -> Expansion {
     sum
 }
 
-/// Returns the rounded value, whose sign is exact: the largest term exceeds the sum of all others.
+/// Returns the rounded value of an expansion. Its sign is exact, since the last term exceeds the
+/// sum of all other terms in magnitude.
 fn value(expansion: &[f64]) -> f64 {
     expansion.iter().sum::<f64>()
 }
 
-/// Returns twice the area of the triangle, positive if it is counter-clockwise. The sign is exact.
+/// Returns twice the signed area of the triangle `abc`, positive if its corners are
+/// counter-clockwise. The sign is exact.
 pub(crate) fn area(a: &P2, b: &P2, c: &P2) -> f64 {
     let (u, v) = (a - c, b - c);
     let (left, right) = (u.x * v.y, u.y * v.x);
@@ -100,18 +103,19 @@ fn area_exact(a: &P2, b: &P2, c: &P2) -> f64 {
     value(&minor(&ux, &uy, &vx, &vy))
 }
 
-/// A rounded volume is used if its magnitude exceeds this fraction of the sum of its terms'
-/// magnitudes.
+/// The rounded determinant of [`volume`] is used if its magnitude exceeds this fraction of the sum
+/// of the magnitudes of its terms.
 const MARGIN: f64 = 4.0 * 1_048_576.0 * f64::EPSILON;
 
-/// Returns `a · b − c · d`, accurate to the last digits despite cancellation.
+/// Returns `a · b − c · d` with a relative error of about ε, despite cancellation.
 fn product_difference(a: f64, b: f64, c: f64, d: f64) -> f64 {
     let ((left, left_error), (right, right_error)) = (two_product(a, b), two_product(c, d));
     (left - right) + (left_error - right_error)
 }
 
-/// Returns the normal of the triangle on the side from which it appears counter-clockwise, with the
-/// length of twice its area. Accurate to the last digits, also for slivers.
+/// Returns the normal of the triangle on the side from which it appears counter-clockwise, with a
+/// length of twice its area. The error of each component is about ε times its magnitude plus ε²
+/// times the product of the lengths of two sides, so slivers have normals too.
 pub(crate) fn area_vector(a: &P3, b: &P3, c: &P3) -> Vector<f64, 3> {
     let two_sums = |p: &P3| [0, 1, 2].mapped(|axis| sum_and_error(p[axis], -a[axis]));
     let (u, v) = (two_sums(b), two_sums(c));
@@ -135,8 +139,9 @@ pub(crate) fn volume(a: &P3, b: &P3, c: &P3, q: &P3) -> f64 {
     let permanent = u.z.abs() * (vw.abs() + wv.abs())
         + v.z.abs() * (wu.abs() + uw.abs())
         + w.z.abs() * (uv.abs() + vu.abs());
-    // Shewchuk's bound is 7 half-units. A million times this bound also makes the magnitude
-    // accurate to six digits, which heights over slivers need; the exact stage is still rare.
+    // Shewchuk's bound is 7 half-units. Requiring a million times this bound also limits the
+    // relative error of the magnitude to 1e-6, which heights over slivers need. The exact stage is
+    // still rare.
     if det.abs() > MARGIN * permanent { -det } else { volume_exact([a, b, c], q) }
 }
 
@@ -190,7 +195,8 @@ mod tests {
         let (a, b) = (P3::new(0.1, 0.3, 0.7), P3::new(1.1, 1.3, 1.7));
         let c = P3::new(0.6, 0.8, 1.2 + f64::EPSILON);
         let normal = area_vector(&a, &b, &c);
-        // The normal is exact: the heights of both ends over the plane of the three points vanish.
+        // The normal is accurate: the heights of `b` and `c` over the plane through `a` with this
+        // normal vanish up to rounding.
         for p in [b, c] {
             let height = normal.normalize().dot(&(p - a));
             assert!(height.abs() < 1e-16, "{p} lies {height} out of the plane");
@@ -200,7 +206,7 @@ mod tests {
 
     #[test]
     fn exact_volumes_of_a_thin_tetrahedron() {
-        // Three points with coordinates whose differences need more than 53 bits.
+        // Three points whose coordinate differences need more than 53 bits.
         let far = 1.0 + f64::EPSILON;
         let [a, b, c] = [[1e-20, 0.0, far], [far, 1e-20, 0.0], [0.0, far, 1e-20]].mapped(P3::from);
         let inside = P3::from((a.coords + b.coords + c.coords) / 3.0);

@@ -1,8 +1,8 @@
-//! Vectors of 8 numbers on narrower registers: two vectors side by side, each of which may itself
-//! be [`Halves`].
+//! Vectors of 8 numbers for narrower registers: pairs of vectors with half of the lanes each, which
+//! may themselves be [`Halves`].
 //!
-//! `fearless_simd` also has such vectors, as arrays of registers that each operation takes apart
-//! and puts together. The generated code is the same, but the compiler takes twice as long.
+//! `fearless_simd` also has such vectors, as arrays of registers that each operation unpacks and
+//! packs. Their machine code is equal, but takes twice as long to compile.
 
 use core::ops::{
     Add, AddAssign, BitAnd, BitAndAssign, BitOr, BitOrAssign, BitXor, Div, Mul, Neg, Not, Sub,
@@ -10,7 +10,7 @@ use core::ops::{
 
 use super::simd::{Simd, SimdMask, Wide};
 
-/// The lanes of `low`, then the lanes of `high`: numbers, or the results of comparisons.
+/// The lanes of `low` followed by the lanes of `high`. `V` is a vector of numbers or a mask.
 #[derive(Clone, Copy, Debug)]
 #[expect(unnameable_types, reason = "for this crate alone")]
 pub struct Halves<V> {
@@ -18,8 +18,8 @@ pub struct Halves<V> {
     high: V,
 }
 
-/// Implements binary operators, half by half. Closures are avoided, as they are not inlined into
-/// SIMD code.
+/// Implements binary operators by the operators of both halves. Closures are avoided, since they
+/// are not inlined into SIMD code.
 macro_rules! by_halves {
     ($($operator:ident $method:ident),*) => {$(
         impl<V: $operator<Output = V>> $operator for Halves<V> {
@@ -38,7 +38,7 @@ macro_rules! by_halves {
 
 by_halves!(Add add, Sub sub, Mul mul, Div div, BitAnd bitand, BitOr bitor, BitXor bitxor);
 
-/// Implements assigning operators, half by half.
+/// Implements assignment operators by the operators of both halves.
 macro_rules! in_place_by_halves {
     ($($operator:ident $method:ident),*) => {$(
         impl<V: $operator> $operator for Halves<V> {

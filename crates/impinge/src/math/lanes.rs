@@ -1,7 +1,8 @@
 //! Vectors and poses in SIMD lanes: each coordinate is a SIMD vector.
 //!
-//! Each operation has the order of its scalar counterpart, so that a lane is bitwise equal to the
-//! scalar result. This file avoids `map`: closures passed to `map` are not inlined into SIMD code.
+//! Each operation sums in the order of its scalar counterpart, so that each lane is bitwise equal
+//! to the scalar result. This file avoids `map`, since closures that are passed to `map` are not
+//! inlined into SIMD code.
 
 use super::simd::{Simd, SimdMask};
 use super::{Matrix, Pose, Real, Vector, Wide, max};
@@ -27,8 +28,8 @@ macro_rules! with_lanes {
     };
 }
 
-/// Runs `$body` with `$simd` bound to the vectors of a [`Run`](super::simd::Run), or to its single
-/// lane.
+/// Runs `$body` with `$simd` bound to the vectors of a [`Run`](super::simd::Run), or to the single
+/// lane of the run.
 macro_rules! in_lanes {
     ($run:expr, $simd:ident => $body:expr) => {
         match $run.vectors {
@@ -80,7 +81,7 @@ pub(crate) fn lit<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, value: f64)
     V::all(simd, N::lit(value))
 }
 
-/// Returns the greatest of 8 lanes.
+/// Returns the greatest number of 8 lanes.
 #[inline(always)]
 pub(crate) fn highest_lane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(numbers: V) -> N {
     let mut lanes = [N::ZERO; 8];
@@ -180,7 +181,8 @@ pub(crate) fn cross<S: Simd, V: Wide<S>>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Rotates a vector in each lane into the frame with the given axes.
+/// Returns the components of a vector along `axes` in each lane: rotates it into the frame with
+/// these axes.
 #[inline(always)]
 pub(crate) fn rotated_into<S: Simd, V: Wide<S>, const D: usize>(
     axes: &[[V; D]; D],
@@ -211,7 +213,7 @@ pub(crate) fn rotated_back<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     )
 }
 
-/// Selects `one` in each lane where `is` is true, else `other`.
+/// Returns, in each lane, the vector `one` where `is` is true, else the vector `other`.
 #[inline(always)]
 pub(crate) fn either<S: Simd, V: Wide<S>, const D: usize>(
     is: V::Mask,
@@ -224,13 +226,13 @@ pub(crate) fn either<S: Simd, V: Wide<S>, const D: usize>(
     )
 }
 
-/// Selects the mask `one` in each lane where `is` is true, else `other`.
+/// Returns, in each lane, the mask `one` where `is` is true, else the mask `other`.
 #[inline(always)]
 pub(crate) fn either_mask<S: Simd, M: SimdMask<S>>(is: M, one: M, other: M) -> M {
     (is & one) | (!is & other)
 }
 
-/// Returns a mask of 8 lanes as bits, the first lane lowest.
+/// Returns a mask of 8 lanes as 8 bits; bit `i` is lane `i`.
 #[inline(always)]
 pub(crate) fn bits<S: Simd, M: SimdMask<S>>(mask: M) -> u8 {
     let [low, ..] = mask.to_bitmask().to_le_bytes();
@@ -311,7 +313,8 @@ impl<V, const D: usize> LanePose<V, D> {
         self.inverse_point(&[V::all(simd, N::ZERO); D])
     }
 
-    /// Returns, for a relative pose, the distance between the origins of the two solids.
+    /// Returns the distance between the origins of two solids in each lane, if this is the pose of
+    /// one solid in the frame of the other.
     #[inline(always)]
     pub(crate) fn apart<S: Simd>(&self) -> V
     where

@@ -9,8 +9,8 @@ use super::na::{ComplexField, RealField};
 use super::simd::{Simd, SimdMask, Wide};
 use super::{Vector, filled};
 
-/// The index of the lane to compute: loads read that one of 8 numbers, stores write the result to
-/// all 8.
+/// The index of the lane to compute. Loads read the number of this lane from 8 numbers; stores
+/// write the result to all 8.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OneLane(pub(crate) usize);
 
@@ -34,7 +34,7 @@ impl<N: RealField + Copy> Lone<N> {
         )
     }
 
-    /// Converts coordinates back to a vector.
+    /// Converts one single-lane vector for each coordinate to a vector.
     #[inline(always)]
     pub(crate) fn vector<const D: usize>(coordinates: &[Self; D]) -> Vector<N, D> {
         Vector::<N, D>::from_fn(
@@ -49,7 +49,7 @@ impl<N: RealField + Copy> Lone<N> {
 #[allow(unnameable_types, unreachable_pub, reason = "in the interface of `Eight`")]
 pub struct LoneMask(pub(crate) bool);
 
-/// Implements operators on the number inside.
+/// Implements binary operators of [`Lone`] by the operators of its number.
 macro_rules! by_number {
     ($($operator:ident $method:ident),*) => {$(
         impl<N: RealField + Copy> $operator for Lone<N> {
@@ -160,7 +160,7 @@ impl SimdMask<OneLane> for LoneMask {
     }
 }
 
-/// Implements operators on the truth value inside.
+/// Implements binary operators of [`LoneMask`] by the operators of its truth value.
 macro_rules! by_truth {
     ($($operator:ident $method:ident),*) => {$(
         impl $operator for LoneMask {

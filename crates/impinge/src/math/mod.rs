@@ -1,11 +1,12 @@
-//! Numbers, vectors and poses. No other module of the library uses nalgebra directly.
+//! Scalars, vectors and poses. No other module of the library uses nalgebra directly.
 //!
-//! The other modules name vectors by these aliases. The library is generic over the scalar `N`
-//! (`f32` or `f64`) and the dimension `D` (2 or 3); [`Space`] is the bound for code that depends on
-//! the dimension.
+//! The other modules use the aliases of this module for vectors, points and matrices. The library
+//! is generic over the scalar `N` (`f32` or `f64`) and the dimension `D` (2 or 3); [`Space`] is the
+//! bound for code that depends on the dimension.
 //!
-//! All results are bitwise equal on every platform. For this, the module uses no fused multiply-add
-//! and no trigonometry of the system, and [`min`]/[`max`] are compare-and-select.
+//! All results are bitwise equal on every platform. For this reason the library uses no fused
+//! multiply-add and no trigonometric functions of the platform, and [`min`] and [`max`] are one
+//! comparison and a selection.
 
 pub(crate) mod arrays;
 pub(crate) mod eigen;
@@ -55,5 +56,5 @@ pub use vector::{
 pub type Vector<N, const D: usize> = nalgebra::SVector<N, D>;
 /// A point of `D` coordinates.
 pub type Point<N, const D: usize> = nalgebra::OPoint<N, nalgebra::Const<D>>;
-/// A square matrix; also the type of rotations in a [`Pose`].
+/// A square matrix with `D` rows; also the type of the rotation in a [`Pose`].
 pub type Matrix<N, const D: usize> = nalgebra::SMatrix<N, D, D>;

@@ -1,8 +1,8 @@
-//! Numbers of saved data, exact in every format.
+//! The numbers of saved data, stored without rounding error in every format.
 //!
-//! Text formats round `f64`, and most have neither NaN nor infinities. So where a format is one for people, numbers are one
-//! string, `"0.5 -inf 1e-45"`, printed so that they parse to the same bits; a NaN is `NaN:` and its bits in hexadecimal.
-//! Binary formats get them as a sequence of `f32` or `f64`.
+//! Text formats may round `f64`, and most have neither NaN nor infinities. So in human-readable formats a list of
+//! numbers is one string, such as `"0.5 -inf 1e-45"`, which parses to the same bits. A NaN is written as `NaN:` and its
+//! bits in hexadecimal. In binary formats the list is a sequence of `f32` or `f64`.
 
 use core::fmt::{self, Write as _};
 use core::marker::PhantomData;
@@ -16,12 +16,12 @@ use smallvec::SmallVec;
 
 use super::{Matrix, Point, Pose, Real, Space, Vector};
 
-/// A defect of saved data, as a sentence for the user.
+/// A defect of saved data: a message for the user.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Damage(pub(crate) Cow<'static, str>);
 
 impl Damage {
-    /// Makes the damage of a constructor's error.
+    /// Creates a defect with the message of another error.
     pub(crate) fn found(error: &impl fmt::Display) -> Self {
         Self(error.to_string().into())
     }
@@ -32,22 +32,23 @@ pub(crate) fn ensure(holds: bool, what: &'static str) -> Result<(), Damage> {
     if holds { Ok(()) } else { Err(Damage(what.into())) }
 }
 
-/// Numbers in a row.
+/// A list of numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Numbers<N: Real>(SmallVec<[N; 8]>);
 
 impl<N: Real> Numbers<N> {
-    /// Some numbers.
+    /// Creates a list of numbers.
     pub(crate) fn of(numbers: impl IntoIterator<Item = N>) -> Self {
         Self(numbers.into_iter().collect())
     }
 
-    /// The coordinates of points, one after the other.
+    /// Creates a list of the coordinates of points, point by point.
     pub(crate) fn of_points<const D: usize>(points: &[Point<N, D>]) -> Self {
         Self(points.iter().flat_map(|point| point.iter().copied()).collect())
     }
 
-    /// The translation, then cosine and sine of the rotation in 2D, its quaternion (i, j, k, w) in 3D.
+    /// Creates a list of the numbers of an isometry: the translation, followed by the cosine and sine of the rotation
+    /// in 2D, or its quaternion (i, j, k, w) in 3D.
     pub(crate) fn of_isometry<const D: usize>(isometry: &N::Isometry) -> Self
     where
         N: Space<D>,
@@ -60,23 +61,23 @@ impl<N: Real> Numbers<N> {
         self.0.extend(numbers.into_iter().copied());
     }
 
-    /// Appends the rotation, column by column, and the translation.
+    /// Appends the numbers of a pose: the rotation, column by column, and the translation.
     pub(crate) fn extend_pose<const D: usize>(&mut self, pose: &Pose<N, D>) {
         self.extend(&pose.rotation);
         self.extend(&pose.translation);
     }
 
-    /// How many there are.
+    /// Returns the length of the list.
     pub(crate) fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// Reads them from the first on.
+    /// Returns a reader that starts at the first number.
     pub(crate) fn read(&self) -> NumberSource<'_, N> {
         NumberSource(self.0.iter())
     }
 
-    /// Reads all of them by `read`.
+    /// Reads the list with the function `read`; returns a defect if `read` leaves numbers unread.
     pub(crate) fn all<'a, R>(
         &'a self,
         read: impl FnOnce(&mut NumberSource<'a, N>) -> Result<R, Damage>,
@@ -87,18 +88,20 @@ impl<N: Real> Numbers<N> {
         Ok(found)
     }
 
-    /// The numbers, if they are so many.
+    /// Returns the numbers as an array; returns a defect unless there are exactly `COUNT` numbers.
     pub(crate) fn array<const COUNT: usize>(&self) -> Result<[N; COUNT], Damage> {
         self.all(NumberSource::array)
     }
 
-    /// The points of all numbers.
+    /// Returns the points whose coordinates are the numbers; returns a defect unless the number of
+    /// numbers is a multiple of `D`.
     pub(crate) fn points<const D: usize>(&self) -> Result<Vec<Point<N, D>>, Damage> {
         ensure(self.len().is_multiple_of(D), "coordinates are missing")?;
         Ok(self.0.chunks_exact(D).map(|point| Point::from(vector(point))).collect())
     }
 
-    /// The isometry, as it was: its rotation need not be one.
+    /// Returns the isometry with these numbers, without normalisation, so its rotation need not
+    /// have unit length. Returns a defect for a wrong number of numbers.
     pub(crate) fn isometry<const D: usize>(&self) -> Result<N::Isometry, Damage>
     where
         N: Space<D>,
@@ -109,13 +112,14 @@ impl<N: Real> Numbers<N> {
         Ok(N::of_numbers(&numbers))
     }
 
-    /// The numbers.
+    /// Converts the list to a vector.
     pub(crate) fn into_vec(self) -> Vec<N> {
         self.0.into_vec()
     }
 }
 
-/// How many numbers an isometry has: a complex number has two, a quaternion four.
+/// Returns how many numbers an isometry has: D for the translation, and 2 (complex number) or 4
+/// (quaternion) for the rotation.
 const fn isometry_numbers<const D: usize>() -> usize {
     D + (1 << (D - 1))
 }
@@ -124,7 +128,7 @@ fn vector<N: Real, const D: usize>(numbers: &[N]) -> Vector<N, D> {
     Vector::<N, D>::from_fn(|axis, _| numbers[axis])
 }
 
-/// Numbers that are read one after the other.
+/// A reader of a list of numbers. Its methods return a defect if there are too few numbers.
 pub(crate) struct NumberSource<'a, N>(slice::Iter<'a, N>);
 
 impl<N: Real> NumberSource<'_, N> {
@@ -183,10 +187,10 @@ impl<N: Real> fmt::Display for Numbers<N> {
     }
 }
 
-/// Prefix of a NaN in text; its bits follow in hexadecimal.
+/// The prefix of a NaN in text; its bits follow in hexadecimal.
 const NAN: &str = "NaN:";
 
-/// A number as what it is.
+/// A number in its own scalar type.
 enum Either {
     Single(f32),
     Double(f64),
@@ -255,7 +259,7 @@ impl<'de, N: Real> Visitor<'de> for NumbersVisitor<N> {
         words.map(number).collect::<Result<_, E>>().map(Numbers)
     }
 
-    /// Allocates as numbers come, whatever count the data claims.
+    /// Allocates memory as numbers are read, since the count that the data declares may be wrong.
     fn visit_seq<A: SeqAccess<'de>>(self, mut sequence: A) -> Result<Numbers<N>, A::Error> {
         let mut numbers = Numbers::default();
         if is_single::<N>() {

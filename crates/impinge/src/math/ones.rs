@@ -1,7 +1,7 @@
 //! Iteration over the set bits of a word.
 
-/// Yields the positions of the set bits in ascending order; ends at the first position that is not
-/// below `BELOW`.
+/// An iterator over the positions of the set bits of a word, in ascending order. It ends before the
+/// first position that is `BELOW` or more.
 #[derive(Clone)]
 pub(crate) struct Ones<const BELOW: usize>(pub(crate) u32);
 

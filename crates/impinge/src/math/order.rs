@@ -1,16 +1,17 @@
-//! Sorting by numbers, compiled once for all callers, and a direction that orders positions.
+//! Sort keys and sort functions with little machine code.
 
 use super::{Real, Vector};
 
-/// Maps each number to an integer such that the integers have the total order of IEEE 754.
+/// Maps a number to an integer. The integers have the total order of IEEE 754: negative zero is
+/// below zero, and NaN is above infinity or, with a sign, below minus infinity.
 pub(crate) fn order_of<N: Real>(value: N) -> u64 {
     const SIGN: u64 = 1 << 63;
     let bits = value.as_f64().to_bits();
     if bits & SIGN == 0 { bits | SIGN } else { !bits }
 }
 
-/// Returns the component of a vector along a direction that is perpendicular to no axis and no
-/// diagonal. Ties are rare among positions that people choose.
+/// Returns the dot product of a vector and a fixed direction that is perpendicular to no axis and
+/// no diagonal. So positions on a grid rarely have equal results.
 #[inline]
 pub(crate) fn askew<N: Real, const D: usize>(vector: &Vector<N, D>) -> N {
     const DIRECTION: [f64; 3] = [1.0, 1.6875, 2.5625];
@@ -21,14 +22,16 @@ pub(crate) fn askew<N: Real, const D: usize>(vector: &Vector<N, D>) -> N {
     coordinate
 }
 
-/// A list with at most this many items is sorted by insertion.
+/// The greatest length of a list that [`sort_few`] sorts by insertion.
 const FEW: usize = 20;
 
-/// Sorts a list that is usually short; equal items of a short list stay in order.
+/// Sorts a list that is usually short. The order of equal items is kept if there are at most
+/// [`FEW`] items.
 ///
 /// The sorts of the standard library are faster for long lists, but have forty times the machine
-/// code, once for each type and key. This sort inserts; for more than [`FEW`] items it uses a heap
-/// (Williams, "Algorithm 232: Heapsort", 1964): O(n log n) in the worst case, in place.
+/// code, once for each type and key. This function uses insertion sort, and for more than [`FEW`]
+/// items heapsort (Williams, "Algorithm 232: Heapsort", 1964): O(n log n) in the worst case, in
+/// place.
 pub(crate) fn sort_few<T>(items: &mut [T], is_less: impl Fn(&T, &T) -> bool) {
     let count = items.len();
     if count <= FEW {
@@ -42,8 +45,8 @@ pub(crate) fn sort_few<T>(items: &mut [T], is_less: impl Fn(&T, &T) -> bool) {
         return;
     }
     for step in (0..count + count / 2).rev() {
-        // The first `count / 2` steps build the heap from the back. Each later step moves the heap's
-        // greatest item behind it.
+        // The first `count / 2` steps build the heap from the back. Each later step moves the greatest item of the heap
+        // to the position behind the shrunk heap.
         let (mut at, end) = if step >= count {
             (step - count, count)
         } else {

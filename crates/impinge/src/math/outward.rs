@@ -1,15 +1,15 @@
-//! Sums and products rounded in a known direction, for bounding volumes.
+//! Sums and products that are rounded in a known direction, for bounding volumes.
 //!
 //! The rounding error of a sum is representable (Knuth, "The Art of Computer Programming", volume
-//! 2, theorem 4.2.2 B), so that a sum without an error can be left unchanged: boxes whose corners
-//! are representable are exact.
+//! 2, theorem 4.2.2 B), so a sum with an error of zero can be left unchanged. Therefore boxes with
+//! representable corners are exact.
 
 use core::ops::{Add, Sub};
 
 use super::Real;
 
-/// Returns the rounded sum `a + b`, and the exact sum minus the rounded one; NaN beyond the range
-/// of the scalar.
+/// Returns the rounded sum `a + b`, and its error: the exact sum minus the rounded sum. The error
+/// is NaN if the sum overflows.
 #[inline(always)]
 pub(super) fn sum_and_error<N: Copy + Add<Output = N> + Sub<Output = N>>(a: N, b: N) -> (N, N) {
     let sum = a + b;
@@ -17,24 +17,27 @@ pub(super) fn sum_and_error<N: Copy + Add<Output = N> + Sub<Output = N>>(a: N, b
     (sum, (a - (sum - of_b)) + (b - of_b))
 }
 
-/// Returns `a + b`, or one or two representable numbers below it. The result is never above the
-/// exact sum, and equal to the exact sum if that is representable.
+/// Returns `a + b` rounded down by at most two units in the last place. The result equals the exact
+/// sum if that is representable. Otherwise it is below the exact sum, unless the sum overflows to
+/// infinity.
 #[inline(always)]
 pub(crate) fn sum_below<N: Real>(a: N, b: N) -> N {
     let (sum, error) = sum_and_error(a, b);
     if error < N::ZERO { sum - sum.abs() * N::EPSILON } else { sum }
 }
 
-/// Returns `a + b`, or one or two representable numbers above it. The result is never below the
-/// exact sum, and equal to the exact sum if that is representable.
+/// Returns `a + b` rounded up by at most two units in the last place. The result equals the exact
+/// sum if that is representable. Otherwise it is above the exact sum, unless the sum overflows to
+/// minus infinity.
 #[inline(always)]
 pub(crate) fn sum_above<N: Real>(a: N, b: N) -> N {
     let (sum, error) = sum_and_error(a, b);
     if error > N::ZERO { sum + sum.abs() * N::EPSILON } else { sum }
 }
 
-/// Returns a lower and an upper bound of the exact product. Both equal the product if a factor is
-/// zero or a power of two; infinities or NaN beyond the range of the scalar.
+/// Returns a lower and an upper bound of the exact product. Both bounds equal the product if a
+/// factor is zero, or if a factor is a power of two and the product is a normal number. The bounds
+/// are infinite or NaN if the product overflows.
 pub(crate) fn product_within<N: Real>(a: N, b: N) -> [N; 2] {
     let product = a * b;
     let is_zero_or_power = |x: N| x == N::ZERO || x.abs() == x.power_of_two_below();
@@ -46,9 +49,9 @@ pub(crate) fn product_within<N: Real>(a: N, b: N) -> [N; 2] {
     [product - slack, product + slack]
 }
 
-/// Returns a bound of the error of a few sums and products of lengths up to `size`, as for the
-/// coordinates of a rotated point: 8 epsilon times `size` plus 8 times the smallest positive
-/// number.
+/// Returns an upper bound of the error of a few sums and products of lengths up to `size`, as for
+/// the coordinates of a rotated point. The bound is 8 ε times `size` plus 8 times the smallest
+/// positive number.
 #[inline(always)]
 pub(crate) fn slack_of<N: Real>(size: N) -> N {
     N::lit(8.0) * (N::EPSILON * size + smallest::<N>())

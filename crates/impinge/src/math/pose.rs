@@ -1,12 +1,12 @@
 //! Rigid transformations with the rotation as a matrix. They are generic over the dimension, and
-//! about twice as fast to apply as nalgebra's quaternion isometries.
+//! transform points about twice as fast as the quaternion isometries of nalgebra.
 
 use super::na::ArrayStorage;
 use super::{AbstractRotation, Isometry, Mapped, Matrix, Point, Real, Vector, filled};
 
-// These replace nalgebra's products, which pass through about thirty functions for each number; in
-// a build without optimisation these are real calls. The results are bitwise equal: each sum runs
-// over the columns in order.
+// The following functions replace products of nalgebra, which make about thirty nested calls for
+// each number if they are not optimised. The results are bitwise equal: each sum runs over the
+// columns in order.
 
 /// Returns `matrix · v`.
 #[inline]
@@ -79,7 +79,7 @@ pub struct Pose<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Pose<N, D> {
-    /// Returns the pose of a solid whose frame is the world's.
+    /// Returns the identity: the pose of a solid whose local frame is the world frame.
     #[must_use]
     pub fn identity() -> Self {
         Self { rotation: Matrix::<N, D>::identity(), translation: Vector::<N, D>::zeros() }
@@ -91,7 +91,7 @@ impl<N: Real, const D: usize> Pose<N, D> {
         Self { rotation: Matrix::<N, D>::identity(), translation }
     }
 
-    /// Returns the pose that a nalgebra isometry describes.
+    /// Converts an isometry of nalgebra to a pose.
     #[must_use]
     #[inline]
     pub fn from_isometry<R: AbstractRotation<N, D>>(isometry: &Isometry<N, R, D>) -> Self {
@@ -104,15 +104,15 @@ impl<N: Real, const D: usize> Pose<N, D> {
         Self { rotation, translation: isometry.translation.vector }
     }
 
-    /// Returns the pose, without its rotation, of a solid that no rotation changes, such as a ball.
-    /// If the rotation is not finite, the translation is infinite.
+    /// Returns the pose of an isometry without its rotation, for a solid that no rotation changes,
+    /// such as a ball. If the rotation is not finite, the translation of the result is infinite.
     #[must_use]
     #[inline]
     pub fn unturned<R: AbstractRotation<N, D>>(isometry: &Isometry<N, R, D>) -> Self {
         let mut e = Vector::<N, D>::zeros();
         e[0] = N::ONE;
-        // Every number of a rotation is a factor of some term in each rotated axis, so one axis
-        // suffices.
+        // Each number of the rotation is a factor in the rotated vector, so a number that is not
+        // finite makes the rotated vector not finite.
         let rotated = isometry.rotation.transform_vector(&e);
         Self::from_translation(isometry.translation.vector).unless_broken(rotated.as_slice())
     }
@@ -124,8 +124,8 @@ impl<N: Real, const D: usize> Pose<N, D> {
         Self::from_translation(self.translation).unless_broken(self.rotation.as_slice())
     }
 
-    /// Returns the pose with an infinite translation if one of `numbers`, which are those of the
-    /// rotation, is not finite.
+    /// Returns this pose, with an infinite translation if one of `numbers` is not finite. `numbers`
+    /// are the numbers of the rotation.
     #[inline]
     pub(super) fn unless_broken(self, numbers: &[N]) -> Self {
         // An infinity or NaN times zero is NaN, and a sum with NaN is NaN.
@@ -136,8 +136,8 @@ impl<N: Real, const D: usize> Pose<N, D> {
 
     /// Returns the pose of `second` in the frame of `first`.
     ///
-    /// The translations are subtracted first, so that solids close to each other lose no digits far
-    /// from the origin.
+    /// The translations are subtracted first, so that the relative position of nearby solids has a
+    /// small error even far from the origin.
     #[must_use]
     #[inline]
     pub fn relative(first: &Self, second: &Self) -> Self {
@@ -147,8 +147,8 @@ impl<N: Real, const D: usize> Pose<N, D> {
         }
     }
 
-    /// Returns the pose of the first solid in the frame of the second, if this is the pose of the
-    /// second in the frame of the first.
+    /// Returns the inverse transformation. If this is the pose of solid 2 in the frame of solid 1,
+    /// the inverse is the pose of solid 1 in the frame of solid 2.
     #[must_use]
     #[inline]
     pub fn inverse(&self) -> Self {
@@ -156,8 +156,8 @@ impl<N: Real, const D: usize> Pose<N, D> {
         Self { rotation, translation: -times(&rotation, &self.translation) }
     }
 
-    /// Returns this pose applied after `inner`: it maps the local frame of `inner` to the outer
-    /// frame.
+    /// Returns the composition `self ∘ inner`. It maps the local frame of `inner` to the outer
+    /// frame of this pose.
     #[must_use]
     #[inline]
     pub fn compose(&self, inner: &Self) -> Self {
@@ -181,21 +181,22 @@ impl<N: Real, const D: usize> Pose<N, D> {
         times(&self.rotation, local)
     }
 
-    /// Transforms a point of the outer frame to the local one.
+    /// Transforms a point of the outer frame to the local frame.
     #[inline]
     #[must_use]
     pub fn inverse_point(&self, outer: &Point<N, D>) -> Point<N, D> {
         Point::from(self.inverse_vector(&minus(&outer.coords, &self.translation)))
     }
 
-    /// Rotates a direction of the outer frame to the local one.
+    /// Rotates a direction of the outer frame to the local frame.
     #[inline]
     #[must_use]
     pub fn inverse_vector(&self, outer: &Vector<N, D>) -> Vector<N, D> {
         transposed_times(&self.rotation, outer)
     }
 
-    /// Returns the half extents, along each outer axis, of a rotated box about the origin.
+    /// Returns the half extents, along the outer axes, of the rotated box with these half extents
+    /// along the local axes.
     #[inline]
     pub(crate) fn rotated_extents(&self, half_extents: &Vector<N, D>) -> Vector<N, D> {
         let mut extents = Vector::<N, D>::zeros();
@@ -207,16 +208,16 @@ impl<N: Real, const D: usize> Pose<N, D> {
         extents
     }
 
-    /// Whether the pose maps axes to axes, so that every coordinate of a rotated point is exactly
-    /// plus or minus a coordinate of the point.
+    /// Returns whether the pose maps axes to axes. Then each coordinate of a rotated point is
+    /// exactly plus or minus a coordinate of the point.
     #[inline]
     #[must_use]
     pub(crate) fn is_aligned(&self) -> bool {
         self.rotation.as_slice().iter().all(|&x| x == N::ZERO || x.abs() == N::ONE)
     }
 
-    /// Whether all components are equal, as by `==`. It is faster, since the optimiser sees plain
-    /// arrays.
+    /// Returns whether all components are equal, as `==` does. This function is faster, since the
+    /// optimiser sees plain arrays.
     #[inline]
     #[must_use]
     pub(crate) fn is_same(&self, other: &Self) -> bool {
@@ -224,7 +225,7 @@ impl<N: Real, const D: usize> Pose<N, D> {
             && self.translation.as_slice() == other.translation.as_slice()
     }
 
-    /// Whether no component is NaN or infinite.
+    /// Returns whether no component is NaN or infinite.
     #[inline]
     #[must_use]
     pub fn is_finite(&self) -> bool {

@@ -1,4 +1,4 @@
-//! The scalar: `f32` and, with the feature `f64`, `f64`; no other types.
+//! The scalar types: `f32` and, with the feature `f64`, `f64`.
 
 use super::max;
 use super::na::{RealField, Scalar};
@@ -31,8 +31,9 @@ pub trait Real: RealField + Scalar + Copy + Default + Compiled<2> + Compiled<3> 
     const MIN_POSITIVE: Self;
     /// Positive infinity.
     const INFINITY: Self;
-    /// π/2 as a sum of three parts, the largest first. Integers up to 2¹⁶ times the first two parts
-    /// are exact (W. J. Cody and W. Waite, "Software Manual for the Elementary Functions", 1980).
+    /// π/2 as a sum of three parts, the largest first. The products of the first two parts with
+    /// integers up to 2¹⁶ are exact (W. J. Cody and W. Waite, "Software Manual for the Elementary
+    /// Functions", 1980).
     #[doc(hidden)]
     const QUARTER_TURN: [Self; 3];
 
@@ -58,19 +59,21 @@ pub trait Real: RealField + Scalar + Copy + Default + Compiled<2> + Compiled<3> 
     fn as_f32_above(self) -> f32 {
         f32_above(self.as_f64())
     }
-    /// Returns the bits of the value, widened to 64.
+    /// Returns the bits of the value, zero-extended to 64 bits.
     fn bits(self) -> u64;
-    /// The number of these bits, the inverse of [`Self::bits`]; of more than the scalar has, the lowest count.
+    /// Returns the number with these bits: the inverse of [`Self::bits`]. For `f32` only the lowest 32 bits are used.
     fn of_bits(bits: u64) -> Self;
-    /// The largest power of two that is not above the magnitude; dividing by it is exact.
+    /// Returns the largest power of two that is not above the magnitude. Division by it is exact
+    /// unless the quotient underflows.
     ///
-    /// For zero and subnormal numbers the result is the smallest normal number, for infinity and
-    /// NaN it is 1.
+    /// For zero and subnormal numbers the result is the smallest positive normal number, for
+    /// infinity and NaN it is 1.
     #[must_use]
     fn power_of_two_below(self) -> Self;
-    /// Whether the value is neither infinite nor NaN.
+    /// Returns whether the value is neither infinite nor NaN.
     fn is_finite_number(self) -> bool;
-    /// Returns sine and cosine, computed by a software library: bitwise equal on every platform.
+    /// Returns the sine and the cosine of the value, in radians. The crate `libm` computes them in
+    /// software, so they are bitwise equal on every platform.
     fn sine_cosine(self) -> (Self, Self);
 }
 
@@ -122,8 +125,7 @@ impl Real for f32 {
     }
 }
 
-/// Computes [`Real::power_of_two_below`] for a double, which is a scalar of the library only with
-/// the feature `f64`.
+/// Implements [`Real::power_of_two_below`] for `f64`; also available without the feature `f64`.
 #[inline]
 pub(crate) fn f64_power_of_two_below(value: f64) -> f64 {
     let power = f64::from_bits(value.to_bits() & 0x7ff0_0000_0000_0000);
@@ -136,8 +138,8 @@ pub(crate) fn f64_power_of_two_below(value: f64) -> f64 {
     }
 }
 
-/// Returns the largest `f32` that is not above a number; a zero is positive. It selects instead of
-/// branching, since the direction of rounding is unpredictable.
+/// Returns the largest `f32` that is not above a number; a zero is positive. Compiles to selections
+/// instead of branches, since the direction of rounding is unpredictable.
 #[expect(clippy::cast_possible_truncation, reason = "one step down where it went up")]
 #[inline]
 pub(crate) fn f32_below(x: f64) -> f32 {

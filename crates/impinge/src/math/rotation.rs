@@ -1,27 +1,29 @@
-//! The rotation types that a user's isometry may have.
+//! The rotation types that an isometry of the user may have.
 
 use super::na::{self, Rotation, UnitComplex, UnitQuaternion};
 use super::{Isometry, Pose, Real, Space, Vector};
 use crate::tables::entries;
 
-/// A rotation of nalgebra: a unit complex number, a unit quaternion or a rotation matrix. Sealed.
+/// A rotation type of nalgebra: a unit complex number, a unit quaternion or a rotation matrix. The
+/// trait is sealed.
 ///
 /// Functions that take an isometry accept any of these rotations. The operations of a rotation are
 /// in nalgebra's trait of the same name.
 pub trait AbstractRotation<N: Real, const D: usize>: na::AbstractRotation<N, D> {
-    /// Returns the isometry with the kind of its rotation as an enum, so that a function for all
-    /// kinds is compiled once.
+    /// Returns a reference to the isometry, tagged with the type of its rotation. So a function for
+    /// all rotation types is compiled only once.
     #[doc(hidden)]
     fn view(isometry: &Isometry<N, Self, D>) -> IsometryRef<'_, N, D>
     where
         N: Space<D>;
 }
 
-/// An isometry with one of the rotations of nalgebra.
+/// A reference to an isometry with one of the rotation types of nalgebra.
 #[expect(unnameable_types, reason = "for this crate alone")]
 #[derive(Clone, Copy, Debug)]
 pub enum IsometryRef<'i, N: Space<D>, const D: usize> {
-    /// An isometry with the usual rotation: a unit complex number or quaternion.
+    /// An isometry of the type [`Space::Isometry`]: with a unit complex number in 2D, a unit
+    /// quaternion in 3D.
     Own(&'i N::Isometry),
     /// An isometry with a rotation matrix.
     ByMatrix(&'i Isometry<N, Rotation<N, D>, D>),
@@ -67,7 +69,7 @@ impl<N: Space<D>, const D: usize> IsometryRef<'_, N, D> {
         }
     }
 
-    /// Returns the position of the local origin.
+    /// Returns the translation: the position of the local origin in the outer frame.
     #[inline]
     pub(crate) fn translation(self) -> Vector<N, D> {
         match self {

@@ -1,14 +1,14 @@
 //! SIMD vectors of 8 numbers, and the instruction sets of each target.
 //!
-//! A kernel is one source over [`Simd`] and [`Wide`]. All operations are those of IEEE 754, so that
-//! each lane is bitwise equal to a scalar computation. There are two kinds of kernels:
+//! A kernel is a function that is generic over [`Simd`] and [`Wide`]. All operations follow IEEE
+//! 754, so each lane is bitwise equal to a scalar computation. There are two kinds of kernels:
 //!
 //! * in some kernels, each lane is a pair or a part, independent of the other lanes. [`in_lanes!`]
 //!   runs these with the vectors of the target, or lane by lane if there are none: [`Level::runs`];
-//! * in the other kernels, lanes interact: the lanes are features of one solid, of which the best
-//!   is chosen, or a step reads rows that the previous step wrote for all lanes (chains, balls
-//!   among triangles, checkers). [`with_lanes!`] runs these with all lanes on every target, on
-//!   [`Arrays`](super::arrays::Arrays) if there are no vectors.
+//! * in the other kernels, lanes interact. For example, the lanes are features of one solid, and
+//!   the kernel selects the best feature; or a step reads rows that the previous step wrote for all
+//!   lanes (chains, balls among triangles, checkers). [`with_lanes!`] runs these with all lanes on
+//!   every target, on [`Arrays`](super::arrays::Arrays) if there are no vectors.
 //!
 //! [`in_lanes!`]: super::lanes::in_lanes
 //! [`with_lanes!`]: super::lanes::with_lanes
@@ -26,11 +26,11 @@ use fearless_simd::{Select, SimdBase, SimdFloat};
 ))]
 use super::halves::Halves;
 
-/// The instruction set to use. It never changes a result.
+/// The instruction set of a kernel. It never changes a result.
 ///
-/// On x86 this is AVX2, and for some kernels the baseline SSE2. Instruction sets between these two
-/// bring little, 8 lanes gain nothing from wider registers, and each instruction set adds one more
-/// copy of all kernels.
+/// On x86 this is AVX2; without AVX2, kernels with interacting lanes use SSE2. Instruction sets
+/// between these two bring little, 8 lanes gain nothing from wider registers, and each instruction
+/// set adds one more copy of all kernels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Level {
     Wide(Vectors),
@@ -42,7 +42,7 @@ pub(crate) enum Level {
     Arrays,
 }
 
-/// An instruction set in which all kernels gain from lanes.
+/// An instruction set whose vectors make all kernels faster.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Vectors {
     #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
@@ -91,12 +91,12 @@ impl Level {
         best
     }
 
-    /// Returns the vectors for kernels with independent lanes; `None` where these kernels compute
+    /// Returns the vectors for kernels with independent lanes; `None` if these kernels must compute
     /// one lane at a time.
     ///
-    /// Without optimization every vector operation is a chain of calls, slower than the operation
-    /// on each of its numbers: a debug build computes a pile of boxes 2.5 times as fast in single
-    /// lanes. The results are bitwise equal.
+    /// In a build without optimization every vector operation is a chain of calls, and slower than
+    /// the scalar operations on its numbers. Such a build computes a pile of boxes 2.5 times as
+    /// fast in single lanes. The results are bitwise equal.
     #[inline]
     pub(crate) fn vectors(self) -> Option<Vectors> {
         match self {
@@ -124,11 +124,11 @@ impl Level {
     }
 }
 
-/// The lanes that a kernel processes at once: with vectors all used lanes, else one of them
+/// The lanes that a kernel processes at once: all used lanes with vectors, else a single lane
 /// ([`OneLane`](super::lone::OneLane)).
 ///
-/// A kernel stores valid results for the lanes of its run only; other lanes are undefined. Each
-/// lane is bitwise equal in both cases, since lanes are independent.
+/// A kernel stores valid results only for the lanes of its run. Each lane is bitwise equal in both
+/// cases, since lanes are independent.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Run {
     pub(crate) vectors: Option<Vectors>,
@@ -143,7 +143,8 @@ impl Run {
         self.first..self.end
     }
 
-    /// Keeps the bits that belong to the lanes of this run; `bits` has a bit for each lane.
+    /// Returns the bits of the lanes of this run, and zero for other lanes; `bits` has a bit for
+    /// each of 8 lanes.
     #[inline]
     pub(crate) fn of_bits(&self, bits: u8) -> u8 {
         self.lanes().fold(0, |own, lane| own | bits & 1 << lane)
@@ -153,7 +154,7 @@ impl Run {
 /// A scalar that has vectors of 8 lanes.
 #[expect(unnameable_types, reason = "for this crate alone")]
 pub trait Eight: Sized {
-    /// The type of its vectors of 8 lanes.
+    /// The type of vectors of 8 such scalars.
     type Lanes<S: Simd>: Wide<S, Scalar = Self>;
 }
 
@@ -165,7 +166,8 @@ impl Eight for f64 {
     type Lanes<S: Simd> = S::F64x8;
 }
 
-/// A set of vector types. A value of this type proves that the machine supports them.
+/// An instruction set with its vector types. A value of such a type proves that the machine
+/// supports the instruction set.
 #[expect(unnameable_types, reason = "for this crate alone")]
 pub trait Simd: Copy {
     /// A vector of eight `f32`.
@@ -188,14 +190,14 @@ pub trait SimdMask<S: Simd>:
     /// The number of lanes.
     const LEN: usize;
 
-    /// Returns a bit for each lane, the first lane lowest.
+    /// Returns a bit for each lane; bit `i` is lane `i`.
     fn to_bitmask(self) -> u64;
-    /// Whether the mask is true in any lane.
+    /// Returns whether the mask is true in any lane.
     fn any_true(self) -> bool;
-    /// Whether the mask is true in all lanes.
+    /// Returns whether the mask is true in all lanes.
     fn all_true(self) -> bool;
 
-    /// Selects the lanes of `one` where the mask is true, else those of `other`.
+    /// Returns, in each lane, `one` where the mask is true, else `other`.
     #[inline(always)]
     fn select<V: Wide<S, Mask = Self>>(self, one: V, other: V) -> V {
         V::selected(self, one, other)
@@ -215,7 +217,7 @@ pub trait Wide<S: Simd>:
 {
     /// The type of a lane.
     type Scalar;
-    /// The type of a comparison's result.
+    /// The type of masks: the results of comparisons.
     type Mask: SimdMask<S>;
 
     /// Broadcasts a number to all lanes.
@@ -230,15 +232,15 @@ pub trait Wide<S: Simd>:
     /// Returns the magnitude of each lane.
     fn abs(self) -> Self;
 
-    /// Lanes where `self` is less than `other`; false for NaN.
+    /// Returns the mask of the lanes where `self` is less than `other`; false for NaN.
     fn simd_lt(self, other: Self) -> Self::Mask;
-    /// Lanes where `self` is greater than `other`; false for NaN.
+    /// Returns the mask of the lanes where `self` is greater than `other`; false for NaN.
     fn simd_gt(self, other: Self) -> Self::Mask;
-    /// Lanes where `self` is at most `other`; false for NaN.
+    /// Returns the mask of the lanes where `self` is at most `other`; false for NaN.
     fn simd_le(self, other: Self) -> Self::Mask;
-    /// Lanes where `self` is at least `other`; false for NaN.
+    /// Returns the mask of the lanes where `self` is at least `other`; false for NaN.
     fn simd_ge(self, other: Self) -> Self::Mask;
-    /// Lanes where `self` equals `other`; false for NaN.
+    /// Returns the mask of the lanes where `self` equals `other`; false for NaN.
     fn simd_eq(self, other: Self) -> Self::Mask;
 
     /// Implements [`SimdMask::select`].
@@ -263,8 +265,8 @@ impl Simd for fearless_simd::Avx2 {
     type F64x8 = Halves<fearless_simd::f64x4<Self>>;
 }
 
-/// Eight `f64` are emulated by an array: a vector would take four of the 16 registers and gain
-/// little, and these kernels were a tenth of the library's compile time.
+/// Eight `f64` are emulated by an array. A vector would take four of the 16 registers and hardly be
+/// faster, and compiling such kernels took a tenth of the library's compile time.
 #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
 impl Simd for fearless_simd::Sse2 {
     type F32x8 = Halves<fearless_simd::f32x4<Self>>;

@@ -1,4 +1,4 @@
-//! The operations that differ between 2D and 3D, behind one bound.
+//! The trait [`Space`], with the operations of a scalar that differ between 2D and 3D.
 
 use super::na::{Quaternion, Rotation2, Rotation3, UnitComplex, UnitQuaternion};
 use super::{Isometry2, Isometry3, Matrix, Pose, Real, Vector};
@@ -17,7 +17,7 @@ use core::fmt::Debug;
             for `N: Space<D>`"
 )]
 pub trait Space<const D: usize>: Real + Compiled<D> {
-    /// The user's type of a pose: nalgebra's `Isometry2` or `Isometry3`.
+    /// The type of positions in the public interface: `Isometry2` or `Isometry3` of nalgebra.
     type Isometry: Copy + Debug + PartialEq + Send + Sync + 'static;
 
     /// The algorithms that differ by dimension.
@@ -27,19 +27,19 @@ pub trait Space<const D: usize>: Real + Compiled<D> {
     /// Converts an isometry to a pose.
     fn pose(isometry: &Self::Isometry) -> Pose<Self, D>;
 
-    /// Returns the pose, without its rotation, of a solid that no rotation changes; see
+    /// Converts an isometry to a pose without rotation, for a solid that no rotation changes; see
     /// [`Pose::unturned`].
     #[doc(hidden)]
     fn unturned(isometry: &Self::Isometry) -> Pose<Self, D>;
 
-    /// Returns the position of the origin under an isometry.
+    /// Returns the translation of an isometry: the position of the local origin.
     fn translation(isometry: &Self::Isometry) -> Vector<Self, D>;
 
     /// Returns the numbers of an isometry as an array, padded with zeros.
     #[doc(hidden)]
     fn numbers(isometry: &Self::Isometry) -> [Self; 7];
 
-    /// The isometry of [`Self::numbers`], as they are: the rotation is not normalised.
+    /// Returns the isometry with the numbers of [`Self::numbers`]. The rotation is not normalised.
     #[doc(hidden)]
     fn of_numbers(numbers: &[Self; 7]) -> Self::Isometry;
 
@@ -166,8 +166,8 @@ impl<N: Real> Space<3> for N {
     }
 }
 
-/// Returns the matrix of a 3D rotation. Its columns are bitwise equal to the rotated axes, but
-/// computed without the products with zero.
+/// Returns the matrix of a 3D rotation. Its columns are bitwise equal to the rotated axes, but are
+/// computed without products with the zeros of the axes.
 #[inline]
 fn matrix_of<N: Real>(rotation: &UnitQuaternion<N>) -> Matrix<N, 3> {
     let q = rotation.coords;

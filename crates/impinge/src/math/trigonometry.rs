@@ -1,15 +1,16 @@
 //! Sine and cosine in 8 lanes, bitwise equal on every platform.
 //!
 //! An angle is reduced to at most 45° with the three parts of π/2 (Cody and Waite); then two
-//! polynomials, which interpolate at Chebyshev points, are evaluated. The error is at most 2 ε for
-//! angles up to [`MAX_ANGLE`]. For larger and non-finite angles each lane is computed by
-//! [`Real::sine_cosine`].
+//! polynomials, which interpolate sine and cosine at Chebyshev points, are evaluated. The absolute
+//! error is at most 2 ε for angles up to [`MAX_ANGLE`]. Lanes with larger or non-finite angles are
+//! computed by [`Real::sine_cosine`].
 
 use super::lanes::lit;
 use super::simd::{Simd, SimdMask};
 use super::{Real, Wide};
 
-/// Angles up to this many radians are reduced in lanes: 2¹⁶ quarter turns.
+/// The greatest angle, in radians, that is reduced in lanes. It is less than 2¹⁶ quarter turns, up
+/// to which the reduction by [`Real::QUARTER_TURN`] is accurate.
 pub(crate) const MAX_ANGLE: f64 = 1e5;
 
 /// Coefficients of (sin r - r) / r³ in powers of r², for r up to π/4.
@@ -32,7 +33,7 @@ const COSINE: [f64; 6] = [
     -1.138_086_817_144_977_1e-11,
 ];
 
-/// Returns sine and cosine in each lane, for any angle.
+/// Returns the sine and the cosine in each lane, for any angle in radians.
 #[inline(always)]
 pub(crate) fn sine_cosine<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, angle: V) -> [V; 2] {
     let found = reduced(simd, angle);
@@ -40,7 +41,7 @@ pub(crate) fn sine_cosine<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, ang
     if is_near.all_true() { found } else { mended(simd, angle, found) }
 }
 
-/// Returns sine and cosine in each lane, for angles up to [`MAX_ANGLE`].
+/// Returns the sine and the cosine in each lane, for angles up to [`MAX_ANGLE`].
 #[inline(always)]
 fn reduced<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, angle: V) -> [V; 2] {
     let quarters = rounded(simd, angle * lit(simd, core::f64::consts::FRAC_2_PI));
@@ -52,7 +53,7 @@ fn reduced<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, angle: V) -> [V; 2
     let sine = rest + rest * squared * polynomial(simd, &SINE, squared);
     let fourth = squared * squared * polynomial(simd, &COSINE, squared);
     let cosine = (lit::<S, N, V>(simd, 1.0) - squared * lit(simd, 0.5)) + fourth;
-    // The quarter of the turn, from -2 to 2, where -2 and 2 are equivalent.
+    // The number of quarter turns modulo 4, from -2 to 2, where -2 and 2 are equivalent.
     let quarter = quarters - rounded(simd, quarters * lit(simd, 0.25)) * lit(simd, 4.0);
     let (half, low): (V, V) = (lit(simd, 0.5), lit(simd, -1.5));
     let is_odd = quarter.abs().simd_eq(lit(simd, 1.0));
@@ -62,7 +63,7 @@ fn reduced<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, angle: V) -> [V; 2
     [is_below.select(-sine, sine), is_left.select(-cosine, cosine)]
 }
 
-/// Returns the nearest integer of a number far below 1 / epsilon.
+/// Rounds to the nearest integer. The magnitude must be far below 1 / ε.
 #[inline(always)]
 fn rounded<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, value: V) -> V {
     let large = V::all(simd, N::lit(1.5) / N::EPSILON);
@@ -111,7 +112,8 @@ mod tests {
     use crate::math::lanes::with_lanes;
     use crate::math::simd::Level;
 
-    /// Returns the sines and cosines; checks that every level gives bitwise equal results.
+    /// Returns the sines and cosines of angles. Checks that the results of all levels are bitwise
+    /// equal.
     fn of<N: Real>(angles: [N; 8]) -> [[N; 8]; 2] {
         let mut all = Level::available().into_iter().map(|level| {
             let mut found = [[N::ZERO; 8]; 2];

@@ -1,4 +1,4 @@
-//! Vector operations that nalgebra does not offer safely in every dimension.
+//! Vector operations, and versions of nalgebra's operations that are safe for extreme lengths.
 
 use super::{Point, Real, Vector};
 
@@ -26,8 +26,8 @@ pub fn max_component<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
 
 /// Returns the unit vector along `v` and the length of `v`; `None` for a zero or non-finite vector.
 ///
-/// Rescales by a power of two if needed, so that the result is right even if the squared length
-/// overflows or underflows, and so that scaling `v` by a power of two scales the length exactly.
+/// Scales `v` by a power of two if its squared length overflows or underflows, so that the result
+/// is accurate. Scaling `v` by a power of two scales the length exactly.
 #[inline]
 pub fn unit<N: Real, const D: usize>(v: &Vector<N, D>) -> Option<(Vector<N, D>, N)> {
     let squared = v.norm_squared();
@@ -70,7 +70,7 @@ pub fn cross<N: Real>(a: &Vector<N, 3>, b: &Vector<N, 3>) -> Vector<N, 3> {
 }
 
 /// Returns a unit vector perpendicular to the unit vector `d`, as close as possible to the axis
-/// along which `d` has its smallest component (the first if there are several).
+/// along which the component of `d` has the smallest magnitude (the first such axis).
 pub fn perpendicular_to<N: Real, const D: usize>(d: &Vector<N, D>) -> Vector<N, D> {
     let mut least = 0;
     for axis in 1..D {
@@ -86,7 +86,8 @@ pub fn perpendicular_to<N: Real, const D: usize>(d: &Vector<N, D>) -> Vector<N, 
 /// Returns two unit vectors `u` and `v` that complete the unit vector `n` to a right-handed basis
 /// `(u, v, n)`.
 ///
-/// Duff et al., "Building an Orthonormal Basis, Revisited" (JCGT 2017): no branch except the sign.
+/// The method is from Duff et al., "Building an Orthonormal Basis, Revisited" (JCGT 2017). It has
+/// no branch except for the sign.
 #[inline]
 pub fn orthonormal_basis<N: Real>(n: &Vector<N, 3>) -> (Vector<N, 3>, Vector<N, 3>) {
     let sign = if n.z < N::ZERO { -N::ONE } else { N::ONE };
@@ -97,19 +98,19 @@ pub fn orthonormal_basis<N: Real>(n: &Vector<N, 3>) -> (Vector<N, 3>, Vector<N, 
     (u, v)
 }
 
-/// Returns the mean of some points; the origin if there are none.
+/// Returns the mean of the points; the origin if there are none.
 pub fn centroid<N: Real, const D: usize>(points: &[Point<N, D>]) -> Point<N, D> {
     let sum = points.iter().fold(Vector::<N, D>::zeros(), |sum, p| sum + p.coords);
     let count = points.iter().fold(N::ZERO, |count, _| count + N::ONE);
     Point::from(if points.is_empty() { sum } else { sum / count })
 }
 
-/// The largest accepted difference from 1 of the squared length of a unit vector or of a rotation's
-/// quaternion. It allows for rounding errors that accumulate over hours.
+/// The largest accepted deviation from 1 of the squared length of a unit vector or of a rotation's
+/// quaternion. It allows for rounding errors that accumulate over hours of simulation.
 const UNIT_SLACK: f64 = 1.0 / 64.0;
 
-/// Whether `squared_length` belongs to a length within 0.8 % of 1, as that of a unit vector or of a
-/// rotation's quaternion. False for NaN.
+/// Returns whether `squared_length` is the square of a length within 0.8 % of 1, as for a unit
+/// vector or the quaternion of a rotation. `false` for NaN.
 #[inline]
 pub(crate) fn is_unit<N: Real>(squared_length: N) -> bool {
     (squared_length - N::ONE).abs() <= N::lit(UNIT_SLACK)

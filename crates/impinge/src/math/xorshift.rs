@@ -2,7 +2,8 @@
 
 use super::{Real, Vector};
 
-/// A generator of numbers from -1 to 1 (Marsaglia, "Xorshift RNGs", 2003).
+/// A generator of random numbers from -1 to 1 (Marsaglia, "Xorshift RNGs", 2003). The state must
+/// not be zero.
 pub(crate) struct Xorshift(pub(crate) u64);
 
 impl Xorshift {

@@ -8,16 +8,16 @@ use super::pair_groups::CompositeGroup;
 use super::view::{Composite, View};
 use crate::math::{Space, max};
 
-/// Iterates over the manifolds with at least one contact, in memory order.
+/// Iterator over the manifolds with at least one contact, in memory order.
 pub(super) struct CompositeViews<'a, N: Space<D>, const D: usize> {
     table: &'a ObjectTable<N, D>,
     group: &'a CompositeGroup<N, D>,
     /// Touching flags, 64 in a word.
     touching: &'a [u64],
-    /// Index of the next word of flags, and the remaining flags of the word before it.
+    /// Index of the next word of flags. `flags` has the remaining flags of the word before it.
     word: usize,
     flags: u64,
-    /// Index of the current pair, and its next patch; the patch is `usize::MAX` if there is no
+    /// Row of the current pair, and its next patch. The patch is `usize::MAX` if there is no
     /// current pair.
     row: usize,
     patch: usize,
@@ -47,13 +47,13 @@ impl<'a, N: Space<D>, const D: usize> CompositeViews<'a, N, D> {
         Some(())
     }
 
-    /// Returns the index of the pair that the lowest bit of `flags` stands for, in the word before
-    /// `word`.
+    /// Returns the row of the pair of the lowest set bit in `flags`, which are flags of the word
+    /// before `word`.
     const fn lowest_row(&self, flags: u64) -> usize {
         (self.word - 1) * 64 + flags.trailing_zeros() as usize
     }
 
-    /// Prefetches the data of the pairs of a word of flags, so that their loads overlap. Changes
+    /// Loads the data of the pairs of one word of flags, so that the cache misses overlap. Changes
     /// nothing.
     fn prefetch(&self) {
         let (mut flags, mut loaded) = (self.flags, N::ZERO);
@@ -67,8 +67,8 @@ impl<'a, N: Space<D>, const D: usize> CompositeViews<'a, N, D> {
         core::hint::black_box(loaded);
     }
 
-    /// Iterates over all contacts when some pairs need built manifolds: the manifolds of these pairs are
-    /// built for the reader.
+    /// Iterates over all contacts. Builds the manifolds of pairs that cannot be read in place; see
+    /// [`ObjectTable::needs_built_manifolds`].
     pub(super) fn with_built(mut self) -> impl Iterator<Item = View<'a, N, D>> + Send {
         let next = move || {
             self.next_pair()?;

@@ -9,15 +9,16 @@ use super::state::KeptPoints;
 use super::view::{BuiltIn, View};
 use crate::math::Space;
 
-/// Iterates over the manifolds with at least one contact, group by group in memory order.
+/// Iterator over the manifolds with at least one contact, group by group in memory order.
 pub(super) struct ConvexViews<'a, N: Space<D>, const D: usize> {
     table: &'a ObjectTable<N, D>,
     groups: slice::Iter<'a, ContactGroup<N, D>>,
     group: Option<&'a ContactGroup<N, D>>,
-    /// Index of the next word of flags in the group, and the remaining flags of the word before it.
+    /// Index of the next word of flags in the group. `flags` has the remaining flags of the word
+    /// before it.
     word: usize,
     flags: u64,
-    /// Number of words that have not been read yet.
+    /// Number of words still to be read; `usize::MAX` if the iterator is not restricted.
     left: usize,
 }
 
@@ -62,7 +63,7 @@ impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
         }
     }
 
-    /// Prefetches the data of the pairs of a word of flags, so that their loads overlap. Changes
+    /// Loads the data of the pairs of one word of flags, so that the cache misses overlap. Changes
     /// nothing.
     fn prefetch(&self, group: &ContactGroup<N, D>) {
         let (mut flags, mut sum) = (self.flags, 0_u32);
@@ -83,8 +84,8 @@ impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
         Some((group, take_row(self.word, &mut self.flags)))
     }
 
-    /// Iterates over all contacts when some pairs need built manifolds: the manifolds of these pairs are
-    /// built for the reader.
+    /// Iterates over all contacts. Builds the manifolds of pairs that cannot be read in place; see
+    /// [`ObjectTable::needs_built_manifolds`].
     pub(super) fn with_built(mut self) -> impl Iterator<Item = View<'a, N, D>> + Send {
         let next = move || {
             let (group, row) = self.next_pair()?;
@@ -95,7 +96,7 @@ impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
     }
 }
 
-/// Clears the lowest flag of the word before `word`, and returns the index of its pair.
+/// Clears the lowest set flag of the word before `word`, and returns the row of its pair.
 #[inline]
 const fn take_row(word: usize, flags: &mut u64) -> usize {
     let row = (word - 1) * 64 + flags.trailing_zeros() as usize;

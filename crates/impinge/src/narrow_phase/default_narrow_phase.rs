@@ -1,4 +1,4 @@
-//! The narrow phase of a world: its pairs, with the algorithm and the state of each.
+//! The narrow phase of a world: its pairs, each with its algorithm and its state.
 
 use core::fmt;
 use std::sync::{Arc, OnceLock};
@@ -43,17 +43,18 @@ pub struct DefaultNarrowPhase<N: Space<D>, const D: usize> {
     /// Dispatchers, shared with clones.
     pub(super) contact_dispatcher: Arc<dyn ContactDispatcher<N, D>>,
     pub(super) proximity_dispatcher: Arc<dyn ProximityDispatcher<N, D>>,
-    /// All pairs, by handle index.
+    /// All pairs. An object is identified by its handle index.
     pub(super) pairs: PairTable,
     /// Location of the state of each pair; parallel to `pairs`.
     pub(super) locations: Vec<Location>,
     pub(super) groups: PairGroups<N, D>,
-    /// Greatest motion with which a pair keeps its contacts; unused without contact reuse.
+    /// Maximum relative motion, as a distance, with which a pair reuses its contacts. Unused
+    /// without contact reuse.
     pub(super) tolerance: N,
     pub(crate) ids: IdAllocator,
     /// Keys of pairs that were marked dirty since the last update; some of the pairs may be gone.
     pub(super) dirty_pairs: Vec<PairKey>,
-    /// Scratch: changes of one update.
+    /// Scratch: changes of contact and proximity statuses in one update.
     pub(super) changes: PairChanges,
     pub(super) picked: Vec<Location>,
     /// Indices in `pairs`, sorted by pair; computed on first use after the pairs changed.
@@ -95,7 +96,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         )
     }
 
-    /// Creates a narrow phase without pairs, whose algorithms come from the given dispatchers.
+    /// Creates a narrow phase without pairs that gets its algorithms from these dispatchers.
     #[must_use]
     pub fn with_dispatchers(
         contacts: Box<dyn ContactDispatcher<N, D>>,
@@ -135,21 +136,26 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// Returns a narrow phase without pairs and with contact reuse: pairs of the library's own
     /// algorithms keep their contacts while they hardly move.
     ///
-    /// As long as no point of one solid has moved farther than `tolerance` relative to the other
-    /// since the contacts of a pair were last computed, the contact points stay fixed to the
-    /// solids. Only their depths are measured again, along the old normal; a pair without contacts
-    /// stays without. A depth then differs by at most twice the tolerance from that of a query, and
-    /// contacts may begin and end late by as much. Next to a contact within the prediction, others
-    /// may be that far beyond it. Overlapping solids are never missed, since the motion is also
-    /// limited by the prediction of the pair. Ids, features and the order of contacts stay. A ball
-    /// against a ball, box, segment or capsule is always computed, since its closed form is as
-    /// fast. The results are equal on every machine and for any number of threads, but depend on
+    /// As long as no point of the smaller solid has moved farther than `tolerance` relative to the
+    /// other solid since the contacts of a pair were last computed, the contact points stay fixed
+    /// to the solids. Only their depths are measured again, along the old normal; a pair without
+    /// contacts stays without contacts.
+    ///
+    /// A reused depth differs by at most twice the tolerance from the depth of a query, and
+    /// contacts may begin and end late by up to that distance. A manifold may keep points beyond
+    /// the prediction by up to twice the tolerance, as long as one point is within the prediction
+    /// or has not moved apart. Overlapping solids are never missed, since the motion is also
+    /// limited by the prediction of the pair. Ids, features and the order of contacts stay the
+    /// same.
+    ///
+    /// A ball against a ball, box, segment or capsule is always computed, since its closed form is
+    /// as fast. The results are equal on every machine and for any number of threads, but depend on
     /// earlier positions of the objects.
     ///
     /// Reuse pays off where most pairs move by less than a tenth of the tolerance in a step: a pair
-    /// of hulls or cylinders then costs as little as one of boxes, and an object on a mesh as
-    /// little as one on a box. It costs 80 bytes for each pair (`f32`, 3D). A good tolerance is a
-    /// tenth of the prediction, and a thousandth of the size of an object. This is the contact
+    /// of hulls or cylinders then costs as little as a pair of boxes, and an object on a mesh as
+    /// little as an object on a box. It costs 80 bytes for each pair (`f32`, 3D). A good tolerance
+    /// is a tenth of the prediction, and a thousandth of the size of an object. This is the contact
     /// recycling of Box2D and Box3D.
     ///
     /// ```
@@ -185,7 +191,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     }
 
     /// Adds a pair and chooses its algorithm, without a geometric query. Does nothing if the pair
-    /// is already there.
+    /// exists.
     pub(crate) fn pair_started(&mut self, table: &ObjectTable<N, D>, first: u32, second: u32) {
         if !self.pairs.insert(first, second).is_new {
             return;
@@ -223,8 +229,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.touching.take();
     }
 
-    /// Chooses the algorithms of an object's pairs again, after its shape or query type changed.
-    /// Contacts keep their ids if the kind of query and the features stay.
+    /// Chooses the algorithms of an object's pairs again, after its shape, query type or skin
+    /// changed. Contacts keep their ids if the kind of query and the features stay the same.
     pub(crate) fn object_changed(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -246,7 +252,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     }
 
     /// Returns the group and the maximum number of points of a manifold if the library's own
-    /// algorithm serves a pair; `None` if a custom algorithm does.
+    /// algorithm serves the pair. `None` for a pair of a custom algorithm.
     pub(super) fn built_in_group(
         &self,
         table: &ObjectTable<N, D>,
@@ -266,8 +272,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     }
 
     /// Keeps the state of a pair if it had a built-in algorithm and still has one, for the same
-    /// kind of query: updates the request, and moves the state to the group of the new kinds.
-    /// Returns `false`, without a change, otherwise.
+    /// kind of query. Then updates the request, and moves the state to the group of the new shape
+    /// kinds. Otherwise changes nothing and returns `false`.
     fn adjust(&mut self, table: &ObjectTable<N, D>, key: PairKey, index: usize) -> bool {
         let Some((new_group, max_points)) = self.built_in_group(table, key) else { return false };
         let Location { group, row } = self.locations[index];
@@ -308,8 +314,9 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         true
     }
 
-    /// Chooses an algorithm for a pair and adds the pair's state to a group, which continues from
-    /// `carried`. Returns its location, and the change of its status if there is one.
+    /// Chooses an algorithm for a pair, and adds the pair's state to the group of the algorithm.
+    /// The status of the pair continues from `carried`. Returns the location of the state, and the
+    /// change of the status if there is one.
     fn add_to_group(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -391,8 +398,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         (Location { group: GroupId::CustomProximity, row }, change)
     }
 
-    /// Removes the state of the pair at `index` in `pairs` from its group, and returns the status
-    /// to carry over.
+    /// Removes the state of the pair at `index` in `pairs` from its group, and returns its status.
     fn remove_from_group(&mut self, index: usize) -> Carried {
         let location = self.locations[index];
         let (carried, moved) = self.groups.take(location);
@@ -409,7 +415,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     }
 }
 
-/// Creates the state of a new pair of convex solids.
+/// Creates the entry of a new pair of convex solids, with the identifier `number`.
 pub(super) fn new_entry<N: Space<D>, const D: usize>(
     table: &ObjectTable<N, D>,
     key: PairKey,
@@ -421,7 +427,7 @@ pub(super) fn new_entry<N: Space<D>, const D: usize>(
     entry
 }
 
-/// Returns the shapes of a pair.
+/// Returns the shapes of a pair, in the order of its key.
 fn shapes<N: Space<D>, const D: usize>(
     table: &ObjectTable<N, D>,
     key: PairKey,
@@ -429,7 +435,7 @@ fn shapes<N: Space<D>, const D: usize>(
     key.mapped(|object| table.shape(object).as_ref())
 }
 
-/// The location of pairs without an algorithm.
+/// The location of a pair without an algorithm.
 pub(super) const NOWHERE: Location = Location { group: GroupId::Nothing, row: 0 };
 
 /// Pushes the event of a pair's change, if there is one.

@@ -1,4 +1,4 @@
-//! The library's own proximity algorithm as an object, for use without a world.
+//! The library's own proximity algorithm for one pair, for use without a world.
 
 use super::traits::{ProximityAlgorithm, ProximityDetector, ProximityDispatcher};
 use crate::math::{IsometryRef, Space};

@@ -1,4 +1,4 @@
-//! The dirty pairs of a group, as input of the kernels that compute several pairs in SIMD lanes.
+//! The dirty pairs of a group, as the input of kernels that compute several pairs in SIMD lanes.
 
 use super::ObjectTable;
 use super::entry::{ContactEntry, ContactView};
@@ -18,16 +18,16 @@ pub(super) type ContactRows<'a, N, const D: usize> = Rows<
     Reference<N, D>,
 >;
 
-/// The pairs of a chunk that must be computed, all of which have copies of their solids.
+/// The pairs of a chunk that must be computed. All of them have copies of their solids.
 pub(crate) struct DirtyContacts<'r, 't, N: Space<D>, const D: usize> {
     pub(super) rows: ContactRows<'r, N, D>,
-    /// Rows of the dirty pairs in `rows`.
+    /// Indices of the dirty pairs in `rows`.
     pub(super) indices: &'t [usize],
     pub(super) table: &'t ObjectTable<N, D>,
     pub(super) changes: &'t mut PairChanges,
 }
 
-/// Computes pairs of the narrow phase in 2D by [`update_pairs2`]; `false` if the kinds have no
+/// Updates pairs of the narrow phase in 2D by [`update_pairs2`]; `false` if their kinds have no
 /// kernel.
 pub(crate) fn update_lanes2<N: Space<2>>(
     solids: [&Solid<N, 2>; 2],
@@ -36,7 +36,7 @@ pub(crate) fn update_lanes2<N: Space<2>>(
     update_pairs2(solids, dirty)
 }
 
-/// Computes pairs of the narrow phase in 3D by [`update_pairs3`]; `false` if the kinds have no
+/// Updates pairs of the narrow phase in 3D by [`update_pairs3`]; `false` if their kinds have no
 /// kernel.
 pub(crate) fn update_lanes3<N: Space<3>>(
     solids: [&Solid<N, 3>; 2],

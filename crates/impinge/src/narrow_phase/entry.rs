@@ -1,7 +1,7 @@
 //! Entries: the state of a pair for each combination of algorithm (built-in or custom) and query.
 //!
-//! The public manifold of a pair is built on first access, in the memory of the previous one, and
-//! becomes out of date at the next update.
+//! The public manifold of a pair is built on first access, in the memory of the previous manifold,
+//! and becomes out of date at the next update.
 
 use core::fmt;
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -17,12 +17,12 @@ use crate::math::{Real, Space};
 use crate::memory::clone_fields;
 use crate::query::Proximity;
 
-/// The change for which an update, or the end of a pair, reports an event.
+/// A change of a pair's status, which an update or the end of the pair reports as an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Change {
     /// The pair got its first contact point or lost its last.
     Contact { touching: bool },
-    /// The proximity changed from the first value to the second.
+    /// The proximity changed from the first value to the second value.
     Proximity(Proximity, Proximity),
 }
 
@@ -74,8 +74,8 @@ clone_fields!([N: Real, S: Clone] ContactEntry<N, S> { number, state, request })
 #[derive(Debug)]
 pub(crate) struct ContactView<M> {
     manifolds: OnceLock<M>,
-    /// The manifolds of an earlier update, kept for their memory. Locked only while new ones are
-    /// built.
+    /// The manifolds of an earlier update, kept for their memory. Locked only while new manifolds
+    /// are built.
     old: Mutex<M>,
 }
 
@@ -99,8 +99,8 @@ impl<M: Default> ContactView<M> {
         }
     }
 
-    /// Returns the manifolds. On first access after an update, `make` builds them in the memory of
-    /// the old ones.
+    /// Returns the manifolds. On first access after an update, `make` builds them, in the memory of
+    /// the old manifolds that it receives.
     pub(crate) fn manifolds(&self, make: impl FnOnce(M) -> M) -> &M {
         self.manifolds.get_or_init(|| {
             let mut old = self.old.lock().unwrap_or_else(PoisonError::into_inner);
@@ -127,8 +127,8 @@ impl<N: Real, S> ContactEntry<N, S> {
         Self { request, number, state: S::default() }
     }
 
-    /// Updates the contacts, and marks the view as out of date; returns `true` if there are
-    /// contacts.
+    /// Updates the contacts, and marks the view as out of date; returns `true` if there is at least
+    /// one contact.
     pub(crate) fn update<const D: usize>(
         &mut self,
         view: Option<&mut ContactView<S::Manifolds>>,
@@ -160,7 +160,7 @@ pub(crate) struct ProximityEntry<N: Real> {
 }
 
 impl<N: Real> ProximityEntry<N> {
-    /// Updates the status; returns the change, or `None` if it stays.
+    /// Updates the proximity and returns its change; `None` if it is the same as before.
     pub(crate) fn update<const D: usize>(&mut self, posed: &Posed<'_, N, D>) -> Option<Change>
     where
         N: Space<D>,
@@ -177,7 +177,7 @@ pub(crate) struct CustomContactEntry<N: Space<D>, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> CustomContactEntry<N, D> {
-    /// Updates the contacts; returns `true` if there are contacts.
+    /// Updates the contacts; returns `true` if there is at least one.
     pub(crate) fn update(
         &mut self,
         dispatcher: &dyn ContactDispatcher<N, D>,
@@ -213,7 +213,7 @@ pub(crate) struct CustomProximityEntry<N: Space<D>, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> CustomProximityEntry<N, D> {
-    /// Updates the status; returns the change, or `None` if it stays.
+    /// Updates the proximity and returns its change; `None` if it is the same as before.
     pub(crate) fn update(
         &mut self,
         dispatcher: &dyn ProximityDispatcher<N, D>,

@@ -1,4 +1,4 @@
-//! Events: changes of pairs between two updates.
+//! Events: changes of the statuses of pairs between two updates.
 //!
 //! Each `Started` is followed by exactly one `Stopped`, whatever ends the contact.
 
@@ -73,9 +73,10 @@ pub struct ProximityEvent {
     pub collider1: CollisionObjectHandle,
     /// The object with the larger handle.
     pub collider2: CollisionObjectHandle,
-    /// Proximity at the update before this one.
+    /// Proximity at the previous computation of the pair; `Disjoint` for a new pair.
     pub prev_status: Proximity,
-    /// Proximity at this update; never equal to `prev_status`.
+    /// Proximity at this computation, or `Disjoint` if the pair ended; never equal to
+    /// `prev_status`.
     pub new_status: Proximity,
 }
 
@@ -139,8 +140,8 @@ impl Events {
             .sort_unstable_by_key(|e| (e.collider1, e.collider2, begins(e)));
     }
 
-    /// Iterates over the handles in events, from the given index of each list on; handles may
-    /// repeat.
+    /// Iterates over the handles in the contact events from index `contacts` on, and in the
+    /// proximity events from index `proximities` on. Handles may repeat.
     pub(crate) fn handles_since(
         &self,
         (contacts, proximities): (usize, usize),

@@ -1,7 +1,6 @@
 //! A group: pairs with the same algorithm, in parallel dense arrays.
 //!
-//! Chunks have a constant size, which does not depend on the number of threads. Prefetching does
-//! not change results.
+//! The size of chunks is constant, and does not depend on the number of threads.
 //!
 //! ```text
 //! row          0      1      2     ...            swap_remove(1): the last pair moves to row 1
@@ -9,7 +8,7 @@
 //! dirty        0      1      0
 //! touching    bit 0  bit 1  bit 2  (64 per word)
 //! states       S      S      S
-//! views        V      V      V     (none until a reader asks)
+//! views        V      V      V     (created at the first read)
 //! references   R      R      R     (only with contact reuse)
 //! ```
 
@@ -31,19 +30,19 @@ const WORD: usize = 64;
 /// The two objects of a pair, by handle index.
 pub(crate) type PairKey = [u32; 2];
 
-/// A subset of at most [`CHUNK`] pairs, as a bit set.
+/// A subset of the pairs of a chunk, as a bit set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct RowSet([u64; CHUNK / WORD]);
 
-/// The states of some pairs, in no particular order and without gaps.
+/// Pairs with the same algorithm and their states, without gaps and in unspecified order.
 ///
-/// A pair's row changes when another pair of the group is removed; [`RemovedRow::moved`]
-/// reports it. The flags that are read for every pair, dirty and touching, are stored apart from the
+/// A pair's row changes when another pair of the group is removed; [`RemovedRow::moved`] reports
+/// it. The flags that are read for every pair, dirty and touching, are stored apart from the
 /// states, so that skipping a pair does not load its state.
 ///
-/// Each state has a view: the form in which users read it. All views are created together on first
-/// access, so they cost nothing without readers. With contact reuse
-/// ([`Reuse`](super::reuse::Reuse)) each state also has a reference.
+/// Each state has a view, in which users read it. All views are created together on first access,
+/// so they cost nothing without readers. With contact reuse ([`Reuse`](super::reuse::Reuse)) each
+/// state also has a reference.
 #[derive(Debug)]
 pub(crate) struct Group<S: Parts, V = (), R = ()> {
     pub(super) keys: Vec<PairKey>,
@@ -52,16 +51,16 @@ pub(crate) struct Group<S: Parts, V = (), R = ()> {
     /// By row, as bits: whether the pair has contact points. Surplus bits are zero.
     pub(super) touching: Vec<u64>,
     pub(super) states: Vec<S>,
-    /// A view for each state; not created before the first access.
+    /// A view for each state; created on first access.
     pub(super) views: OnceLock<Vec<V>>,
     /// A reference for each state; `None` without contact reuse.
     pub(super) references: Option<Vec<R>>,
     pub(super) journal: Journal<GroupNote<S, R>>,
     /// References of the pairs in [`GroupNote::Written`] notes.
     pub(super) reference_journal: Journal<R>,
-    /// By row, if there are marks: the period in which the pair was last noted, or added.
+    /// By row, if there are marks: the period in which the pair was last noted or added.
     pub(super) noted: Vec<u8>,
-    /// The current period. Each mark begins a new one.
+    /// The current period. Each mark begins a new period.
     pub(super) period: u8,
 }
 
@@ -87,7 +86,7 @@ impl<S: Parts, V, R: Clone> Clone for Group<S, V, R> {
     }
 }
 
-/// Parallel slices over the pairs of a group or chunk.
+/// Parallel slices over the pairs of a group or of a chunk.
 pub(crate) struct Rows<'a, S, V, R = ()> {
     pub(crate) keys: &'a [PairKey],
     dirty: &'a mut [bool],
@@ -104,7 +103,7 @@ pub(crate) struct Rows<'a, S, V, R = ()> {
 pub(crate) struct RemovedRow<S> {
     pub(crate) state: S,
     pub(crate) is_touching: bool,
-    /// The pair that moved to the row of the removed one; `None` if that was the last.
+    /// The pair that moved to the row of the removed pair; `None` if the removed pair was the last.
     pub(crate) moved: Option<PairKey>,
 }
 
@@ -190,8 +189,8 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         RemovedRow { state, is_touching, moved }
     }
 
-    /// Replaces the pair in a row by another one, which is dirty and not touching. Returns `true`
-    /// if the old pair was touching.
+    /// Replaces the pair in a row by a new pair, which is dirty and not touching. Returns `true` if
+    /// the old pair was touching.
     pub(crate) fn replace(&mut self, row: u32, key: PairKey, state: S) -> bool {
         self.note_whole(row);
         let at = row as usize;
@@ -222,7 +221,8 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         self.touching[word] & bit != 0
     }
 
-    /// Marks a pair as dirty even if neither object moves, and drops its reference.
+    /// Marks a pair as dirty, so that the next update computes it even if neither object moves.
+    /// Drops its reference.
     pub(crate) fn mark_dirty(&mut self, row: u32) {
         self.note_whole(row);
         self.dirty[row as usize] = true;
@@ -324,7 +324,7 @@ impl<'a, S, V, R> Rows<'a, S, V, R> {
         Rows { keys, dirty, touching, states, views, references }
     }
 
-    /// Splits the slices into pieces of [`CHUNK`] pairs; the last one may be shorter.
+    /// Splits the slices into chunks of [`CHUNK`] pairs; the last chunk may be shorter.
     pub(crate) fn chunks(self) -> impl Iterator<Item = Rows<'a, S, V, R>> {
         let (mut views, mut dirty) = (self.views.chunks_mut(CHUNK), self.dirty.chunks_mut(CHUNK));
         let mut touching = self.touching.chunks_mut(CHUNK / WORD);
@@ -346,7 +346,7 @@ impl<'a, S, V, R> Rows<'a, S, V, R> {
         (self.keys[row], &mut self.states[row], self.views.get_mut(row))
     }
 
-    /// Returns `true` if the pair needs a new query: it is marked as dirty, or one of its objects
+    /// Returns `true` if the pair must be computed: it is marked as dirty, or one of its objects
     /// changed. Clears the mark.
     #[inline]
     pub(crate) fn take_dirty<N: Space<D>, const D: usize>(
@@ -364,10 +364,10 @@ impl<'a, S, V, R> Rows<'a, S, V, R> {
         core::mem::take(&mut self.dirty[row])
     }
 
-    /// Returns the pairs of a chunk that need a new query, and clears their marks.
+    /// Returns the pairs of a chunk that must be computed, and clears their marks.
     ///
-    /// The loop over flags and change bits has no branches, so nothing waits for the memory of the
-    /// pairs.
+    /// The loop reads only flags and change bits, and has no branches. So it does not wait for the
+    /// states of pairs to load.
     pub(super) fn take_all_dirty<N: Space<D>, const D: usize>(
         &mut self,
         table: &ObjectTable<N, D>,

@@ -2,13 +2,15 @@
 
 use crate::generation::Generation;
 
-/// The handle of a collision object. Within its world it never refers to another object.
+/// The handle of a collision object. Within a world, a handle never refers to a different object
+/// than the one for which it was issued.
 ///
-/// A world accepts only its own handles: it refuses a handle of another world like a stale one,
-/// even if both worlds were filled in the same way. (Worlds are distinguished by a tag of 16 bits,
-/// which is reused after 65535 other worlds.) Handles of two worlds are never equal;
-/// [`CollisionWorld::counterpart`] translates them. It also translates deserialized handles, which
-/// belong to no world: the serialized form is the index and the generation.
+/// A world refuses a handle of another world like a stale handle, even if both worlds were filled
+/// in the same way. Only a clone and its original both accept the handles issued before the clone.
+/// (Handle tables are distinguished by a tag of 16 bits, which is reused after 65535 tables; a
+/// world has one table for its objects, and others for its broad phase and its marks.)
+/// [`CollisionWorld::counterpart`] translates handles of other worlds, and also deserialized
+/// handles, which belong to no world: the serialized form is the index and the generation.
 ///
 /// Handles are ordered by the index in the handle table, then by generation. This is the canonical
 /// order of pairs, events and query results.

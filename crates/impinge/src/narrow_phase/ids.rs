@@ -1,11 +1,13 @@
 //! Allocation of contact ids.
 //!
-//! No id is issued twice, even when phases are replaced: the counter moves on to the new phase.
+//! No id is issued twice in a world, even if its narrow phase is replaced: the new narrow phase
+//! continues the counter.
 
-/// Issues identifiers of pairs that no other pair of the same world has or had.
+/// A counter that issues an identifier for each pair. No other pair of the same world has or had
+/// the same identifier.
 ///
 /// A contact id consists of the identifier of its pair and a number within the pair. So pairs that
-/// are updated at the same time need no coordination.
+/// are updated in parallel need no coordination.
 ///
 /// ```
 /// use impinge::dim2::narrow_phase::IdAllocator;

@@ -1,11 +1,12 @@
 //! Contacts and proximities of the pairs that the broad phase proposes, kept from update to update.
 //!
 //! [`DefaultNarrowPhase`] keeps the pairs of a world. The traits [`ContactManifoldGenerator`] and
-//! [`ProximityDetector`] stand for the algorithm of one pair, to use alone or to plug in through a
-//! dispatcher. Nothing here has access to users' data: objects are rows of an [`ObjectTable`].
+//! [`ProximityDetector`] define the algorithm of one pair. Such an algorithm can be used alone, or
+//! plugged in through a dispatcher. No type of this module has access to users' data: objects are
+//! rows of an [`ObjectTable`].
 //!
 //! ```text
-//! pairs: PairTable       (first, second) by index, both handle indices
+//! pairs: PairTable       index -> (first, second), two handle indices
 //! locations              index -> Location { group, row }
 //! groups: PairGroups     contacts[kind pair]   one Group for each pair of shape kinds
 //!                        composites            one Group for all pairs with a composite

@@ -23,11 +23,11 @@ use crate::shape::{Geometry, ShapeHandle};
 /// Entry in `rows` of an object without a row.
 const NONE: u32 = u32::MAX;
 
-/// Poses, shapes and query types of the objects that have pairs, as of the last update, by
-/// [`CollisionObjectHandle::uid`].
+/// Poses, shapes and query types of the objects that have pairs, as of the last update. An object
+/// is identified by its index, [`CollisionObjectHandle::uid`].
 ///
 /// The world writes an object's row when the object's first pair starts. It writes the row again at
-/// the start of an update if the object changed since the previous one. Between updates the rows
+/// the start of an update if the object changed since the previous update. Between updates the rows
 /// are constant, so manifolds that are read then are those of the last update. When the last pair
 /// of the object stops, its row becomes free for another object.
 ///
@@ -57,25 +57,27 @@ const NONE: u32 = u32::MAX;
 pub struct ObjectTable<N: Space<D>, const D: usize> {
     /// By handle index: the row of the object, or [`NONE`].
     rows: Vec<u32>,
-    /// The handle of each row's object. This array and all up to `is_written` are indexed by row.
+    /// The handle of each row's object. This array and the following arrays, up to `is_written`,
+    /// are indexed by row.
     handles: Vec<CollisionObjectHandle>,
     solids: Vec<ObjectSolid<N, D>>,
     /// Bounding balls and boxes of the shapes, which reject most distant pairs without loading the
     /// shapes.
     bounds: Vec<ReachBounds<N, D>>,
     queries: Vec<GeometricQueryType<N>>,
-    /// The poses as the user gave them, for custom algorithms.
+    /// The poses as the user set them, for custom algorithms.
     isometries: Vec<N::Isometry>,
     /// Whether the row was written in the current update.
     is_written: Vec<bool>,
     /// Rows without an object; the last one in the list is used next.
     free: Vec<u32>,
     /// Handle indices of the objects whose rows were written in the current update, in order of
-    /// writing. An object that has lost its row since may still be listed, or be listed again.
+    /// writing. An object that has lost its row since may still be listed, and may be listed twice.
     changed: Vec<u32>,
     /// Number of rows acquired since the last [`Self::compact`].
     acquired: usize,
-    /// Pairs computed since the last update, sorted by key, with the poses of their computation.
+    /// Pairs computed since the last update, sorted by key, with the poses at which they were
+    /// computed.
     pub(super) substeps: Vec<PairSolids<N, D>>,
     /// By handle index, up to the last object with a skin: the skin, as of the last update.
     pub(super) skins: Vec<N>,
@@ -148,8 +150,8 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         }
     }
 
-    /// Begins an update: clears the list of written rows, and the poses of pairs that were computed
-    /// alone.
+    /// Begins an update: clears the list of written rows, and the pairs that were computed since
+    /// the last update.
     pub(crate) fn begin_update(&mut self) {
         self.substeps.clear();
         for index in self.changed.drain(..) {
@@ -289,14 +291,15 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.is_written.get(self.row(index)).is_some_and(|&is_written| is_written)
     }
 
-    /// Returns the row of an object. An object without one gives an index beyond all rows.
+    /// Returns the row of an object; an index beyond all rows if the object has none.
     #[inline]
     fn row(&self, index: u32) -> usize {
         self.rows[index as usize] as usize
     }
 
-    /// Sorts the rows by handle index and drops free ones, if more than a quarter have been
-    /// assigned since the last time. A pass over the objects then accesses memory in order.
+    /// Sorts the rows by handle index and drops free rows, if the number of rows acquired since the
+    /// last sorting exceeds a quarter of all rows. A pass over the objects then accesses memory in
+    /// order.
     pub(crate) fn compact(&mut self) {
         if self.acquired * 4 <= self.handles.len() {
             return;
@@ -404,7 +407,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         }
     }
 
-    /// Returns the handle of the object for which the row was written.
+    /// Returns the handle of the object, as of the last update.
     pub(crate) fn handle(&self, index: u32) -> CollisionObjectHandle {
         self.handles[self.row(index)]
     }
@@ -415,12 +418,12 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         &self.solids[self.row(index)].pose
     }
 
-    /// Returns shape and pose at the last update.
+    /// Returns the shape and the pose at the last update.
     pub(super) fn solid(&self, index: u32) -> &ObjectSolid<N, D> {
         &self.solids[self.row(index)]
     }
 
-    /// Returns the pose at the last update, as the user gave it.
+    /// Returns the pose at the last update, as the user set it.
     pub(crate) fn isometry(&self, index: u32) -> &N::Isometry {
         &self.isometries[self.row(index)]
     }
@@ -431,7 +434,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         &self.solids[self.row(index)].shape
     }
 
-    /// Returns the bounds of the shape.
+    /// Returns the bounding ball and box of the shape.
     #[inline]
     pub(crate) fn bounds(&self, index: u32) -> &ReachBounds<N, D> {
         &self.bounds[self.row(index)]

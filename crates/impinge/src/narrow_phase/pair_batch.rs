@@ -1,4 +1,4 @@
-//! The pairs that begin and end in an update, processed in batches.
+//! The pairs that begin and end in an update, processed in batches with prefetching.
 //!
 //! A pair that begins may get the index of one that ends, so the order of pairs is unspecified.
 
@@ -13,15 +13,15 @@ use crate::collide::ManifoldRequest;
 use crate::math::Space;
 use crate::pairs::pack;
 
-/// Number of started and of stopped pairs that are prefetched at once.
+/// Maximum number of started pairs, and of stopped pairs, in one batch.
 const BATCH: usize = 16;
 
-/// Keys of some pairs.
+/// The keys of the started or the stopped pairs of one batch.
 type BatchKeys = SmallVec<[PairKey; BATCH]>;
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
-    /// Adds the pairs that began and removes those that ended, as [`pair_started`](Self::pair_started) and
-    /// [`pair_stopped`](Self::pair_stopped) do.
+    /// Adds the pairs that began and removes those that ended, as
+    /// [`pair_started`](Self::pair_started) and [`pair_stopped`](Self::pair_stopped) do.
     ///
     /// Pairs are scattered in memory, so several are prefetched at once. A pair that begins takes
     /// the index of a pair that ends, if both are in the same group, so that no other pair moves.
@@ -47,7 +47,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }
     }
 
-    /// Adds some pairs and removes others; where possible, an added pair replaces a removed one.
+    /// Adds the pairs `started` and removes the pairs `stopped`; where possible, an added pair
+    /// replaces a removed one.
     fn begin_and_end_some_pairs(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -66,7 +67,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }
     }
 
-    /// Prefetches the data of some pairs, whose loads would otherwise wait for each other. Changes nothing.
+    /// Loads the data of some pairs. These loads are independent of each other, so the cache misses
+    /// overlap. Changes nothing.
     fn prefetch(&self, table: &ObjectTable<N, D>, started: &[PairKey], stopped: &[PairKey]) {
         let packed = |&[first, second]: &PairKey| pack(first, second);
         let keys: SmallVec<[u64; 2 * BATCH]> = started.iter().chain(stopped).map(packed).collect();
@@ -85,7 +87,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         core::hint::black_box(loaded);
     }
 
-    /// Removes one pair and adds another.
+    /// Removes the pair `old` and adds the pair `new`.
     fn exchange(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -99,8 +101,9 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }
     }
 
-    /// Writes a new pair at the index of an old one; `None`, without a change, unless both belong
-    /// to the same group of built-in contacts.
+    /// Writes the pair `new` at the index and row of the pair `old`. `None`, without a change,
+    /// unless both belong to the same group of built-in contacts of convex solids, and `new` does
+    /// not exist yet.
     fn replace(
         &mut self,
         table: &ObjectTable<N, D>,

@@ -12,8 +12,8 @@ use crate::memory::{Look, clone_fields};
 use crate::query::{ContactManifold, Proximity};
 use crate::shape::{Shape, ShapeKind};
 
-/// Number of ordered pairs of shape kinds, and so of built-in groups for contacts, and of built-in
-/// groups for proximity.
+/// Number of ordered pairs of shape kinds: the length of `contacts` and of `proximity` in
+/// [`PairGroups`].
 const KIND_PAIRS: usize = ShapeKind::COUNT * ShapeKind::COUNT;
 
 /// The group of a pair, which defines the algorithm that serves it.
@@ -39,7 +39,8 @@ pub(crate) struct Location {
     pub(crate) row: u32,
 }
 
-/// The status of a pair while its algorithm is replaced, from which events follow.
+/// The status that a pair keeps while its algorithm is replaced. It determines the events of the
+/// replacement.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Carried {
     Contacts { is_touching: bool },
@@ -48,7 +49,7 @@ pub(crate) enum Carried {
 }
 
 impl Carried {
-    /// Returns the change that ends the status; `None` if there is nothing to end.
+    /// Returns the change that ends the status; `None` for a status that has no event at its end.
     pub(crate) fn end(self) -> Option<Change> {
         match self {
             Self::Contacts { is_touching } => {
@@ -59,8 +60,8 @@ impl Carried {
         }
     }
 
-    /// Returns whether the pair was touching, and the change that ends the status of another kind
-    /// of query.
+    /// Returns whether the pair is touching, for a new contact algorithm. If the status belongs to
+    /// a proximity query, returns `false` and the change that ends the status.
     pub(crate) fn into_touching(self) -> (bool, Option<Change>) {
         match self {
             Self::Contacts { is_touching } => (is_touching, None),
@@ -68,8 +69,8 @@ impl Carried {
         }
     }
 
-    /// Returns the proximity to continue with, and the change that ends the status of another kind
-    /// of query.
+    /// Returns the proximity of the pair, for a new proximity algorithm. If the status belongs to a
+    /// contact query, returns `Disjoint` and the change that ends the status.
     pub(crate) fn into_status(self) -> (Status, Option<Change>) {
         match self {
             Self::Proximity(status) => (status, None),
@@ -115,7 +116,7 @@ impl<N: Space<D>, const D: usize> Default for PairGroups<N, D> {
     }
 }
 
-/// Returns the index of the unordered pair of kinds of two shapes.
+/// Returns the index of the unordered pair of kinds of two shapes: the same index for both orders.
 pub(crate) fn kind_pair<N: Real, const D: usize>(
     shape1: &dyn Shape<N, D>,
     shape2: &dyn Shape<N, D>,
@@ -144,7 +145,8 @@ impl<N: Space<D>, const D: usize> PairGroups<N, D> {
         Self { contacts, composites: Group::with_references(), ..Self::default() }
     }
 
-    /// Removes the state of a pair. Returns its status, and the pair that moved to its row.
+    /// Removes the state of a pair. Returns its status, and the pair that moved to its row; `None`
+    /// if no pair moved.
     pub(crate) fn take(&mut self, location: Location) -> (Carried, Option<PairKey>) {
         let row = location.row;
         match location.group {
@@ -183,7 +185,7 @@ impl<N: Space<D>, const D: usize> PairGroups<N, D> {
         self.proximity.iter_mut().for_each(|group| group.fit(look));
     }
 
-    /// Marks a pair as dirty even if neither object moves.
+    /// Marks a pair as dirty, so that the next update computes it even if neither object moves.
     pub(crate) fn mark_dirty(&mut self, location: Location) {
         let row = location.row;
         match location.group {
@@ -197,8 +199,8 @@ impl<N: Space<D>, const D: usize> PairGroups<N, D> {
     }
 }
 
-/// Returns the status of a removed pair, and the pair that moved to its row; `None` if there is
-/// none.
+/// Returns the status of a removed pair of a contact query, and the pair that moved to its row;
+/// `None` if no pair moved.
 fn removed_contacts<S>(removed: RemovedRow<S>) -> (Carried, Option<PairKey>) {
     (Carried::Contacts { is_touching: removed.is_touching }, removed.moved)
 }

@@ -1,8 +1,9 @@
-//! Prefetching for pairs with composites.
+//! Prefetching of the data of pairs with composites.
 //!
-//! The states of pairs are contiguous, but the data that they refer to is not: poses, shapes, arrays of shapes, cached
-//! parts and contact points are scattered in memory. Updating pair after pair waits for one load at a time; loads of
-//! several pairs that are issued close together overlap.
+//! The states of pairs are contiguous, but the data to which they refer are not: poses, shapes,
+//! arrays of shapes, cached parts and contact points are scattered in memory. An update of pair
+//! after pair would wait for one cache miss at a time. The cache misses of several pairs overlap if
+//! their loads are issued close together.
 
 use super::ObjectTable;
 use super::entry::{ContactEntry, ContactView};
@@ -25,7 +26,8 @@ pub(super) type CompositeRows<'a, N, const D: usize> = Rows<
     Reference<N, D>,
 >;
 
-/// Updates the pairs `dirty` of a chunk one by one, in blocks of [`PAIRS`] that are prefetched.
+/// Updates the pairs `dirty` of a chunk one by one. Each block of [`PAIRS`] pairs is prefetched
+/// before it is updated.
 pub(super) fn update_prefetched<N: Space<D>, const D: usize>(
     rows: &mut CompositeRows<'_, N, D>,
     table: &ObjectTable<N, D>,
@@ -62,8 +64,8 @@ fn prefetch<N: Space<D>, const D: usize>(
     core::hint::black_box(loaded);
 }
 
-/// Reads a cache line of a small solid; the returned value is meaningless, and only keeps the load
-/// alive.
+/// Reads a cache line of a convex solid's data. The returned value is meaningless, and only keeps
+/// the load alive.
 #[inline]
 fn solid<N: Real, const D: usize>(shape: Geometry<'_, N, D>) -> N {
     match shape.0 {

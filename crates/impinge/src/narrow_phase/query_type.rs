@@ -18,20 +18,20 @@ use crate::math::Real;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum GeometricQueryType<N: Real> {
-    /// Contacts, with the linear prediction and the angular one in radians.
+    /// Contacts: the linear prediction, and the angular prediction in radians.
     ///
     /// There are contact points while the solids penetrate, or are no farther apart than the *sum*
     /// of the linear predictions of both objects. The sum of the angular predictions adds points
     /// that would come within that distance if the solids rotated by up to that angle; a sum above
     /// a right angle is treated as a right angle.
     Contacts(N, N),
-    /// Proximity, with the margin: solids farther apart than the *sum* of the margins are disjoint.
+    /// Proximity: the margin. Solids farther apart than the *sum* of the margins are disjoint.
     ///
     /// An object of type `Contacts` adds nothing to the sum.
     Proximity(N),
 }
 
-/// [`GeometricQueryType::Contacts`] with named fields: contact points are wanted.
+/// [`GeometricQueryType::Contacts`] with named fields: requests contact points.
 ///
 /// The default has no prediction: contact points exist where the solids touch or overlap.
 ///
@@ -59,8 +59,8 @@ pub struct ContactQuery<N: Real> {
 /// [`GeometricQueryType::Proximity`] with a named field: reports whether solids are near, without
 /// contact points.
 ///
-/// The default has no margin: a pair is [`WithinMargin`](crate::query::Proximity::WithinMargin) by the
-/// other object's margin alone.
+/// The default has no margin: the margin of the other object alone determines whether a pair is
+/// [`WithinMargin`](crate::query::Proximity::WithinMargin).
 ///
 /// ```
 /// use impinge::dim2::prelude::*;
@@ -123,8 +123,8 @@ pub(crate) enum PairQuery<N: Real> {
 }
 
 impl<N: Real> GeometricQueryType<N> {
-    /// Returns the linear prediction or the margin, by which the broad phase grows the object's
-    /// box.
+    /// Returns the linear prediction or the margin. The broad phase grows the object's box by this
+    /// distance.
     #[must_use]
     pub fn query_limit(&self) -> N {
         match *self {
@@ -153,7 +153,8 @@ impl<N: Real> GeometricQueryType<N> {
         }
     }
 
-    /// Returns the query of a pair of objects with these types; proximity prevails.
+    /// Returns the query of a pair of objects with these types: proximity if either type is
+    /// `Proximity`.
     pub(crate) fn pair(self, other: Self) -> PairQuery<N> {
         match (self, other) {
             (Self::Contacts(linear1, angular1), Self::Contacts(linear2, angular2)) => {
@@ -167,7 +168,7 @@ impl<N: Real> GeometricQueryType<N> {
         }
     }
 
-    /// Returns the first number that is negative or not finite, if there is one.
+    /// Returns the first number that is negative or not finite; `None` if all numbers are valid.
     pub(crate) fn bad_number(&self) -> Option<N> {
         let numbers = match *self {
             Self::Contacts(linear, angular) => [linear, angular],
@@ -177,8 +178,8 @@ impl<N: Real> GeometricQueryType<N> {
     }
 }
 
-/// A query type in less memory: both predictions, or the margin and −1. The numbers of a query type
-/// are never negative.
+/// A query type as two numbers: both predictions, or the margin and −1. The numbers of a query type
+/// are never negative, so −1 identifies a proximity query.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PackedQuery<N: Real>([N; 2]);
 

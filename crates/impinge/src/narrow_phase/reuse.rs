@@ -1,14 +1,17 @@
-//! Contact reuse, which is optional: a pair keeps its contacts while it hardly moves.
+//! Contact reuse, an option: a pair keeps its contacts while it hardly moves.
 //!
-//! In a scene that comes to rest, most pairs move by a thousandth of their size in a step, and a new query would find
-//! the old points, moved along. So the relative pose of a pair at its last query is kept, as its *reference*. While no
-//! point of the smaller solid has moved farther than a tolerance since then, relative to the other solid, the points
-//! stay fixed to both solids, and their distances are measured again along the normal. This is the contact recycling of
-//! Box2D and Box3D (E. Catto), but with motion measured from the last query instead of from step to step, so that
-//! errors do not accumulate.
+//! In a scene that comes to rest, most pairs move by a thousandth of their size in a step, and a
+//! new query would find the old points, moved along with the solids. So the relative pose of a pair
+//! at its last query is kept, as its *reference*. While no point of the smaller solid has moved
+//! farther than a tolerance since then, relative to the other solid, the points stay fixed to both
+//! solids, and their distances are measured again along the normal. This is the contact recycling
+//! of Box2D and Box3D (E. Catto), but with the motion measured from the last query instead of from
+//! the last step, so that errors do not accumulate.
 //!
-//! A signed distance changes by no more than the motion of its solids. So reused distances differ from those of a query
-//! by at most twice the tolerance, and may exceed the prediction by as much; the least one is within it.
+//! A signed distance changes by no more than the motion of its solids. So a reused distance differs
+//! from that of a query by at most twice the tolerance, and may exceed the prediction by as much.
+//! Contacts are not reused if all of them are beyond the prediction and farther apart than at the
+//! last query.
 
 use core::fmt;
 
@@ -55,19 +58,21 @@ pub(super) fn usable_tolerance<N: Real>(tolerance: N) -> Result<N, ReuseError> {
 pub(crate) struct Reference<N: Real, const D: usize> {
     /// Pose of the solid in whose frame contacts are stored, relative to the other solid.
     pub(super) pose21: Pose<N, D>,
-    /// Upper bound of the distance of the relevant points from the origin of that solid; infinite if the contacts
-    /// cannot be reused.
+    /// Upper bound of the distance of the relevant points of that solid from its origin; infinite
+    /// if the contacts cannot be reused.
     pub(super) reach: N,
-    /// Number of further updates for which the reference is neither compared nor set, because the pair is fast.
+    /// Number of further updates in which the reference is neither compared nor set, because the
+    /// pair is fast.
     pub(super) pause: u8,
-    /// Distance of each contact, in order.
+    /// Signed distance of each contact at the last query, in the order of the contacts.
     pub(super) distances: SmallVec<[N; 4]>,
 }
 
-/// A pair is fast if it has moved by more than `FAST` times the limit of reuse.
+/// A pair is fast if it has moved by more than `FAST` times the limit of reuse (see
+/// [`Reference::keeps`]).
 const FAST: f64 = 4.0;
-/// Number of updates that a fast pair skips before its reference is set again. This bounds the cost of reuse in scenes
-/// where everything moves fast.
+/// Number of updates that a fast pair skips before its reference is set again. This bounds the cost
+/// of reuse in scenes where all objects move fast.
 const PAUSE: u8 = 6;
 
 impl<N: Real, const D: usize> Default for Reference<N, D> {
@@ -78,10 +83,12 @@ impl<N: Real, const D: usize> Default for Reference<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Reference<N, D> {
-    /// Returns `true`, and moves the contacts of a pair along, if the pair has moved by less than the limit and a
-    /// contact is still near. `pose21` returns the present relative pose.
+    /// Updates the distances of the contacts of a pair and returns `true`, if the pair has moved by
+    /// less than the limit and a contact is still near. Otherwise returns `false`. `pose21` returns
+    /// the present relative pose.
     ///
-    /// The limit is the smaller of tolerance and prediction, so that no contact of overlapping solids is missed.
+    /// The limit is the smaller of `tolerance` and `prediction`, so that no contact of overlapping
+    /// solids is missed.
     #[inline]
     pub(super) fn keeps<S: KeptPoints<N, D>>(
         &mut self,
@@ -104,8 +111,9 @@ impl<N: Space<D>, const D: usize> Reference<N, D> {
         motion < limit && self.measure(&pose21, state, prediction)
     }
 
-    /// Stores the relative pose and the distances of the contacts, which were just computed, as the reference.
-    /// `reaches` returns the bounding radii, first of the solid in whose frame contacts are stored.
+    /// Stores the relative pose and the distances of the contacts, which were just computed, as the
+    /// reference. `reaches` returns the bounding radius of each solid, first that of the solid in
+    /// whose frame contacts are stored.
     #[inline]
     pub(super) fn note<S: KeptPoints<N, D>>(
         &mut self,
@@ -117,28 +125,31 @@ impl<N: Space<D>, const D: usize> Reference<N, D> {
             return;
         }
         self.pose21 = pose21();
-        // Contacts lie on both solids: of an unbounded or larger solid, only the part near the other one matters.
+        // Contacts lie on both solids: if the first solid is unbounded or larger, only its part
+        // near the other solid matters.
         let [own, others] = reaches();
         self.reach = min(own, self.pose21.translation.norm() + others);
         self.distances.clear();
         state.each_point(|_, distance, _| self.distances.push(*distance));
     }
 
-    /// Returns an upper bound of the motion of a point of the first solid relative to the second; NaN or infinite if
-    /// there is no bound.
+    /// Returns an upper bound of the motion of a point of the first solid relative to the second;
+    /// NaN or infinite if there is no bound.
     fn motion(&self, pose21: &Pose<N, D>) -> N {
         // The Frobenius norm of a difference of rotations bounds its spectral norm.
         let rotation_change = (pose21.rotation - self.pose21.rotation).norm();
         (pose21.translation - self.pose21.translation).norm() + rotation_change * self.reach
     }
 
-    /// Measures the distance of each contact along its normal, which is fixed to the first solid; both points are fixed
-    /// to their solids. Returns `true` if a contact is within `limit` or within its old distance, or if there is no
-    /// contact. If there are many contacts, some leave the prediction at every step; that alone does not end the reuse.
+    /// Measures the distance of each contact along its normal, which is fixed to the first solid;
+    /// both points are fixed to their solids. Returns `true` if a contact is within `limit` or
+    /// within its old distance, or if there is no contact. Of many contacts, some leave the
+    /// prediction at every step; that alone does not end the reuse.
     ///
-    /// `pose21` maps x to R x + t, the reference to R' x + t'. A point p of the first solid and its opposite point, at
-    /// distance d along n, were at R' p + t' and R' (p + d n) + t'. The distance is the component along R n of the
-    /// vector from the first point as it is now to the opposite point: (R' − R) p + (t' − t) + d R' n. Only small
+    /// `pose21` maps x to R x + t, and the reference maps x to R' x + t'. A point p of the first
+    /// solid and its opposite point, at distance d along n, were at R' p + t' and R' (p + d n) +
+    /// t'. The new distance is the component along R n of the vector from the present position of
+    /// the first point to the opposite point: (R' − R) p + (t' − t) + d R' n. Only small
     /// differences occur, so that little precision is lost far from the origin.
     fn measure<S: KeptPoints<N, D>>(&self, pose21: &Pose<N, D>, state: &mut S, limit: N) -> bool {
         let rotation_change = self.pose21.rotation - pose21.rotation;
@@ -157,20 +168,21 @@ impl<N: Space<D>, const D: usize> Reference<N, D> {
     }
 }
 
-/// Context of contact reuse: the object table and the tolerance.
+/// The object table and the tolerance of contact reuse in an update.
 #[derive(Clone, Copy)]
 pub(super) struct Reuse<'t, N: Space<D>, const D: usize> {
     pub(super) table: &'t ObjectTable<N, D>,
     pub(super) tolerance: N,
 }
 
-/// Slices over pairs with built-in contacts.
+/// Slices over pairs of one group with built-in contacts.
 type KeptRows<'a, N, S, V, const D: usize> =
     Rows<'a, ContactEntry<N, S>, ContactView<V>, Reference<N, D>>;
 
 impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
-    /// Returns `true`, and moves the contacts of a pair along, if the pair has moved little enough. The number of
-    /// contacts does not change, so there are no events.
+    /// Updates the distances of the contacts of a pair and returns `true`, if the pair has moved
+    /// little enough ([`Reference::keeps`]). The number of contacts does not change, so there are
+    /// no events.
     #[inline]
     pub(super) fn keeps<S: KeptContacts<N, D>>(
         &self,
@@ -212,14 +224,15 @@ impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
         reference.note(state, || self.pose21(key, is_swapped), reaches);
     }
 
-    /// Returns the pose of the solid in whose frame contacts are stored, relative to the other solid.
+    /// Returns the pose of the solid in whose frame contacts are stored, relative to the other
+    /// solid.
     fn pose21(&self, key: PairKey, is_swapped: bool) -> Pose<N, D> {
         let [first, other] = kept_order(key, is_swapped);
         Pose::relative(self.table.pose(other), self.table.pose(first))
     }
 }
 
-/// Returns the object in whose frame contacts are stored, then the other object.
+/// Returns the object in whose frame contacts are stored first, then the other object.
 const fn kept_order([first, second]: PairKey, is_swapped: bool) -> [u32; 2] {
     if is_swapped { [second, first] } else { [first, second] }
 }

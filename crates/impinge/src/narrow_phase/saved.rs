@@ -1,7 +1,8 @@
-//! The narrow phase of a saved world: its pairs, in the order in which contacts are read.
+//! The narrow phase in a saved world: its pairs, in the order in which contacts are read.
 //!
-//! The requests of pairs, the copies of their solids and the touching flags are computed from the table. So is the
-//! algorithm of each pair: data cannot assign a pair to another algorithm.
+//! The requests of pairs and the copies of their solids are not saved, but computed from the object
+//! table. The touching flags are computed from the contacts. The algorithm of each pair is chosen
+//! again, so that data cannot assign a pair to another algorithm.
 
 use serde::{Deserialize, Serialize};
 
@@ -25,7 +26,8 @@ use crate::math::numbers::{Damage, Numbers, ensure};
 use crate::math::{Mapped, Real, Space};
 use crate::query::Proximity;
 
-/// The arguments of a narrow phase: points per manifold, and the tolerance of contact reuse if it is enabled.
+/// The record of a narrow phase without pairs: the maximum number of points of a manifold, and the
+/// tolerance of contact reuse if that is enabled.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct PhaseRecord<N: Real> {
@@ -33,7 +35,7 @@ pub(crate) struct PhaseRecord<N: Real> {
     tolerance: Option<Numbers<N>>,
 }
 
-/// A narrow phase as data.
+/// The record of a narrow phase.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct NarrowRecord<N: Real> {
@@ -42,18 +44,19 @@ pub(crate) struct NarrowRecord<N: Real> {
     pub(crate) pairs: Vec<PairRecord<N>>,
 }
 
-/// A pair as data.
+/// The record of a pair.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct PairRecord<N: Real> {
-    /// By handle index, in order.
+    /// The handle indices of both objects, the smaller first; equal for the pair of an object with
+    /// itself.
     pub(crate) objects: PairKey,
     is_due: bool,
     state: StateRecord<N>,
     reference: Option<ReferenceRecord<N>>,
 }
 
-/// The cached state of a pair, by its query type.
+/// The record of the state of a pair, for each kind of query and shape.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 enum StateRecord<N: Real> {
@@ -65,18 +68,18 @@ enum StateRecord<N: Real> {
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 struct ReferenceRecord<N: Real> {
-    /// The pose, then the reach.
+    /// The relative pose, then the bound `reach`.
     numbers: Numbers<N>,
     distances: Numbers<N>,
     pause: u8,
 }
 
-/// A pair that was computed since the last update.
+/// The record of a pair that was computed since the last update.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct SubstepRecord<N: Real> {
     objects: PairKey,
-    /// The poses of both.
+    /// The poses of both objects at the time of the computation.
     poses: Numbers<N>,
 }
 
@@ -91,10 +94,11 @@ impl<N: Real, const D: usize> Reference<N, D> {
 }
 
 impl<N: Real> ReferenceRecord<N> {
-    /// Makes the reference of a pair with this number of contacts.
+    /// Restores the reference of a pair with this number of contacts.
     fn restore<const D: usize>(&self, contacts: usize) -> Result<Reference<N, D>, Damage> {
         let (pose21, reach) = self.numbers.all(|n| Ok((n.pose()?, n.number()?)))?;
-        // A paused reference is set again before its use, and may belong to earlier contacts.
+        // A paused reference is set again before it is used, so its distances may belong to earlier
+        // contacts.
         let is_used = self.pause == 0 && reach.is_finite_number();
         let is_whole = self.distances.len() == contacts || !is_used;
         ensure(is_whole, "a reference has other distances than contacts")?;
@@ -104,7 +108,7 @@ impl<N: Real> ReferenceRecord<N> {
 }
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
-    /// Returns the arguments of the phase; `None` if it has dispatchers of the user.
+    /// Returns the record of the phase without pairs; `None` if it has a custom dispatcher.
     pub(crate) fn phase_record(&self) -> Option<PhaseRecord<N>> {
         let max_points = self.contact_dispatcher.built_in_for_all()?;
         let is_reusing = self.groups.composites.references.is_some();
@@ -115,7 +119,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.proximity_dispatcher.is_built_in_for_all().then_some(record)
     }
 
-    /// Returns the phase as data; `None` if it has dispatchers of the user.
+    /// Returns the record of the phase; `None` if it has a custom dispatcher.
     pub(crate) fn record(&self) -> Option<NarrowRecord<N>> {
         let phase = self.phase_record()?;
         let mut pairs = Vec::with_capacity(self.pairs.len());
@@ -140,7 +144,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 }
 
 impl<S: Parts, V, R> Group<S, V, R> {
-    /// The pairs as data, in the order in which they lie.
+    /// Iterates over the records of the pairs, in order of their rows.
     fn pair_records<'a, N: Real>(
         &'a self,
         reference: impl Fn(&R) -> ReferenceRecord<N> + 'a,
@@ -156,7 +160,7 @@ impl<S: Parts, V, R> Group<S, V, R> {
 }
 
 impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
-    /// Adds a saved pair and returns its index.
+    /// Adds a saved pair and returns its row.
     fn push_restored(
         &mut self,
         (key, state): (PairKey, S),
@@ -168,7 +172,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         row
     }
 
-    /// Sets the reference of the pair at an index, if the group stores references.
+    /// Sets the reference of the pair in a row, if the group stores references.
     fn restore_reference(&mut self, row: u32, reference: Option<R>) {
         if let Some((references, reference)) = self.references.as_mut().zip(reference) {
             references[row as usize] = reference;
@@ -177,7 +181,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
 }
 
 impl<N: Real> PhaseRecord<N> {
-    /// The phase, without pairs.
+    /// Restores the phase, without pairs.
     pub(crate) fn restore<const D: usize>(&self) -> Result<DefaultNarrowPhase<N, D>, Damage>
     where
         N: Space<D>,
@@ -192,7 +196,7 @@ impl<N: Real> PhaseRecord<N> {
 }
 
 impl<N: Real> NarrowRecord<N> {
-    /// The phase; the table has the rows of its pairs' objects.
+    /// Restores the phase with its pairs. `table` must have the rows of their objects.
     pub(crate) fn restore<const D: usize>(
         self,
         table: &ObjectTable<N, D>,
@@ -218,7 +222,8 @@ impl<N: Real> NarrowRecord<N> {
 }
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
-    /// Enters the state of a pair.
+    /// Adds the state of a saved pair to its group and returns its location. Fails if the state
+    /// does not have the kind of the pair's algorithm.
     fn restore_pair(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -277,7 +282,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
-    /// The pairs that were computed since the last update, as data.
+    /// Returns the records of the pairs that were computed since the last update.
     pub(crate) fn substep_records(&self) -> Vec<SubstepRecord<N>> {
         let record = |pair: &PairSolids<N, D>| {
             let mut poses = Numbers::default();
@@ -287,7 +292,8 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.substeps.iter().map(record).collect()
     }
 
-    /// These pairs were computed since the last update. Their objects have rows.
+    /// Restores the pairs that were computed since the last update. Fails if they are not in order,
+    /// or if an object has no row.
     pub(crate) fn restore_substeps(&mut self, records: &[SubstepRecord<N>]) -> Result<(), Damage> {
         let are_sorted = records.is_sorted_by(|one, other| one.objects < other.objects);
         ensure(are_sorted, "substeps are not in order")?;

@@ -1,6 +1,6 @@
-//! State of a built-in pair between updates, and its update.
+//! The state of a pair with a built-in algorithm, and its update.
 //!
-//! A world computes the same bits for a pair as a generator for that pair alone.
+//! A world computes the same bits for a pair as a generator that serves this pair alone.
 
 use super::ObjectTable;
 use super::group::PairKey;
@@ -33,8 +33,8 @@ pub(crate) struct Posed<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
-    /// Returns the pair in canonical order, and whether that order is the reverse of the pair's
-    /// own.
+    /// Returns the pair in canonical order, and `true` if the canonical order is the reverse of the
+    /// pair's own order.
     fn canonical(&self) -> (Pair<'a, N, D>, bool) {
         canonical(self.pose1, self.shape1.geometry(), self.pose2, self.shape2.geometry())
     }
@@ -64,7 +64,7 @@ impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
     }
 }
 
-/// Returns two placed solids as a pair, in the order in which contacts are stored.
+/// Returns two placed solids as a pair, with the solid first in whose frame contacts are stored.
 fn ordered_pair<'a, N: Real, const D: usize>(
     placed: &[Placed<'a, N, D>; 2],
     is_swapped: bool,
@@ -82,7 +82,7 @@ pub(crate) fn has_composite<N: Real, const D: usize>(
     is_composite(shape1) || is_composite(shape2)
 }
 
-/// Contact points of a pair.
+/// The stored contact points of a pair.
 pub(crate) trait KeptPoints<N: Real, const D: usize> {
     /// Returns the number of contact points.
     fn len(&self) -> usize;
@@ -90,8 +90,8 @@ pub(crate) trait KeptPoints<N: Real, const D: usize> {
     /// Returns `true` if contacts are stored in the frame of the pair's second solid.
     fn is_swapped(&self) -> bool;
 
-    /// Calls `each` with the normal, the distance and the first point of each contact, in the
-    /// stored frame.
+    /// Calls `each` with the normal, the signed distance and the point on the first solid of each
+    /// contact, in the frame in which contacts are stored.
     fn each_point(&mut self, each: impl FnMut(&Vector<N, D>, &mut N, &Point<N, D>));
 }
 
@@ -103,8 +103,8 @@ pub(crate) trait KeptContacts<N: Real, const D: usize>: KeptPoints<N, D> + Defau
     /// Computes the contacts for new poses; a contact that only moved keeps its id.
     fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>);
 
-    /// Returns the contacts in the public representation. `placed` has the solids at the last
-    /// update, `pair_number` is the first half of contact ids, and the memory of `old` is reused.
+    /// Returns the contacts as public manifolds, in the memory of `old`. `placed` has the solids at
+    /// the last update, and `pair_number` is the first half of the contact ids.
     fn manifolds(
         &self,
         placed: &[Placed<'_, N, D>; 2],
@@ -113,23 +113,25 @@ pub(crate) trait KeptContacts<N: Real, const D: usize>: KeptPoints<N, D> + Defau
     ) -> Self::Manifolds;
 }
 
-/// Contacts in the frame of the solid that comes first in canonical order.
+/// The contacts of a pair, in the frame of the solid that comes first in canonical order.
 #[derive(Debug, Default)]
 #[repr(C)]
 pub(crate) struct OrderedContacts<C> {
-    /// The canonical order at the last update was the reverse of the pair's own order.
+    /// Whether the canonical order at the last update was the reverse of the pair's own order.
     pub(super) swapped: bool,
     pub(super) contacts: C,
 }
 
 clone_fields!([C: Clone] OrderedContacts<C> { swapped, contacts });
 
-/// Contacts of two convex solids. Fields that readers need come first.
+/// Contacts of two convex solids. Fields that readers need come first, so that readers load few
+/// cache lines.
 #[derive(Debug, Default)]
 #[repr(C)]
 pub(crate) struct ContactState<N: Real, const D: usize> {
     kept: OrderedContacts<RawManifold<N, D>>,
-    /// Copies of the solids in the pair's own order, if both are small enough.
+    /// Copies of the solids in the pair's own order; `None` unless both are balls, segments,
+    /// capsules or boxes.
     solids: Option<[Solid<N, D>; 2]>,
 }
 
@@ -139,8 +141,8 @@ clone_fields!([N: Real, const D: usize] ContactState<N, D> { kept, solids });
 pub(crate) type CompositeState<N, const D: usize> = OrderedContacts<CompositeContacts<N, D>>;
 
 impl<N: Real, const D: usize> OrderedContacts<RawManifold<N, D>> {
-    /// Brings the stored contacts into the canonical order of two solids of these kinds. Returns
-    /// the indices of the first and the second solid.
+    /// Flips the stored contacts if the canonical order of the two solids has changed. Returns the
+    /// indices of the first and the second solid in canonical order.
     #[inline(always)]
     fn set_canonical_order(
         &mut self,
@@ -199,7 +201,7 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
             return self.clear();
         }
         let (pair, swapped) = posed.canonical();
-        // Only for pairs without contacts: boxes rarely reject a pair that had contacts.
+        // Only for pairs without contacts: the boxes rarely reject a pair that had contacts.
         if self.kept.contacts.points.is_empty()
             && posed.have_boxes_beyond(&pair.pose12, swapped, request.prediction)
         {
@@ -231,7 +233,7 @@ impl<N: Real, const D: usize> ContactState<N, D> {
         (&self.kept.contacts, self.kept.swapped)
     }
 
-    /// Sets the manifold; `swapped` if it is in the frame of the second solid.
+    /// Sets the manifold; `swapped` is `true` if it is in the frame of the second solid.
     pub(super) fn keep(&mut self, contacts: RawManifold<N, D>, swapped: bool) {
         self.kept = OrderedContacts { swapped, contacts };
     }
@@ -243,8 +245,9 @@ impl<N: Real, const D: usize> ContactState<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> ContactState<N, D> {
-    /// Computes the contacts of two solids that have no bounds, with copies where given; a contact
-    /// that only moved keeps its id.
+    /// Computes the contacts of two solids without a test of their bounds. A contact that only
+    /// moved keeps its id. `copies` has a copy of each solid that is a ball, segment, capsule or
+    /// box.
     pub(super) fn update_alone(
         &mut self,
         ([pose1, pose2], [one, other]): (&[Pose<N, D>; 2], [Geometry<'_, N, D>; 2]),
@@ -264,7 +267,8 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         <N::Algorithms>::contacts_of_separation(&pair, request, raw);
     }
 
-    /// Stores copies of the solids if both are small enough, else none.
+    /// Stores copies of the solids if both are balls, segments, capsules or boxes; else drops the
+    /// copies.
     pub(super) fn set_solids(&mut self, shapes: [&dyn Shape<N, D>; 2]) {
         let [one, other] = shapes.mapped(Shape::geometry);
         self.solids = Solid::of(one).zip(Solid::of(other)).map(<[_; 2]>::from);
@@ -338,7 +342,7 @@ impl<N: Real, const D: usize> CompositeState<N, D> {
         if self.swapped { second } else { first }
     }
 
-    /// Drops cached data of the shapes, of which one may have been replaced.
+    /// Drops the cached data of the shapes, because a shape may have been replaced.
     pub(crate) fn forget_shapes(&mut self) {
         self.contacts.forget_shapes();
     }
@@ -371,8 +375,8 @@ impl<N: Space<D>, const D: usize> CompositeState<N, D> {
         }
     }
 
-    /// Returns the contacts in the public representation. `next` is called once for each contact,
-    /// in order, and returns the solids on which it lies.
+    /// Returns the contacts as public manifolds, in the memory of `old`. `next` is called once for
+    /// each contact, in order, and returns the solids on which the contact lies.
     pub(super) fn manifolds_on<'a>(
         &self,
         poses: &[Pose<N, D>; 2],
@@ -386,7 +390,8 @@ impl<N: Space<D>, const D: usize> CompositeState<N, D> {
         self.contacts.manifolds_on([pose1, pose2], &placement, next, old)
     }
 
-    /// Returns a view of the contacts of patch `patch`; `None` if there are not that many patches.
+    /// Returns a view of the contacts of patch `patch`; `None` if `patch` is not less than the
+    /// number of patches.
     #[inline]
     pub(super) fn view<'a>(
         &'a self,

@@ -9,17 +9,17 @@ use crate::query::ContactManifold;
 use crate::shape::Shape;
 use crate::tables::entries;
 
-/// Returns the contact manifolds of `g1` placed at `m1` and `g2` placed at `m2`, with the bits that
-/// a new world has after its first update.
+/// Returns the contact manifolds of `g1` placed at `m1` and `g2` placed at `m2`. They have the same
+/// bits as those of a new world after its first update.
 ///
 /// Two convex shapes have one manifold, and composites have one for each flat patch of contact;
 /// none is empty. The list is empty if the shapes are farther apart than
 /// [`ContactPrediction::linear`], if a pose is not finite, and for half-spaces that overlap without
 /// bound. In a world the prediction of a pair is the sum of the predictions of both objects.
 ///
-/// A manifold has at most `max_points` points, and at least one; by default (`None`) two in 2D and
-/// four in 3D. Points, normals and depths are in the world frame; normals point from the first
-/// shape to the second. Swapping the shapes flips each manifold and changes nothing else.
+/// A manifold has at most `max_points` points (0 means 1); by default (`None`) two in 2D and four
+/// in 3D. Points, normals and depths are in the world frame; normals point from the first shape to
+/// the second. Swapping the shapes flips each manifold and changes nothing else.
 ///
 /// Nothing is kept between calls. A [`ContactId`](crate::query::ContactId) identifies a contact
 /// within one result only; ids that persist under motion come from a world or a
@@ -74,7 +74,8 @@ pub(crate) fn contact_manifolds_at<N: Space<D>, const D: usize>(
     entries::manifolds_of_placed(&[placed1, placed2], &prediction.request(max_points))
 }
 
-/// Returns the manifolds with at least one contact. The first half of their contact ids is 0.
+/// Returns the manifolds with at least one contact of two placed shapes. The pair identifier in
+/// their contact ids is 0.
 pub(crate) fn manifolds_of_placed<N: Space<D>, const D: usize>(
     placed: &[Placed<'_, N, D>; 2],
     request: &ManifoldRequest<N>,

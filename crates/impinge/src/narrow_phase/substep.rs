@@ -1,8 +1,8 @@
 //! Pairs computed between two updates.
 //!
-//! The rows of the table keep the poses of the last update, at which all other pairs are read. A
-//! pair that was computed since then is read at its own poses, which the table keeps until the next
-//! update begins.
+//! The rows of the table keep the poses of the last update, and contacts are read at these poses. A
+//! pair that was computed since then is read at the poses of its computation. The table keeps these
+//! poses until the next update begins.
 
 use super::ObjectTable;
 use super::entry::posed;
@@ -11,14 +11,15 @@ use super::objects::ObjectSolid;
 use crate::collide::Placed;
 use crate::math::{Mapped, Pose, Real, Space};
 
-/// A pair, with shapes and poses at the time of its computation.
+/// A pair with its shapes and the poses at which it was computed.
 #[derive(Clone, Debug)]
 pub(super) struct PairSolids<N: Real, const D: usize> {
     pub(super) key: PairKey,
     pub(super) solids: [ObjectSolid<N, D>; 2],
 }
 
-/// The poses of the last update, while the rows of a pair have other poses.
+/// The poses of the last update that [`ObjectTable::begin_substep`] has replaced in the rows of a
+/// pair.
 #[derive(Debug)]
 pub(crate) struct Substep<N: Space<D>, const D: usize> {
     key: PairKey,
@@ -27,8 +28,8 @@ pub(crate) struct Substep<N: Space<D>, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
-    /// Writes other poses to the rows of a pair's objects, until [`Self::end_substep`]. `None` if
-    /// an object has no row, and so no pair.
+    /// Replaces the poses in the rows of a pair's objects, until [`Self::end_substep`]. `None`,
+    /// without a change, if an object has no row, and therefore no pair.
     pub(crate) fn begin_substep(
         &mut self,
         key: PairKey,
@@ -44,8 +45,8 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         Some(Substep { key, replaced: [first, second] })
     }
 
-    /// Restores the poses of the last update. If `is_computed`, the pair is read at the other poses
-    /// until the next update.
+    /// Restores the poses of the last update. If `is_computed`, the pair is read at the poses of
+    /// the substep until the next update.
     pub(crate) fn end_substep(&mut self, substep: &Substep<N, D>, is_computed: bool) {
         let Substep { key, replaced: [first, second] } = *substep;
         if is_computed {
@@ -56,7 +57,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
                 Err(index) => self.substeps.insert(index, pair),
             }
         }
-        // In reverse order: both rows of a self-pair are the same.
+        // In reverse order, because both rows of the pair of an object with itself are the same.
         self.replace_pose(key[1], second);
         self.replace_pose(key[0], first);
     }

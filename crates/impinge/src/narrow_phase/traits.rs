@@ -1,5 +1,5 @@
-//! Traits for the algorithm of a pair, to use a pair without a world and to plug in custom
-//! algorithms.
+//! Traits for the algorithm of a pair. They let a program use one pair without a world, and plug in
+//! custom algorithms.
 
 use super::IdAllocator;
 use crate::collide::ManifoldRequest;
@@ -7,7 +7,7 @@ use crate::math::{Real, Space};
 use crate::query::{ContactManifold, Proximity};
 use crate::shape::Shape;
 
-/// Distance and angles up to which contacts are predicted.
+/// The distance and the angles up to which contacts are predicted.
 ///
 /// ```
 /// use impinge::dim3::query::ContactPrediction;
@@ -37,13 +37,15 @@ impl<N: Real> ContactPrediction<N> {
         self.linear
     }
 
-    /// Returns the angle in radians by which the first solid may rotate.
+    /// Returns the angle in radians by which the first solid may rotate to come within the
+    /// distance.
     #[must_use]
     pub const fn angular1(&self) -> N {
         self.angular1
     }
 
-    /// Returns the angle in radians by which the second solid may rotate.
+    /// Returns the angle in radians by which the second solid may rotate to come within the
+    /// distance.
     #[must_use]
     pub const fn angular2(&self) -> N {
         self.angular2
@@ -134,13 +136,15 @@ pub trait ContactDispatcher<N: Space<D>, const D: usize>: Send + Sync {
     ) -> Option<ContactAlgorithm<N, D>>;
 
     /// Returns the maximum number of points of a manifold if the library's own algorithm serves the
-    /// pair without a box; `None` if [`Self::get_contact_algorithm`] chooses the algorithm.
+    /// pair, without a boxed algorithm. `None` if [`Self::get_contact_algorithm`] chooses the
+    /// algorithm.
     #[doc(hidden)]
     fn built_in(&self, _: &dyn Shape<N, D>, _: &dyn Shape<N, D>) -> Option<usize> {
         None
     }
 
-    /// [`Self::built_in`] of all shapes alike.
+    /// Returns the result of [`Self::built_in`] if it is the same for all pairs of shapes; else
+    /// `None`.
     #[doc(hidden)]
     fn built_in_for_all(&self) -> Option<usize> {
         None
@@ -203,20 +207,21 @@ pub trait ProximityDetector<N: Space<D>, const D: usize>: Send + Sync {
 /// assert_eq!(detector.proximity(), Proximity::WithinMargin);
 /// ```
 pub trait ProximityDispatcher<N: Space<D>, const D: usize>: Send + Sync {
-    /// Returns a new algorithm for the proximity of `a` and `b`; `None` if the pair has none.
+    /// Returns a new algorithm for the proximity of `a` and `b`; `None` if the pair needs none, and
+    /// is never near.
     fn get_proximity_algorithm(
         &self,
         a: &dyn Shape<N, D>,
         b: &dyn Shape<N, D>,
     ) -> Option<ProximityAlgorithm<N, D>>;
 
-    /// Returns `true` if the library's own algorithm serves the pair without a box.
+    /// Returns `true` if the library's own algorithm serves the pair, without a boxed algorithm.
     #[doc(hidden)]
     fn is_built_in(&self, _: &dyn Shape<N, D>, _: &dyn Shape<N, D>) -> bool {
         false
     }
 
-    /// [`Self::is_built_in`] of all shapes alike.
+    /// Returns `true` if [`Self::is_built_in`] returns `true` for all pairs of shapes.
     #[doc(hidden)]
     fn is_built_in_for_all(&self) -> bool {
         false

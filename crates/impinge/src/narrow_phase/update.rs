@@ -1,4 +1,4 @@
-//! The update of all pairs: selects the pairs that need a new query, and computes them in batches.
+//! The update of all pairs: selects the pairs that must be computed, and computes them in batches.
 
 use crate::tables::ByDimension;
 use crate::tables::entries;
@@ -17,23 +17,23 @@ use super::{DefaultNarrowPhase, Events, ObjectTable};
 use crate::collide::Solid;
 use crate::math::Space;
 
-/// If fewer than one in `SPARSE` pairs must be updated, they are found by their changed objects
-/// instead of by a scan of all pairs.
+/// If fewer than one in `SPARSE` pairs must be computed, they are found through their changed
+/// objects instead of by a scan of all pairs.
 const SPARSE: usize = 8;
 
 /// Indices of pairs within a chunk.
 type RowIndices = SmallVec<[usize; CHUNK]>;
 
-/// Changes of an update, with their pairs.
+/// The changes of statuses in an update, each with its pair.
 pub(super) type PairChanges = Vec<(PairKey, Change)>;
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
-    /// Updates all pairs to the rows of the table, and pushes the events.
+    /// Updates all pairs for the present rows of the table, and pushes the events.
     pub(crate) fn update_pairs(&mut self, table: &ObjectTable<N, D>, events: &mut Events) {
         entries::update_pairs(self, table, events);
     }
 
-    /// [`Self::update_pairs`], compiled in this crate.
+    /// Implements [`Self::update_pairs`]; compiled in this crate.
     pub(crate) fn update_pairs_here(&mut self, table: &ObjectTable<N, D>, events: &mut Events) {
         let dirty = core::mem::take(&mut self.dirty_pairs);
         let mut changes = core::mem::take(&mut self.changes);
@@ -47,8 +47,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.dirty_pairs.clear();
     }
 
-    /// Updates one pair to the rows of the table, and pushes its event. Returns `false` if there is
-    /// no such pair.
+    /// Updates one pair for the present rows of the table, and pushes its event. Returns `false` if
+    /// there is no such pair.
     pub(crate) fn update_pair(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -73,7 +73,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.changes = changes;
     }
 
-    /// Returns `true` if few pairs need an update: the pairs of changed objects, and `more` others.
+    /// Returns `true` if few pairs must be computed: the pairs of changed objects, and `more` other
+    /// pairs.
     fn is_sparse(&self, table: &ObjectTable<N, D>, more: usize) -> bool {
         let mut affected = more;
         table.changed().iter().all(|&object| {
@@ -88,7 +89,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             self.groups.note_due(table);
         }
         let reuse = Reuse { table, tolerance: self.tolerance };
-        // Most of the hundreds of groups are empty.
+        // There are more than a hundred groups, most of them empty.
         for group in self.groups.contacts.iter_mut().filter(|group| !group.is_empty()) {
             let solids = group.state(0).state.solids().copied();
             update_group(group, changes, |rows, changes| {
@@ -113,7 +114,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.update_all_custom(table, changes);
     }
 
-    /// Updates pairs with custom algorithms one by one, since they share one allocator of ids.
+    /// Updates pairs with custom algorithms one by one, because they share one allocator of ids.
     fn update_all_custom(&mut self, table: &ObjectTable<N, D>, changes: &mut PairChanges) {
         for row in 0..self.groups.custom_contacts.keys().len() {
             if self.groups.custom_contacts.rows().take_dirty(row, table) {
@@ -242,8 +243,8 @@ pub(super) fn note_touching<S, V, R>(
 }
 
 /// Updates the contacts of a chunk of pairs of convex solids, in SIMD lanes if their kinds have a
-/// kernel. `solids` are the copies in one of the pairs; if one pair of a group has copies, all
-/// have.
+/// kernel. `solids` are the copies of one pair's solids; if one pair of a group has copies, all
+/// pairs have.
 fn update_convex<N: Space<D>, const D: usize>(
     mut rows: ContactRows<'_, N, D>,
     reuse: Reuse<'_, N, D>,
@@ -268,7 +269,7 @@ fn has_ball<N: Space<D>, const D: usize>(solids: Option<&[Solid<N, D>; 2]>) -> b
     solids.is_some_and(|solids| solids.iter().any(|solid| matches!(solid, Solid::Ball(_))))
 }
 
-/// Computes the contacts of the pairs in the given rows of a chunk.
+/// Computes the contacts of the pairs in the rows `indices`, in SIMD lanes if there is a kernel.
 fn compute_convex<N: Space<D>, const D: usize>(
     rows: &mut ContactRows<'_, N, D>,
     table: &ObjectTable<N, D>,
@@ -309,7 +310,7 @@ fn update_picked_convex<N: Space<D>, const D: usize>(
     }
 }
 
-/// Updates the picked pairs of any other group, one by one.
+/// Clears the dirty flags of the picked pairs of a group, and calls `update` for each pair.
 fn update_each_picked<S, V, R>(
     rows: &mut Rows<'_, S, V, R>,
     picked: &[Location],
@@ -321,7 +322,7 @@ fn update_each_picked<S, V, R>(
     }
 }
 
-/// Updates the contacts of one pair.
+/// Updates the contacts of one pair: reuses them if possible, else computes them.
 fn update_contact<N: Space<D>, S: KeptContacts<N, D>, const D: usize>(
     rows: &mut Rows<'_, ContactEntry<N, S>, ContactView<S::Manifolds>, Reference<N, D>>,
     reuse: Reuse<'_, N, D>,
@@ -358,7 +359,7 @@ fn update_status<N: Space<D>, const D: usize>(
     changes.extend(change.map(|change| (key, change)));
 }
 
-/// Updates the pairs of a group chunk by chunk; with the feature `parallel` on several threads. In
+/// Calls `update` for each chunk of a group; with the feature `parallel`, on several threads. In
 /// either case changes are listed in the order of the group.
 fn update_group<
     S: Parts + Send + Sync,
@@ -388,7 +389,7 @@ fn update_group<
     }
 }
 
-/// Updates the pairs of a chunk that need a new query, one by one.
+/// Calls `update` for each pair of a chunk that must be computed.
 fn update_each<N: Space<D>, S, V, R, const D: usize>(
     mut rows: Rows<'_, S, V, R>,
     table: &ObjectTable<N, D>,

@@ -1,5 +1,4 @@
-//! Access to pairs: to one pair, to all pairs in canonical order, or to all manifolds in memory
-//! order.
+//! Access to one pair, to all pairs in canonical order, or to all manifolds in memory order.
 
 use crate::tables::entries;
 use core::fmt;
@@ -15,10 +14,10 @@ use crate::math::Space;
 use crate::pairs::PairTable;
 use crate::query::{ContactManifold, ManifoldView, Proximity};
 
-/// The manifolds with at least one contact: of convex solids, then of composites, then of custom
-/// algorithms.
+/// All manifolds with at least one contact: first of convex solids, then of composites, then of
+/// custom algorithms.
 pub(crate) struct Views<'a, N: Space<D>, const D: usize> {
-    /// Whether every pair can be read in place.
+    /// Whether the contacts of every pair can be read in place, without built manifolds.
     pub(crate) reads_in_place: bool,
     convex: ConvexViews<'a, N, D>,
     composites: CompositeViews<'a, N, D>,
@@ -26,8 +25,8 @@ pub(crate) struct Views<'a, N: Space<D>, const D: usize> {
 }
 
 impl<'a, N: Space<D>, const D: usize> Views<'a, N, D> {
-    /// Iterates over all manifolds, read in place and mapped by `with_handles`. The sources are mapped
-    /// before they are chained, because a chain copies its items.
+    /// Iterates over all manifolds, read in place and mapped by `with_handles`. Each source is
+    /// mapped before the sources are chained, because a chain copies its items.
     pub(crate) fn in_place<R>(
         self,
         with_handles: impl Fn(View<'a, N, D>) -> R + Copy,
@@ -40,8 +39,8 @@ impl<'a, N: Space<D>, const D: usize> Views<'a, N, D> {
         UnfusedChain { first: self.convex.map(with_handles), second }
     }
 
-    /// Iterates over all manifolds, mapped by `with_handles`. Manifolds of
-    /// pairs that [need them](ObjectTable::needs_built_manifolds) are built for the reader.
+    /// Iterates over all manifolds, mapped by `with_handles`. Builds the manifolds of pairs that
+    /// cannot be read in place; see [`ObjectTable::needs_built_manifolds`].
     pub(crate) fn with_built<R>(
         self,
         with_handles: impl Fn(View<'a, N, D>) -> R,
@@ -51,11 +50,11 @@ impl<'a, N: Space<D>, const D: usize> Views<'a, N, D> {
     }
 }
 
-/// The handle indices of two objects, and a manifold.
+/// The handle indices of two objects, and one of their manifolds.
 pub(crate) type View<'a, N, const D: usize> = (u32, u32, ManifoldView<'a, N, D>);
 
-/// Chains two iterators. Unlike `chain`, it does not fuse the first one, and does not touch the
-/// second one before the first has ended.
+/// Chains two iterators. Unlike `Iterator::chain` it does not fuse the first iterator, and does not
+/// access the second before the first has ended.
 struct UnfusedChain<A, B> {
     first: A,
     second: B,
@@ -110,7 +109,7 @@ enum ViewedContacts<'a, N: Space<D>, const D: usize> {
     Custom(&'a dyn ContactManifoldGenerator<N, D>),
 }
 
-/// Position of the contacts of a built-in pair of convex solids.
+/// The table, group and row of a built-in pair of convex solids.
 #[derive(Clone, Copy)]
 pub(super) struct BuiltIn<'a, N: Space<D>, const D: usize> {
     pub(super) table: &'a ObjectTable<N, D>,
@@ -118,7 +117,7 @@ pub(super) struct BuiltIn<'a, N: Space<D>, const D: usize> {
     pub(super) row: u32,
 }
 
-/// Position of the contacts of a pair with a composite.
+/// The table, group and row of a built-in pair with a composite.
 #[derive(Clone, Copy)]
 pub(super) struct Composite<'a, N: Space<D>, const D: usize> {
     pub(super) table: &'a ObjectTable<N, D>,
@@ -141,7 +140,7 @@ impl<'a, N: Space<D>, const D: usize> BuiltIn<'a, N, D> {
         Some(group.view(row).manifolds(make))
     }
 
-    /// Returns a view of the manifold, in place unless the pair needs a built manifold; `None` if it has no
+    /// Returns a view of the manifold, read in place if possible; `None` if the manifold has no
     /// contact.
     pub(super) fn view(&self) -> Option<ManifoldView<'a, N, D>> {
         let (group, row, key) = (self.group, self.row, self.group.key(self.row));
@@ -168,7 +167,7 @@ impl<'a, N: Space<D>, const D: usize> Composite<'a, N, D> {
         group.view(row).manifolds(make)
     }
 
-    /// Iterates over views of the manifolds, read in place unless the pair needs built manifolds.
+    /// Iterates over views of the manifolds, read in place if possible.
     pub(super) fn views(self) -> impl Iterator<Item = ManifoldView<'a, N, D>> {
         let (key, entry) = (self.group.key(self.row), self.group.state(self.row));
         let needs_built_manifolds = self.table.needs_built_manifolds(key);
@@ -208,8 +207,11 @@ impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
         own.into_iter().chain(parts).chain(others)
     }
 
-    /// Iterates over the manifolds with at least one contact, read in place, in the order of
-    /// [`Self::contacts`].
+    /// Iterates over views of the manifolds with at least one contact, in the order of
+    /// [`Self::contacts`]. They are read in place, except for custom algorithms, objects with a
+    /// skin, and pairs computed by
+    /// [`CollisionWorld::update_pair`](crate::world::CollisionWorld::update_pair) since the last
+    /// update.
     pub fn views(self) -> impl Iterator<Item = ManifoldView<'a, N, D>> {
         let (mut own, mut patches, mut others) = (None, None, Vec::new());
         match self.0 {
@@ -273,8 +275,8 @@ impl ProximityPair {
     }
 }
 
-/// Returns the indices of the pairs for which `is_wanted` returns `true`, sorted by pair: object by
-/// object, each with its partners in order.
+/// Returns the indices of the pairs for which `is_wanted` returns `true`, sorted by pair: by the
+/// smaller object, then by the larger.
 fn sorted(pairs: &PairTable, is_wanted: impl Fn(usize) -> bool) -> Vec<u32> {
     let objects = pairs.pairs().iter().map(|&(_, second)| second + 1).max().unwrap_or(0);
     let (mut order, mut partners) = (Vec::new(), Vec::new());
@@ -292,7 +294,7 @@ fn sorted(pairs: &PairTable, is_wanted: impl Fn(usize) -> bool) -> Vec<u32> {
 }
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
-    /// Returns the contacts of a pair; `None` if there is no such pair or its query type is
+    /// Returns the contacts of a pair; `None` if there is no such pair or its query is for
     /// proximity.
     pub(crate) fn contact_pair<'a>(
         &'a self,
@@ -303,13 +305,13 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.contacts_at(table, self.pairs.index_of(first, second)?)
     }
 
-    /// Returns the proximity of a pair; `None` if there is no such pair or its query type is
+    /// Returns the proximity of a pair; `None` if there is no such pair or its query is for
     /// contacts.
     pub(crate) fn proximity_pair(&self, first: u32, second: u32) -> Option<ProximityPair> {
         self.proximity_at(self.pairs.index_of(first, second)?)
     }
 
-    /// Iterates over all pairs whose query type is contacts, sorted by handle index.
+    /// Iterates over all pairs whose query is for contacts, sorted by handle index.
     pub(crate) fn contact_pairs<'a>(
         &'a self,
         table: &'a ObjectTable<N, D>,
@@ -343,15 +345,16 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         Views { reads_in_place: table.reads_in_place(), convex, composites, custom: Some(self) }
     }
 
-    /// Splits [`Self::contact_views`] into at most `pieces` consecutive parts with about equally
-    /// many pairs.
+    /// Splits [`Self::contact_views`] into at least one and at most `pieces` consecutive parts,
+    /// with about equally many pairs.
     pub(crate) fn contact_view_pieces<'a>(
         &'a self,
         table: &'a ObjectTable<N, D>,
         pieces: usize,
     ) -> impl Iterator<Item = Views<'a, N, D>> + 'a {
         let PairGroups { contacts, composites, .. } = &self.groups;
-        // Cuts are between words of flags: first of convex solids, then of composites.
+        // Cuts are between words of touching flags: first those of convex solids, then those of
+        // composites. The last part also has the manifolds of custom algorithms.
         let convex = ConvexViews::num_words(contacts);
         let words = convex + composites.touching().len();
         let pieces = pieces.min(words).max(1);
@@ -378,7 +381,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         })
     }
 
-    /// Iterates over all pairs whose query type is proximity, sorted by handle index.
+    /// Iterates over all pairs whose query is for proximity, sorted by handle index.
     pub(crate) fn proximity_pairs(&self) -> impl Iterator<Item = (u32, u32, ProximityPair)> + '_ {
         self.sorted().filter_map(move |index| {
             let (first, second) = self.pairs.pairs()[index];
@@ -422,7 +425,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         Some(ProximityPair(status.0))
     }
 
-    /// Iterates over the indices of the pairs, sorted by pair.
+    /// Iterates over the indices of all pairs, sorted by pair.
     fn sorted(&self) -> impl Iterator<Item = usize> + '_ {
         let order = self.order.get_or_init(|| sorted(&self.pairs, |_| true));
         order.iter().map(|&index| index as usize)

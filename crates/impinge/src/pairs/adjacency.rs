@@ -1,5 +1,5 @@
-//! The links of all objects: a cache line for each object with links, and additional lines for
-//! objects with many links.
+//! The links of all objects: a cache line for each object with links, and a run of further lines
+//! for an object with more than seven links.
 //!
 //! ```text
 //! object   index ──> head (64 bytes): link 0 … link 6 | start | count and class
@@ -15,19 +15,19 @@ use crate::memory::{Look, clone_fields};
 const PER_LINE: usize = 8;
 /// Number of links in a head, which uses the rest of its line to describe the run.
 const INLINE: usize = PER_LINE - 1;
-/// Idle heads are dropped when they exceed half of all heads by more than `MAX_IDLE`.
+/// Idle heads are dropped when their number exceeds half of all heads by more than `MAX_IDLE`.
 const MAX_IDLE: usize = 256;
 /// Entry in `head_indices` of an object without links.
 const NO_HEAD: u32 = u32::MAX;
-/// The class of a head without a run.
+/// The class of a head without a run. A run of class `c` has `2^c` lines.
 const NO_RUN: u32 = 31;
-/// Class from which on an object is heavy: it has had more than 135 links since its run began. It
+/// The lowest class of a heavy object, which has had more than 135 links since it got its run. It
 /// stays heavy until its run is released, so that objects do not alternate between both states.
 /// Searching the 17 lines of the largest object that is not heavy costs about as much as a look-up
-/// in the table.
+/// in the hash table.
 const HEAVY: u32 = 5;
 
-/// An end of a pair: object A has a link to its partner B, and B a link to A.
+/// One end of a pair of objects A and B: A has a link to its partner B, and B has a link to A.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Link {
     /// The object at the other end.
@@ -36,9 +36,9 @@ pub(super) struct Link {
     pub(super) pair: u32,
 }
 
-/// The first links of an object, and the position of its other links.
+/// The first links of an object, and the position of the run with its further links.
 ///
-/// Most objects have few partners, so they need only this line.
+/// Most objects have at most seven partners, so they need only this line.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 struct Head {
@@ -77,7 +77,7 @@ impl Head {
         self.count_and_class = self.count_and_class & !31 | class;
     }
 
-    /// Returns the number of links for which head and run have memory.
+    /// Returns the number of links that fit in the head and the run.
     const fn capacity(&self) -> usize {
         if self.class() == NO_RUN { INLINE } else { INLINE + (PER_LINE << self.class()) }
     }
@@ -96,21 +96,21 @@ pub(super) struct Adjacency {
     /// By object: index of its head, or [`NO_HEAD`].
     head_indices: Vec<u32>,
     heads: Vec<Head>,
-    /// Indices of heads without an owner. They have no links and no runs.
+    /// Indices of heads without an owner, which have no links and no runs.
     idle: Vec<u32>,
-    /// The lines of all runs.
+    /// The lines of all runs, each run contiguous.
     pool: Vec<Line>,
     /// By class: the first lines of released runs.
     free: Vec<Vec<u32>>,
-    /// The indices of the links of heavy objects. The index of a link is its position among the links
-    /// of its object.
+    /// The indices of the links of heavy objects. The index of a link is its position among the
+    /// links of its object: first those in the head, then those in the run.
     link_indices: LinkIndices,
 }
 
 clone_fields!([] Adjacency { head_indices, heads, idle, pool, free, link_indices });
 
 /// Returns the index of the link to `partner` among the first `count` of `links`; `None` if there
-/// is none. Compares all links, since the branch predictor cannot predict where a search ends.
+/// is none. Compares all of `links`, because a branch predictor cannot predict where a search ends.
 #[inline]
 fn position_of(links: &[Link], count: usize, partner: u32) -> Option<u32> {
     let hit = |at: usize| u32::from(links[at].partner == partner) << at;
@@ -203,13 +203,14 @@ impl Adjacency {
         &mut self.pool[head.start as usize + beyond / PER_LINE].links[beyond % PER_LINE]
     }
 
-    /// Returns `true` if the object with head `at` is heavy, so that its links are in `link_indices`.
+    /// Returns `true` if the object with head `at` is heavy, so that its links are in
+    /// `link_indices`.
     #[inline]
     fn is_heavy(&self, at: usize) -> bool {
         (HEAVY..NO_RUN).contains(&self.heads[at].class())
     }
 
-    /// Returns the index of the head of the object and that of its link to the partner; `None` if
+    /// Returns the index of the object's head, and the index of its link to the partner; `None` if
     /// there is no such link.
     #[inline]
     fn find(&self, object: u32, partner: u32) -> Option<(usize, u32)> {
@@ -241,7 +242,7 @@ impl Adjacency {
         Some(self.link(at, index).pair as usize)
     }
 
-    /// Replaces the link of the object to `link.partner`, which must exist.
+    /// Replaces the object's link to `link.partner`, which must exist, by `link`.
     #[inline]
     pub(super) fn set_pair(&mut self, object: u32, link: Link) {
         let found = self.find(object, link.partner);
@@ -297,7 +298,8 @@ impl Adjacency {
         Some(taken.pair as usize)
     }
 
-    /// Assigns a run to the object, or moves its run to one of twice the size.
+    /// Assigns a run of one line to an object without a run, else moves its run to a run of twice
+    /// the size.
     fn enlarge(&mut self, object: u32, at: usize) {
         let (old_start, old_class) = self.run(at);
         if old_class == NO_RUN {

@@ -1,4 +1,5 @@
-//! A hash table of the indices of links, for objects with very many links.
+//! A hash table of the indices of links, for heavy objects: objects that have had more than 135
+//! links.
 //!
 //! Open addressing with linear probing and deletion without tombstones (Knuth 1973, vol. 3, § 6.4).
 //! The table is never iterated, so the order of entries affects nothing.
@@ -7,20 +8,20 @@ use crate::memory::clone_fields;
 
 /// The `index` of an entry without a key.
 const FREE: u32 = u32::MAX;
-/// Least number of slots of a table that is not empty.
+/// Minimum number of slots of a table that is not empty.
 const MIN_LENGTH: usize = 256;
 
-/// A link, by its key ([`link_key`](super::adjacency)), and its index.
+/// The key of a link ([`link_key`](super::adjacency)) and the index of the link.
 #[derive(Clone, Copy, Debug)]
 struct IndexEntry {
     key: u64,
     index: u32,
 }
 
-/// A map from links to indices. The key of a link is its two objects, packed.
+/// A map from links to their indices. The key of a link is its two objects, packed.
 #[derive(Debug, Default)]
 pub(super) struct LinkIndices {
-    /// Empty, or a power of two of slots, of which at most half are in use.
+    /// The slots. Their number is zero or a power of two, and at most half of them are in use.
     entries: Vec<IndexEntry>,
     used: usize,
 }
@@ -48,7 +49,7 @@ impl LinkIndices {
     }
 
     /// Removes the link; does nothing if it is not in the table. Later entries of the probe
-    /// sequence move up until an entry is free.
+    /// sequence move back into the gap, up to the first free slot.
     pub(super) fn remove(&mut self, key: u64) {
         if self.entries.is_empty() {
             return;
@@ -89,7 +90,7 @@ impl LinkIndices {
         slot
     }
 
-    /// Returns the home slot of the key: the first one of its probe sequence.
+    /// Returns the home slot of the key, where its probe sequence begins.
     fn home_slot(&self, key: u64) -> usize {
         // Constants from the golden ratio and from SplitMix64 (Steele et al. 2014).
         let mixed = (key ^ key >> 32).wrapping_mul(0x9e37_79b9_7f4a_7c15);

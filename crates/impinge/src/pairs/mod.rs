@@ -1,4 +1,5 @@
-//! A set of unordered pairs of small indices, with linear iteration and changes in constant time.
+//! A set of unordered pairs of small indices. Iteration takes linear time; a change or a look-up
+//! takes constant time.
 //!
 //! Memory layout:
 //! * the pairs are a dense array of `(smaller, larger)`. A removal moves the last pair into the
@@ -9,8 +10,9 @@
 //! * a link is found by searching these lines. The links of an object that has had more than 135
 //!   partners are also in a hash table, so that ten thousand partners need not be searched.
 //!
-//! The table has no boxes and no objects, only their indices. Its arrays are as long as the largest
-//! index seen, so indices should be dense. Its order depends on the calls alone.
+//! The table stores indices only, neither boxes nor objects. Its arrays are as long as the largest
+//! index seen, so indices should be dense. The order of the pairs depends on the sequence of calls
+//! alone.
 
 mod adjacency;
 mod link_indices;

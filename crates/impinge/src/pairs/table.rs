@@ -1,4 +1,4 @@
-//! The set of pairs with its dense array and its journal.
+//! The set of pairs, with its dense array, its links and its journal.
 
 use super::adjacency::{Adjacency, Link, small};
 use crate::journal::Journal;
@@ -42,7 +42,7 @@ pub(crate) struct Removed {
     pub moved_from: Option<usize>,
 }
 
-/// Packs a pair into an integer; these integers have the order of `(smaller, larger)`.
+/// Packs a pair into an integer. The order of these integers is the order of `(smaller, larger)`.
 #[inline]
 #[must_use]
 pub(crate) fn pack(a: u32, b: u32) -> u64 {
@@ -50,7 +50,7 @@ pub(crate) fn pack(a: u32, b: u32) -> u64 {
     u64::from(low) << 32 | u64::from(high)
 }
 
-/// Returns the pair `(smaller, larger)` from an integer of [`pack`].
+/// Returns the pair `(smaller, larger)` that [`pack`] has packed into `key`.
 #[inline]
 #[must_use]
 #[expect(clippy::cast_possible_truncation, reason = "takes the two halves apart")]
@@ -175,7 +175,7 @@ impl PairTable {
         Some(index)
     }
 
-    /// Moves the last pair to `index`, whose own pair has no links any more.
+    /// Moves the last pair to `index`, whose former pair has no links any more.
     fn close_gap(&mut self, index: usize) -> Removed {
         self.pairs.swap_remove(index);
         let was_last = index == self.pairs.len();
@@ -192,8 +192,8 @@ impl PairTable {
         self.adjacency.set_pair(high, Link { partner: low, pair });
     }
 
-    /// Reads the heads of both ends of some packed pairs, to prefetch them with overlapping loads.
-    /// Changes nothing.
+    /// Reads the heads of both objects of some packed pairs. These loads are independent of each
+    /// other, so the cache misses overlap. Changes nothing.
     #[inline]
     pub(crate) fn prefetch(&self, keys: &[u64]) {
         let count = |key: u64| {

@@ -81,7 +81,7 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
     /// Builds a tree over `boxes`, which may be empty; each is identified by its index.
     ///
     /// # Errors
-    /// If a box is inverted or has a NaN, or the number of boxes does not fit in 32 bits. [`Aabb`] refuses such boxes,
+    /// If a box is inverted or has a NaN, or the number of boxes does not fit in 32 bits. [`Aabb`] rejects such boxes,
     /// but arithmetic on boxes can produce them.
     pub fn try_from_boxes(boxes: &[Aabb<N, D>]) -> Result<Self, BoxTreeError> {
         Self::try_from_vec(boxes.to_vec())
@@ -105,9 +105,9 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
 
     /// Replaces all boxes, in the order of [`Self::boxes`]. On an error nothing has changed.
     ///
-    /// Results are those of a new tree. The order of the tree stays and its upper layers are refitted: O(n), without a
-    /// sort. When the total surface of the blocks has grown by a fifth, the order is renewed over several calls of O(n)
-    /// each; until then searches are slower.
+    /// Results equal those of a new tree. The order of the tree stays and its upper layers are refitted: O(n), without
+    /// a sort. When the total surface of the blocks has grown by a fifth, the order is renewed over several calls of
+    /// O(n) each; until then searches are slower.
     ///
     /// ```
     /// use impinge::bounding_volume::Aabb;
@@ -331,7 +331,7 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         self.boxes.is_empty()
     }
 
-    /// Returns the boxes, as given.
+    /// Returns the boxes, by index.
     #[must_use]
     pub fn boxes(&self) -> &[Aabb<N, D>] {
         &self.boxes
@@ -447,7 +447,7 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
     }
 
     /// Computes slabs around the faces in each block, which speed up searches for near pairs of faces until the next
-    /// refit. `normals` are by id; no effect unless there is one for each box.
+    /// refit. `normals` and `corners` are by id; nothing is computed unless there is a normal for each box.
     pub(crate) fn add_slabs<F: Fn(u32) -> [Point<N, D>; 3]>(
         &mut self,
         normals: &[Vector<N, D>],

@@ -1,4 +1,4 @@
-//! Functions on the boxes of a user: checks, their count, their union, and a packed tree over them.
+//! Functions on the boxes of a user: validation, count, union, and a packed tree.
 
 use super::BoxTreeError;
 use crate::bounding_volume::{Aabb, BoundingVolume};
@@ -6,7 +6,7 @@ use crate::bvh::{Bounds, Lanes, Tree};
 use crate::math::Real;
 
 /// Builds a tree from boxes with distinct ids. Also returns the ids of the boxes that no finite
-/// `f32` box encloses, which the tree leaves out, in the order given.
+/// `f32` box encloses, which the tree leaves out, in input order.
 pub(crate) fn packed<N: Real, const D: usize>(
     lanes: Lanes,
     boxes: impl Iterator<Item = (u32, Aabb<N, D>)>,

@@ -4,7 +4,7 @@ use core::fmt;
 
 use crate::bounding_volume::AabbError;
 
-/// The reason why a [`BoxTree`](super::BoxTree) refused its boxes.
+/// The reason why a [`BoxTree`](super::BoxTree) rejected its boxes.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::Aabb;
@@ -27,12 +27,12 @@ pub enum BoxTreeError {
     },
     /// The number of boxes does not fit in 32 bits.
     TooMany {
-        /// The number of boxes given.
+        /// The number of boxes that the caller passed.
         given: usize,
     },
-    /// A refit was given another number of boxes than the tree has.
+    /// The number of boxes of a refit differs from the number in the tree.
     WrongCount {
-        /// The number of boxes given.
+        /// The number of boxes that the caller passed.
         given: usize,
         /// The number of boxes in the tree.
         needed: usize,

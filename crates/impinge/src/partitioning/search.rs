@@ -1,4 +1,5 @@
-//! Searches with exact boxes: trees of `f32` boxes propose, exact boxes decide.
+//! Searches with exact boxes: trees of `f32` boxes propose candidates, tests of the exact boxes
+//! decide.
 
 use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
 use crate::bvh::{Block, Bounds, Frontier, GROUP, Gaps, Keys, LANES, Lanes, Slabs, Tree};

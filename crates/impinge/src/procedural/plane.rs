@@ -8,8 +8,8 @@ use crate::shape::{
     Triangle,
 };
 
-/// Returns a regular polygon of `n = subdivisions` corners inscribed in a disk; the first lies on
-/// the x axis.
+/// Returns a regular polygon of `n = subdivisions` corners inscribed in a disk; the first corner
+/// lies on the x axis.
 ///
 /// The gap is at most `radius · (1 − cos(π / n))`.
 ///
@@ -71,8 +71,8 @@ pub fn capsule<N: Real>(capsule: &Capsule<N, 2>, subdivisions: u32) -> Outline<N
 /// The `n = subdivisions` directions are evenly spaced, starting on the right of the segment. A
 /// direction in which the ball around an end lies on the surface gives a corner on it; with the
 /// four ends of the sides there are at most `n + 4` corners. The gap is at most `(1 − cos(π / n))`
-/// times the larger radius. If one ball contains the other, the outline is that ball's: `n`
-/// corners.
+/// times the larger radius. If one ball contains the other, the outline is that of the larger ball,
+/// with `n` corners.
 #[must_use]
 pub fn tapered_capsule<N: Real>(capsule: &TaperedCapsule<N, 2>, subdivisions: u32) -> Outline<N> {
     let count = parts_of_turn(subdivisions);

@@ -52,8 +52,8 @@ impl<N: Real> RevolutionFrame<N> {
     }
 }
 
-/// Returns the surface of a profile, from the far end of the axis to the near one, rotated in
-/// `count` parts.
+/// Returns the surface of a profile, rotated in `count` parts. The profile starts at the far end of
+/// the axis, towards which the axis points.
 pub(super) fn revolve<N: Real>(
     frame: &RevolutionFrame<N>,
     count: u32,

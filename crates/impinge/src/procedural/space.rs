@@ -12,8 +12,8 @@ use crate::shape::{
 /// Returns a surface of meridians and parallels: `n = subdivisions` meridians, each with `4 k`
 /// parts to a full turn, `k = ⌈n / 4⌉`.
 ///
-/// There are `2 + n (2 k − 1)` vertices and `2 n (2 k − 1)` triangles; the first vertex is the pole on
-/// the positive side of y, the last the one on the negative side. The gap is at most
+/// There are `2 + n (2 k − 1)` vertices and `2 n (2 k − 1)` triangles; the first vertex is the pole
+/// on the positive side of y, the last vertex the opposite pole. The gap is at most
 /// `radius · sin²(π / n)`.
 ///
 /// ```
@@ -39,11 +39,11 @@ pub fn ball<N: Real>(ball: &Ball<N>, subdivisions: u32) -> TriangleSurface<N> {
 }
 
 /// Returns a half ball at each end, each like half of [`ball`], and `n = subdivisions` rectangles
-/// between them, for every length.
+/// between them, also if the length is zero.
 ///
-/// There are `2 + 2 n k` vertices and `4 n k` triangles, with `k = ⌈n / 4⌉`; the first vertex is the
-/// pole beyond the second end of the segment, the last the one beyond the first end. The gap is at most
-/// `radius · sin²(π / n)`.
+/// There are `2 + 2 n k` vertices and `4 n k` triangles, with `k = ⌈n / 4⌉`; the first vertex is
+/// the pole beyond the second end of the segment, the last vertex the pole beyond the first end.
+/// The gap is at most `radius · sin²(π / n)`.
 #[must_use]
 pub fn capsule<N: Real>(capsule: &Capsule<N, 3>, subdivisions: u32) -> TriangleSurface<N> {
     let count = parts_of_turn(subdivisions);
@@ -86,9 +86,10 @@ pub fn ellipsoid<N: Real>(ellipsoid: &Ellipsoid<N, 3>, subdivisions: u32) -> Tri
 /// Returns a part of a ball at each end, with those parallels of [`ball`] that lie on the surface,
 /// and `n = subdivisions` quadrilaterals between the two circles where the side begins.
 ///
-/// There are at most `2 + n (2 k + 1)` vertices, with `k = ⌈n / 4⌉`; the first is the pole beyond
-/// the second end of the segment, the last the one beyond the first end. The gap is at most `sin²(π
-/// / n)` times the larger radius. If one ball contains the other, the surface is that ball's.
+/// There are at most `2 + n (2 k + 1)` vertices, with `k = ⌈n / 4⌉`; the first vertex is the pole
+/// beyond the second end of the segment, the last vertex the pole beyond the first end. The gap is
+/// at most `sin²(π / n)` times the larger radius. If one ball contains the other, the surface is
+/// that of the larger ball.
 #[must_use]
 pub fn tapered_capsule<N: Real>(
     capsule: &TaperedCapsule<N, 3>,
@@ -140,8 +141,8 @@ pub fn tetrahedron<N: Real>(tetrahedron: &Tetrahedron<N>) -> TriangleSurface<N> 
 /// centre.
 ///
 /// There are `2 + 2 n` vertices and `4 n` triangles; the first vertex is the centre of the cap on
-/// the positive side of y, the last that of the other. The gap is at most `radius · (1 − cos(π /
-/// n))`.
+/// the positive side of y, the last vertex the centre of the opposite cap. The gap is at most
+/// `radius · (1 − cos(π / n))`.
 #[must_use]
 pub fn cylinder<N: Real>(cylinder: &Cylinder<N>, subdivisions: u32) -> TriangleSurface<N> {
     let (radius, top, bottom) =
@@ -159,8 +160,8 @@ pub fn cylinder<N: Real>(cylinder: &Cylinder<N>, subdivisions: u32) -> TriangleS
 
 /// Returns `n = subdivisions` triangles up to the apex and `n` in the base that meet at its centre.
 ///
-/// There are `2 + n` vertices and `2 n` triangles; the first vertex is the apex, the last the
-/// centre of the base. The gap is at most `radius · (1 − cos(π / n))`.
+/// There are `2 + n` vertices and `2 n` triangles; the first vertex is the apex, the last vertex
+/// the centre of the base. The gap is at most `radius · (1 − cos(π / n))`.
 #[must_use]
 pub fn cone<N: Real>(cone: &Cone<N>, subdivisions: u32) -> TriangleSurface<N> {
     let (radius, half_height) = (cone.radius(), cone.half_height());

@@ -60,7 +60,7 @@ impl<N: Real, const D: usize> Contact<N, D> {
 /// and the normal is the direction of that translation for the second solid. A distance equal to
 /// `prediction` is within it. A negative `prediction` restricts the result to contacts at least
 /// that deep. Returns `None` if the solids are farther apart, if `prediction` is NaN or a pose is
-/// not finite, and for half-spaces that overlap without bound, which have no depth.
+/// not finite, and for two half-spaces whose overlap is unbounded, as they have no depth.
 ///
 /// For a composite the result is the deepest contact of its manifolds: the contact of a part, with
 /// a normal of the whole surface ([`Surface`](crate::shape::Surface)). A one-sided surface has no
@@ -103,8 +103,8 @@ pub(crate) fn contact_at<N: Space<D>, const D: usize>(
 }
 
 impl<N: Real, const D: usize> Contact<N, D> {
-    /// Converts a separation in the world frame to a contact; `None` for half-spaces that overlap
-    /// without bound.
+    /// Converts a separation in the world frame to a contact; `None` for two half-spaces whose
+    /// overlap is unbounded.
     #[inline]
     pub(crate) fn of_separation(found: &Separation<N, D>) -> Option<Self> {
         found.distance.is_finite_number().then(|| Self {

@@ -142,9 +142,9 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     /// plane or line of the other solid. Two crossing lines give their nearest points; two points,
     /// or a point and a line, give the shortest connection. If the connection vanishes, and for
     /// lines that are nearly parallel, the points and the normal at the last update move with their
-    /// solids. The deepest contact on a round rim has distance and normal of second order, but its
-    /// position on the rim is of first order only; so are the other contacts on that rim, which
-    /// follow the deepest one. If a pose is not finite, the result is not finite.
+    /// solids. For the deepest contact on a round rim the distance and the normal have errors of
+    /// second order, its position on the rim of first order; the other contacts on that rim follow
+    /// the deepest one. If a pose is not finite, the result is not finite.
     #[must_use]
     pub fn contact<R: AbstractRotation<N, D>>(
         &self,
@@ -235,7 +235,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         Separation { distance, normal, point1, point2: point1 + normal * distance }
     }
 
-    /// Whether the geometry alone gives the manifold's normal, up to rounding.
+    /// Returns whether the geometry alone gives the manifold's normal, up to rounding.
     fn reproduces(&self, pose12: &Pose<N, D>) -> bool {
         let is_flat = |geometry| matches!(geometry, NeighborhoodGeometry::Plane(_));
         if is_flat(self.geometry1) || is_flat(self.geometry2) {
@@ -248,8 +248,8 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         (normal - self.normal1).norm() <= least_angle()
     }
 
-    /// A quick sufficient test whether some line has such a slope along the manifold's normal that
-    /// no normal perpendicular to the line is near it. Of two nearly parallel lines, only the first.
+    /// Returns whether a line certainly rises so steeply along the manifold's normal that no normal
+    /// perpendicular to it is near. Of two nearly parallel lines, only the first counts.
     fn is_steep(&self) -> bool {
         let is_tilted = |geometry: NeighborhoodGeometry<N, D>, normal: &Vector<N, D>, least: N| {
             match geometry {
@@ -425,7 +425,7 @@ impl<N: Real, const D: usize> SlideLines<N, D> {
 
     /// Returns the unit vector of the shortest connection of two points that may slide along the
     /// lines, on the side of `fallback`. Returns `fallback`, projected perpendicular to the lines,
-    /// if the connection vanishes or two lines leave no choice.
+    /// if the connection vanishes or two lines determine the normal.
     fn connection(
         &self,
         point1: &Point<N, D>,

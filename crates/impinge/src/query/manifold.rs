@@ -68,7 +68,7 @@ impl ContactId {
         Self { pair, number }
     }
 
-    /// Whether the id is [`Self::NULL`].
+    /// Returns whether the id is [`Self::NULL`].
     #[must_use]
     pub const fn is_null(self) -> bool {
         self.pair == u64::MAX && self.number == u32::MAX
@@ -206,7 +206,7 @@ impl<N: Real, const D: usize> ContactManifold<N, D> {
         self.contacts.len()
     }
 
-    /// Whether the manifold has no contacts.
+    /// Returns whether the manifold has no contacts.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.contacts.is_empty()

@@ -1,4 +1,4 @@
-//! Queries about one or two shapes, computed from the arguments alone.
+//! Queries on one or two shapes. The results depend on the arguments only, not on a world.
 
 mod closest_points;
 pub(crate) mod composite;

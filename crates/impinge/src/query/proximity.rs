@@ -1,4 +1,4 @@
-//! Whether two solids intersect, are within a margin, or are disjoint.
+//! The proximity of two solids: intersecting, within a margin, or disjoint.
 
 use super::distance::distance_within;
 use crate::collide::AtIsometry;
@@ -41,9 +41,9 @@ impl Proximity {
 /// Returns whether two solids touch or overlap, are at most `margin` apart, or are farther apart.
 ///
 /// Touching solids intersect, and a distance equal to `margin` is within it. A negative or NaN
-/// `margin` is treated as zero. Half-spaces that overlap without bound intersect. The result is
-/// [`Proximity::Disjoint`] if a pose is not finite. For composites the nearest parts decide; their
-/// search ends at the first two that touch.
+/// `margin` is treated as zero. Two half-spaces with an unbounded overlap intersect. The result is
+/// [`Proximity::Disjoint`] if a pose is not finite. For composites the nearest parts decide; the
+/// search ends at the first two parts that touch.
 pub fn proximity<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,

@@ -10,7 +10,7 @@ use crate::shape::{FeatureId, Shape};
 use crate::tables::ByDimension;
 use crate::tables::entries;
 
-/// Placeholders for features that are not computed.
+/// Placeholders for features that were not requested.
 const NO_FEATURES: [FeatureId; 2] = [FeatureId::Face(u32::MAX); 2];
 
 /// The points of two shapes that are nearest to each other, or deepest in each other, with their
@@ -80,12 +80,12 @@ impl<N: Real, const D: usize> Witness<N, D> {
 /// A rounded solid has the features of its core. A distance equal to `max_distance` is within it; a
 /// negative `max_distance` restricts the result to overlaps at least that deep. Returns `None` if
 /// the shapes are farther apart, if `max_distance` is NaN or a pose is not finite, for a composite
-/// without parts, and for half-spaces that overlap without bound.
+/// without parts, and for two half-spaces with an unbounded overlap.
 ///
 /// The cost for two convex solids is that of their distance; a composite is searched for the parts
-/// near the other shape. Of two composites, each part near enough of the one with fewer parts
-/// searches the other: n log m at most. A half-space not aligned with an axis is tested against
-/// every part.
+/// near the other shape. Of two composites, the parts of the one with fewer parts each search the
+/// other, unless they are too far away: O(n log m) at most. A half-space not aligned with an axis
+/// is tested against every part.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -127,8 +127,8 @@ pub(crate) fn witness_at<N: Space<D>, const D: usize>(
     )
 }
 
-/// Implements [`witness`] for shapes placed by any [`Placing`]. Features are slow to find: without
-/// `with_features` they are `Face(u32::MAX)`.
+/// Implements [`witness`] for shapes placed by any [`Placing`]. Features are slow to compute;
+/// without `with_features` they are `Face(u32::MAX)`.
 #[inline]
 pub(crate) fn witness_between<'a, N: Space<D>, const D: usize>(
     one: &impl Placing<'a, N, D>,
@@ -210,7 +210,7 @@ fn features<N: Space<D>, const D: usize>(
 
 impl<N: Real, const D: usize> Witness<N, D> {
     /// Converts a separation of two convex solids in the world frame, without features; `None` for
-    /// half-spaces that overlap without bound.
+    /// two half-spaces with an unbounded overlap.
     #[inline]
     pub(crate) fn of_separation(found: &Separation<N, D>) -> Option<Self> {
         found.distance.is_finite_number().then(|| Self::new(found, [0; 2], NO_FEATURES))

@@ -8,8 +8,9 @@ use crate::shape::polytope::LANES;
 use crate::shape::solids::segment::length_of;
 use crate::shape::{Polytope, Shape, SupportMap};
 
-/// Returns a box around a shape placed at `pose`, in the frame that the pose maps to; as small as
-/// is cheap. Unbounded for a half-space, except on the axis along which its normal lies exactly.
+/// Returns a box around a shape placed at `pose`, in the frame that the pose maps to. The box is as
+/// small as is cheap to compute. The box of a half-space is unbounded, except that it ends at the
+/// boundary if the normal is exactly parallel to an axis.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::aabb;
@@ -77,8 +78,8 @@ fn extents<N: Real, const D: usize>(
     with_lanes!(level, simd => extents_in_lanes::<_, N, N::Lanes<_>, D>(simd, blocks, rotation))
 }
 
-/// Returns the componentwise minimum and maximum of the rotated vertices, a packet of 8 at a
-/// time. `None` if a coordinate is NaN.
+/// Returns the componentwise minimum and maximum of the rotated vertices; each block has 8
+/// vertices. `None` if a coordinate is NaN.
 #[inline(always)]
 fn extents_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -106,7 +107,7 @@ fn extents_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     Some([mins, maxs])
 }
 
-/// All lanes set in a lane mask.
+/// The bitmask in which the bits of all lanes are set.
 const ALL: u64 = (1 << LANES) - 1;
 
 #[cfg(test)]

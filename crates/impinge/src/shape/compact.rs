@@ -1,5 +1,5 @@
-//! A copy of the size of a ball or a box in the object's record, which saves the cache miss of the
-//! shape behind its handle.
+//! The sizes of a ball or a box, copied into the object's record. Reading the copy avoids the cache
+//! miss of the shape behind its handle.
 //!
 //! Queries of a world read the copy; the result equals the result of the shape itself.
 
@@ -7,8 +7,8 @@ use crate::bounding_volume::Aabb;
 use crate::math::{Pose, Real, Space, Vector, filled};
 use crate::shape::{Ball, Cuboid, Geometry, Kind, Shape, ShapeHandle};
 
-/// The radius of a ball or the half extents of a box, the commonest shapes of worlds; for any other
-/// shape a negative first component as a marker.
+/// The radius of a ball or the half extents of a box, the most common shapes. For any other shape
+/// the first component is −1 as a marker.
 ///
 /// ```text
 /// box    h0    h1  [h2]     half extents, none negative
@@ -44,8 +44,8 @@ impl<N: Real, const D: usize> Compact<N, D> {
         }
     }
 
-    /// Calls `question` with the geometry of the shape `own`; reads `own` only if the copy does not
-    /// suffice.
+    /// Calls `question` with the geometry of the shape `own`. Reads `own` only if the shape is
+    /// neither a ball nor a box.
     #[inline(always)]
     pub(crate) fn ask<R>(
         &self,

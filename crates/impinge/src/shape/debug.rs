@@ -1,5 +1,6 @@
-//! `Debug` output of shapes: the input that a user gave, without trees and tables. Meshes, lines
-//! and fields may hold millions of elements; their output has counts only.
+//! `Debug` output of shapes: the input that a user gave, without trees and tables. Meshes,
+//! polylines and height fields may hold millions of elements; their output has only counts and
+//! options.
 
 use core::fmt;
 
@@ -8,8 +9,8 @@ use crate::shape::{
     Compound, ConvexHull, ConvexPolygon, HeightField, Polyline, Polytope, Tetrahedron, TriMesh,
 };
 
-/// Writes the vertices of a polytope, and in 3D the faces; in 2D the sides follow from the
-/// vertices.
+/// Writes the vertices of a polytope, and its faces in 3D. In 2D the order of the vertices
+/// determines the sides.
 fn polytope<N: Real, const D: usize>(
     f: &mut fmt::Formatter<'_>,
     name: &str,

@@ -8,7 +8,7 @@ use core::fmt;
 use crate::math::{Real, Vector, is_unit};
 use crate::shape::{MAX_NESTING, ShapeKind};
 
-/// Why a constructor rejected its input. Values are given as `f64`, exactly.
+/// Why a constructor rejected its input. Values are converted to `f64` without loss.
 ///
 /// ```
 /// use impinge::dim2::shape::{Ball, ShapeError};
@@ -242,8 +242,8 @@ pub(super) fn finite<N: Real, const D: usize>(
     }
 }
 
-/// Returns the value, or panics with the text of the error; every panicking constructor ends with
-/// it.
+/// Returns the value, or panics with the text of the error. Panicking constructors end with this
+/// call.
 #[track_caller]
 pub(super) fn or_panic<S>(result: Result<S, ShapeError>) -> S {
     match result {

@@ -1,11 +1,11 @@
-//! The face of a 3D solid with few corners, in arrays of fixed size.
+//! A face of a 3D solid with at most 8 corners, in arrays of fixed size.
 //!
 //! ```text
 //! corners[0]  x0 x1 x2 … 0      one row per coordinate, one lane per corner, zeros beyond `count`
 //! corners[1]  y0 y1 y2 … 0
 //! corners[2]  z0 z1 z2 … 0
-//! ids         v0 v1 v2 …        corner `at`
-//! sides       s0 s1 s2 …        side from corner `at` to the next
+//! ids         v0 v1 v2 …        id of each corner
+//! sides       s0 s1 s2 …        id of the side from each corner to the next
 //! ```
 
 use crate::math::{Point, Real, Vector};
@@ -16,7 +16,7 @@ use crate::shape::{Cuboid, FeatureId};
 /// The maximum number of corners, equal to the number of SIMD lanes.
 const MAX: usize = 8;
 
-/// A face with its corners and sides, in the order that [`Feature`](super::Feature) has.
+/// A face with its corners and sides, in the same order as in [`Feature`](super::Feature).
 #[derive(Clone, Debug)]
 pub(crate) struct FaceRing<N: Real> {
     pub(crate) id: FeatureId,
@@ -56,8 +56,8 @@ impl<N: Real> FaceRing<N> {
 }
 
 impl<N: Real> Cuboid<N, 3> {
-    /// Returns the id of the [`core_feature`](super::SupportMap::core_feature) of a box, all of
-    /// whose half extents must be positive.
+    /// Returns the id of the feature that [`core_feature`](super::SupportMap::core_feature) writes
+    /// for a box. All half extents of the box must be positive.
     #[inline]
     pub(crate) fn supporting_part(direction: &Vector<N, 3>) -> FeatureId {
         CuboidPart::<3>::toward(direction, Tilt::default_limit()).id()
@@ -101,7 +101,7 @@ mod tests {
         fill(face, &mut ring).then_some(ring)
     }
 
-    /// Checks that the ring and the feature describe the same face; returns whether there is a
+    /// Checks that the ring and the feature describe the same face. Returns false if there is no
     /// face.
     fn same(ring: Option<FaceRing<f64>>, feature: &Feature<f64, 3>, what: &str) -> bool {
         let is_face = feature.normal.is_some() && feature.vertices.len() > 2;

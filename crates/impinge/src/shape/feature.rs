@@ -27,7 +27,7 @@ use crate::math::{Point, Real, Vector};
 pub enum FeatureId {
     /// A corner, by its index.
     Vertex(u32),
-    /// A straight line between two faces, by its index.
+    /// An edge between two faces, by its index: a straight side or a circular rim.
     Edge(u32),
     /// A flat or curved face, by its index.
     Face(u32),
@@ -46,8 +46,8 @@ impl FeatureId {
         }
     }
 
-    /// Returns, for messages, the word for the kind of id that [`Self::flat`] returns for
-    /// `dimension`.
+    /// Returns the kind of the id that [`Self::flat`] returns for `dimension`, as a word for
+    /// messages.
     pub(super) const fn word<const D: usize>(dimension: usize) -> &'static str {
         match Self::flat::<D>(dimension, 0) {
             Self::Vertex(_) => "vertex",
@@ -135,8 +135,8 @@ impl<N: Real, const D: usize> Feature<N, D> {
     }
 
     /// Removes each vertex that equals the next one, and the side between them. A polygon without
-    /// width becomes a segment, one without extent a point. Both lose the normal and take the id of
-    /// the remaining side or vertex.
+    /// width becomes a segment, and a polygon without extent becomes a point. Both lose the normal
+    /// and take the id of the remaining side or vertex.
     pub(super) fn drop_repeated(&mut self) {
         let mut at = self.vertices.len();
         while at > 0 && self.vertices.len() > 1 {
@@ -158,8 +158,8 @@ impl<N: Real, const D: usize> Feature<N, D> {
         self.rename_collapsed();
     }
 
-    /// For a feature of one or two vertices, takes the id of that point or segment and removes the
-    /// normal.
+    /// Updates a feature that has lost vertices: with one or two vertices left, it takes the id of
+    /// that point or segment and loses the normal.
     fn rename_collapsed(&mut self) {
         match self.vertices.len() {
             1 => {

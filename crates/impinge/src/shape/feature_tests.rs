@@ -6,7 +6,7 @@ use crate::shape::{
     Triangle,
 };
 
-/// A random number generator for numbers in [-1, 1) (Marsaglia, "Xorshift RNGs", 2003).
+/// A generator of pseudo-random numbers in [-1, 1) (Marsaglia, "Xorshift RNGs", 2003).
 pub(super) struct Numbers(u64);
 
 impl Numbers {
@@ -66,7 +66,7 @@ fn faces<N: Real, const D: usize>(
     feature
 }
 
-/// Checks that each vertex at the height of the supporting plane is in the feature.
+/// Checks that the supporting feature contains each vertex on the supporting plane.
 fn holds_what_touches<N: Real, const D: usize>(
     vertices: &[Point<N, D>],
     solid: &dyn SupportMap<N, D>,
@@ -80,8 +80,8 @@ fn holds_what_touches<N: Real, const D: usize>(
     }
 }
 
-/// Checks that the face's loop turns left around its normal and that the solid lies behind it.
-/// Returns false for a face without a normal.
+/// Checks that the vertices of the face run counter-clockwise about its normal, and that the solid
+/// lies behind the face. Returns false for a face without a normal.
 fn face3<N: Real>(solid: &dyn ConvexPolyhedron<N, 3>, id: FeatureId) -> bool {
     let mut face = Feature::default();
     solid.face(id, &mut face);
@@ -104,7 +104,8 @@ fn face3<N: Real>(solid: &dyn ConvexPolyhedron<N, 3>, id: FeatureId) -> bool {
     true
 }
 
-/// Checks that the solid lies on the left of the side, and that the normal points away from it.
+/// Checks that the solid lies on the left of the side, and that the normal points away from the
+/// solid.
 fn face2<N: Real>(solid: &dyn ConvexPolyhedron<N, 2>, id: FeatureId) {
     let mut face = Feature::default();
     solid.face(id, &mut face);
@@ -185,7 +186,7 @@ fn cuboid_numbers_are_the_documented_ones() {
         [4, 5, 7, 6].map(FeatureId::Vertex),
         "counter-clockwise about +z"
     );
-    // Edge 6 runs along y (4 · 1); of z and x only x (the second bit) is positive.
+    // Edge 6 = 4 · 1 + 2 runs along y. The sign bits are 2: z is negative, x is positive.
     let ends = solid.edge(FeatureId::Edge(6)).map(|(_, end)| end);
     assert_eq!(ends[0], Point::<f64, 3>::new(1.0, -2.0, -3.0), "one end");
     assert_eq!(ends[1], Point::<f64, 3>::new(1.0, 2.0, -3.0), "the other");
@@ -342,8 +343,8 @@ fn round_solids_have_consistent_features() {
     round_solids::<f64>();
 }
 
-/// Returns the core feature for `direction`; checks that it is an octagon that turns left around
-/// its normal.
+/// Returns the core feature for `direction`; checks that it is an octagon that runs
+/// counter-clockwise about its normal.
 fn cap<N: Real>(solid: &dyn SupportMap<N, 3>, direction: Vector<N, 3>) -> Feature<N, 3> {
     let feature = faces(solid, &direction);
     assert_eq!(feature.vertices.len(), 8, "{feature:?}");

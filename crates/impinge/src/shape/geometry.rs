@@ -1,4 +1,4 @@
-//! The closed set of kinds by which queries treat a shape.
+//! The closed set of shape kinds on which queries dispatch.
 
 use core::fmt;
 
@@ -50,8 +50,8 @@ pub enum ShapeKind {
     Composite,
 }
 
-/// A shape as queries treat it. Users obtain one from a built-in shape, from [`Self::support_map`]
-/// or from [`Self::composite`].
+/// A reference to a shape, with the kind on which queries dispatch. Users obtain one from a
+/// built-in shape, from [`Self::support_map`] or from [`Self::composite`].
 ///
 /// ```
 /// use impinge::dim2::math::Vector;
@@ -66,9 +66,9 @@ pub enum ShapeKind {
 #[derive(Clone, Copy)]
 pub struct Geometry<'a, N: Real, const D: usize>(pub(crate) Kind<'a, N, D>);
 
-/// The closed set of kinds with references to the shapes. A kind that exists in one dimension only
-/// (cylinder, cone) has its sizes and a support map instead, so that this type needs no bound. The
-/// constructor of such a kind exists in that dimension only.
+/// The closed set of kinds with references to the shapes. A shape that exists in one dimension only
+/// (cylinder, cone) is accompanied by a support map in `D` dimensions, so that this type needs no
+/// trait bound. Such a variant is constructed in that dimension only.
 #[derive(Clone, Copy)]
 pub(crate) enum Kind<'a, N: Real, const D: usize> {
     Ball(&'a Ball<N>),
@@ -120,14 +120,14 @@ impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
         }
     }
 
-    /// Whether a rotation about the origin may change the solid, so that its pose needs a rotation:
-    /// false only for a ball.
+    /// Returns whether a rotation about the origin may change the solid, so that its pose needs a
+    /// rotation: false only for a ball.
     #[inline]
     pub(crate) fn turns(&self) -> bool {
         !matches!(self.0, Kind::Ball(_))
     }
 
-    /// Converts a user's isometry to a pose; without its rotation if [`Self::turns`] is false.
+    /// Converts a user's isometry to a pose; omits the rotation if [`Self::turns`] is false.
     #[inline]
     pub(crate) fn pose_at(&self, isometry: &N::Isometry) -> Pose<N, D>
     where
@@ -155,9 +155,8 @@ impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
         })
     }
 
-    /// Returns an upper bound, up to rounding, of the distance of the solid's points from the
-    /// origin of its frame. The bound is infinite for a half-space, a composite and a user's
-    /// support map.
+    /// Returns an upper bound, up to rounding, of the distance of the solid's points from the local
+    /// origin. Infinite for a half-space, a composite and a user's support map.
     #[inline]
     pub(crate) fn extent(&self) -> N {
         let squared = |point: &Point<N, D>| point.coords.norm_squared();

@@ -25,7 +25,7 @@ impl<N: Real, const D: usize> Clone for ShapeHandle<N, D> {
         Self(Arc::clone(&self.0))
     }
 
-    /// If both handles already share the shape, the reference count is not touched.
+    /// Does not touch the reference count if both handles already share the shape.
     fn clone_from(&mut self, source: &Self) {
         if !self.is_same(source) {
             *self = source.clone();
@@ -68,13 +68,13 @@ impl<N: Real, const D: usize> ShapeHandle<N, D> {
         self.0.scaled(scale)
     }
 
-    /// Whether this is the only handle of the shape.
+    /// Returns whether this is the only handle of the shape.
     #[cfg(feature = "debug_render")]
     pub(crate) fn is_sole(&self) -> bool {
         Arc::strong_count(&self.0) == 1
     }
 
-    /// Whether both handles share one shape.
+    /// Returns whether both handles share one shape.
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)

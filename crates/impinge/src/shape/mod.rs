@@ -1,10 +1,10 @@
 //! Solids in their own frame. This module does not depend on pairs or worlds.
 //!
-//! A convex solid is a *core* inflated by a *rounding* radius: a ball is a point inflated by its
-//! radius, a capsule a segment. Algorithms run on cores and subtract the radii at the end, which is
-//! exact and costs nothing. [`Shape`] is what a world stores; [`SupportMap`] is the trait by which
-//! queries accept a user's convex solid; [`ConvexPolyhedron`] gives access to the features of
-//! solids with flat faces; [`CompositeShape`] is a union of solids.
+//! A convex solid is a *core* inflated by a *rounding* radius: a ball is an inflated point, a
+//! capsule an inflated segment. Algorithms run on cores and subtract the radii from the distance at
+//! the end, which is exact up to rounding and nearly free. [`Shape`] is what a world stores;
+//! [`SupportMap`] is the trait by which queries accept a user's convex solid; [`ConvexPolyhedron`]
+//! gives access to the features of solids with flat faces; [`CompositeShape`] is a union of solids.
 
 mod bounds;
 mod compact;
@@ -72,7 +72,7 @@ pub(crate) use solids::tapered_capsule::Taper;
 pub use solids::tapered_capsule::TaperedCapsule;
 pub use solids::tetrahedron::Tetrahedron;
 pub use solids::triangle::Triangle;
-/// Limits below which the fast test of a triangle's supporting feature is inconclusive.
+/// Limits within which the fast test of a triangle's supporting feature is inconclusive.
 pub(crate) use solids::triangle_feature::{CLEAR as CLEARLY_LARGER, THIN_SQUARED};
 pub use support_map::{ConvexPolyhedron, CurvedSupport, SupportMap};
 #[doc(hidden)]
@@ -113,10 +113,12 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
     /// own, or the geometry of a built-in shape that represents it.
     fn geometry(&self) -> Geometry<'_, N, D>;
 
-    /// Returns a box around the solid in its own frame; as small as is cheap to compute.
+    /// Returns an axis-aligned box that contains the solid, in the frame of the solid. The box is
+    /// as small as is cheap to compute.
     fn local_aabb(&self) -> Aabb<N, D>;
 
-    /// Returns a box around the solid placed at `pose`; as small as is cheap to compute.
+    /// Returns an axis-aligned box that contains the solid placed at `pose`. The box is as small as
+    /// is cheap to compute.
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         self.local_aabb().transformed_by(pose)
     }
@@ -125,13 +127,13 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
     /// negative.
     ///
     /// The result is exact up to rounding, and of the same type, except that a ball may become an
-    /// [`Ellipsoid`]. Other round shapes need factors of equal magnitude, cylinders and cones
-    /// across their axis only. The axis of a cone cannot be reversed, and a compound cannot be
-    /// sheared.
+    /// [`Ellipsoid`]. Other round shapes need factors of equal magnitude; cylinders and cones need
+    /// this only for the two factors across their axis. The axis of a cone cannot be reversed, and
+    /// a compound cannot be sheared.
     ///
-    /// Parts and features keep their indices, unless the scale mirrors. Then a polygon indexes its
-    /// vertices in the opposite order, a hull renumbers its edges, and triangles of meshes and
-    /// segments of polylines are reversed.
+    /// Parts and features keep their indices, unless an odd number of factors is negative. Then a
+    /// polygon indexes its vertices in the opposite order, a hull renumbers its edges, and
+    /// triangles of meshes and segments of polylines are reversed.
     ///
     /// # Errors
     /// If a factor is zero or not finite, no shape of the library can represent the scaled solid,
@@ -141,10 +143,10 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
         Err(ScaleError::Unsupported)
     }
 
-    /// Returns the mass properties of the solid at density 1, for a shape with a better method than
-    /// [`mass_properties`](crate::query::mass_properties). That function integrates a user's convex
-    /// solid by its support points, and rejects a user's surface. `None` (the default) selects its
-    /// method.
+    /// Returns the mass properties of the solid at density 1, if the shape has a better method than
+    /// [`mass_properties`](crate::query::mass_properties). `None` is the default: then
+    /// `mass_properties` integrates a user's convex solid by its support points, and rejects a
+    /// user's surface.
     fn unit_mass_properties(&self) -> Option<MassProperties<N, D>> {
         None
     }
@@ -156,7 +158,7 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
         None
     }
 
-    /// A sphere around the solid in its own frame.
+    /// Returns a sphere that contains the solid, in the frame of the solid.
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
         BoundingSphere::around_box(&self.local_aabb())
     }
@@ -199,8 +201,8 @@ pub const MAX_NESTING: u32 = 64;
 /// assert!(!handle.is_shape::<Cuboid<f32>>());
 /// ```
 impl<N: Real, const D: usize> dyn Shape<N, D> {
-    /// Returns the path to part `part` of a composite, as queries index parts; empty for a convex
-    /// solid, whose only part is 0.
+    /// Returns the path to part `part` of a composite, for the part index that queries report. The
+    /// path is empty for a convex solid, whose only part is 0.
     #[must_use]
     pub fn path_to_part(&self, part: u32) -> PartPath {
         let mut path = PartPath::new();
@@ -210,7 +212,7 @@ impl<N: Real, const D: usize> dyn Shape<N, D> {
         path
     }
 
-    /// Whether the shape is of the type `S`.
+    /// Returns whether the shape is of the type `S`.
     #[must_use]
     pub fn is_shape<S: Shape<N, D>>(&self) -> bool {
         self.as_shape::<S>().is_some()

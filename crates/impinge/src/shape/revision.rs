@@ -15,7 +15,7 @@ pub struct Revision {
     options: u8,
 }
 
-/// The number of revision numbers taken so far; wraps around.
+/// The next revision number; wraps around.
 static NUMBERS: AtomicUsize = AtomicUsize::new(0);
 
 impl Revision {

@@ -1,4 +1,4 @@
-//! Scaled shapes, which are exact up to rounding or an error.
+//! Scaling of shapes: the result is exact up to rounding, or an error is returned.
 
 use core::fmt;
 
@@ -104,7 +104,7 @@ impl<'a, N: Real, const D: usize> Scale<'a, N, D> {
         self.0.map(|x| if x < N::ZERO { -N::ONE } else { N::ONE })
     }
 
-    /// Whether the scale mirrors: an odd number of factors is negative.
+    /// Returns whether the scale mirrors: an odd number of factors is negative.
     pub(super) fn is_mirror(self) -> bool {
         self.0.iter().filter(|&&x| x < N::ZERO).count() % 2 == 1
     }
@@ -151,7 +151,7 @@ impl<'a, N: Real, const D: usize> Scale<'a, N, D> {
 }
 
 impl<N: Real> Scale<'_, N, 3> {
-    /// Returns the magnitudes of the factors along the y axis and across it.
+    /// Returns two magnitudes of the factors: along the y axis, and across it.
     ///
     /// # Errors
     /// If the magnitudes along x and z differ.

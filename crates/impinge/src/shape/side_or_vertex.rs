@@ -46,7 +46,8 @@ impl<N: Real> SideOrVertex<N> {
         Self::side(FeatureId::Edge(0), ends)
     }
 
-    /// Returns the feature of a support map; `None` if the feature has more than two vertices.
+    /// Returns the supporting feature of a support map; `None` if the feature has more than two
+    /// vertices.
     fn of_map(map: &dyn SupportMap<N, 2>, direction: &Vector<N, 2>) -> Option<Self> {
         let mut feature = Feature::default();
         map.core_feature(direction, &mut feature);

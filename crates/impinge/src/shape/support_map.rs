@@ -21,8 +21,8 @@ pub struct CurvedSupport<N: Real, const D: usize> {
     /// The point of the curved feature farthest along the direction.
     pub point: Point<N, D>,
     /// The derivative of the point with respect to a unit direction: a symmetric matrix that maps
-    /// the direction itself to zero. For a ball it is the radius times the projection perpendicular
-    /// to the direction.
+    /// the direction itself to zero. For a ball it is the radius times the projection onto the
+    /// plane perpendicular to the direction.
     pub bend: Matrix<N, D>,
 }
 
@@ -49,7 +49,7 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
     /// Returns a point of the core farthest along `direction`.
     ///
     /// `direction` is finite and may have any length; for the zero vector any point of the core may
-    /// be returned. The result must depend on nothing but the orientation of `direction`.
+    /// be returned. The result must not depend on the length of `direction`.
     fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D>;
 
     /// Returns the radius by which the core is inflated; zero or more.
@@ -66,7 +66,8 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
     /// `point` need not be the farthest along `direction`.
     ///
     /// The default is `None`, which is right for cores that are hulls of finitely many points. For
-    /// curved cores without this method, contact normals have about half of their digits correct.
+    /// curved cores without this method, contact normals have a relative error of about the square
+    /// root of epsilon.
     fn curved_support(
         &self,
         point: &Point<N, D>,
@@ -89,7 +90,7 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
     /// Returns the unit axis of the round side of the core, and the component along the axis of the
     /// side's unit normals: zero for a cylinder. `None` if there is no round side.
     ///
-    /// If another solid has the same axis, a whole ring of these normals is nearly optimal, and a
+    /// If another solid has the same axis, all normals of the round side are nearly optimal, and a
     /// local search has no gradient. The default is `None`.
     fn round_side(&self) -> Option<(Vector<N, D>, N)> {
         None
@@ -131,11 +132,11 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
     /// The rule for flat faces: among the edges at the support vertex, take the edge with the
     /// smallest tilt out of the supporting plane. Of the two faces beside that edge, take the face
     /// whose normal is most aligned with `direction`. Return the face if its tilt is at most
-    /// atan(1/2) ≈ 26.6°, else the edge if its tilt is, else the vertex. In 2D the sides at the
-    /// vertex are the faces. So the two crossing edges of an edge-edge contact are found as edges
-    /// or as sides of the returned faces. The rule depends on angles only and treats mirrored
-    /// directions alike. Near its limits both alternatives contain the touching part. No regular
-    /// polyhedron, and no regular prism on an edge, is at a limit.
+    /// atan(1/2) ≈ 26.6°, else the edge if the edge's tilt is within that limit, else the vertex.
+    /// In 2D the sides at the vertex are the faces. So the two crossing edges of an edge-edge
+    /// contact are found as edges or as sides of the returned faces. The rule depends on angles
+    /// only and treats mirrored directions alike. Near its limits both alternatives contain the
+    /// touching part. No regular polyhedron, and no regular prism on an edge, is at a limit.
     ///
     /// A flat round cap is returned as an inscribed polygon with a vertex towards `direction`, a
     /// round side as its generating segment. The default returns the support point alone with the
@@ -192,7 +193,7 @@ pub trait ConvexPolyhedron<N: Real, const D: usize>: SupportMap<N, D> {
     /// Writes the largest feature that can touch the supporting plane in `direction` if the solid
     /// rotates by up to `angle` radians: a face, else an edge, else a vertex.
     ///
-    /// The rule is that of [`SupportMap::core_feature`] with the limit `angle` instead of
+    /// Applies the rule of [`SupportMap::core_feature`] with the limit `angle` instead of
     /// atan(1/2). `angle` is clamped to the range from the smallest angle that rounded arithmetic
     /// resolves to a little below a right angle.
     fn support_feature_toward(&self, direction: &Vector<N, D>, angle: N, out: &mut Feature<N, D>);

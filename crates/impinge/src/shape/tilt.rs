@@ -1,4 +1,4 @@
-//! The maximum tilt out of the supporting plane up to which a face or edge is the supporting
+//! The maximum tilt out of the supporting plane for a face or an edge that counts as the supporting
 //! feature.
 
 use crate::math::{Real, Vector};
@@ -6,21 +6,21 @@ use crate::math::{Real, Vector};
 /// The squared sine of atan(1/2), the limit of [`super::SupportMap::core_feature`].
 pub(crate) const FACING_SINE_SQUARED: f64 = 0.2;
 
-/// A limit of the tilt, stored as its squared sine, so that small angles lose no digits to
-/// rounding.
+/// A maximum tilt, stored as its squared sine: small angles keep their relative precision.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tilt<N: Real> {
     sine_squared: N,
 }
 
 impl<N: Real> Tilt<N> {
-    /// Returns the limit of [`super::SupportMap::core_feature`].
+    /// Returns the limit that [`super::SupportMap::core_feature`] applies.
     #[inline]
     pub(super) fn default_limit() -> Self {
         Self { sine_squared: N::lit(FACING_SINE_SQUARED) }
     }
 
-    /// Returns the smallest angle that unit vectors in rounded arithmetic distinguish from zero.
+    /// Returns the limit for the smallest angle that unit vectors in rounded arithmetic distinguish
+    /// from zero.
     pub(super) fn least() -> Self {
         let sine = N::lit(64.0) * N::EPSILON;
         Self { sine_squared: sine * sine }
@@ -37,14 +37,14 @@ impl<N: Real> Tilt<N> {
         Self { sine_squared: if sine_squared < largest { sine_squared } else { largest } }
     }
 
-    /// Whether a tilt with this squared sine is within the limit.
+    /// Returns whether a tilt with this squared sine is within the limit.
     #[inline]
     pub(super) fn admits(self, sine_squared: N) -> bool {
         sine_squared <= self.sine_squared
     }
 
-    /// Whether a face with the unit normal `normal` is within the limit for the unit vector
-    /// `direction`.
+    /// Returns whether the angle between the unit vectors `normal`, the normal of a face, and
+    /// `direction` is within the limit.
     #[inline]
     pub(super) fn admits_face<const D: usize>(
         self,

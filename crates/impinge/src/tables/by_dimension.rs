@@ -1,4 +1,4 @@
-//! The algorithms that differ between 2D and 3D, as a table.
+//! The table of the algorithms that differ between 2D and 3D.
 
 use super::Here;
 use crate::batch::{SolidGroup, update_group2, update_group3};
@@ -35,17 +35,18 @@ use crate::shape::{
     ConvexHull, ConvexPolygon, FeatureId, Kind, MeshByDimension, ShapeHandle, TriMesh, Triangle,
 };
 
-/// The algorithms that differ by dimension. They are methods of [`Here`] rather than of the scalar, so that a user's
-/// `N` does not get them.
+/// The algorithms that differ by dimension. They are methods of [`Here`] rather than of the scalar, so that they are
+/// not visible on a user's `N`.
 #[expect(unnameable_types, private_interfaces, reason = "for this crate alone")]
 pub trait ByDimension<N: Real, const D: usize>:
     MassByDimension<N, D> + MeshByDimension<N, D>
 {
-    /// Computes the separation of a pair of solids, from which all queries derive; see [`crate::query`].
+    /// Computes the separation of two convex solids; `None` above `limit`. All queries derive from it; see
+    /// [`crate::query`].
     fn separation(pair: &Pair<'_, N, D>, limit: N) -> Option<Separation<N, D>>;
 
-    /// Computes the contacts of a polyhedral solid with triangles of a surface, in SIMD lanes; `false` if there is no
-    /// such algorithm.
+    /// Appends the contacts of a box or a convex hull with the triangles of a surface, in SIMD lanes. Returns `false`
+    /// for other pairs, and always in 2D.
     fn face_contacts(
         query: &Query<'_, N, D>,
         scene: &Scene<'_, N, D>,
@@ -55,35 +56,38 @@ pub trait ByDimension<N: Real, const D: usize>:
         arena: &mut Arena<N, D>,
     ) -> bool;
 
-    /// Computes a lower bound of the distance of each of 8 parts from the solid in the slabs.
+    /// Computes a lower bound of the distance of each of 8 parts from the solid that lies inside
+    /// `slabs`; negative for overlaps.
     fn part_gaps(slabs: &AxisSlabs<N, D>, tiles: &PartPacket<N, D>, limit: N) -> [N; LANES];
 
-    /// Classifies 8 pairs of parts: beyond a limit, or within it.
+    /// Classifies up to 8 pairs of parts: farther apart than `limit`, within it, or undecided.
     fn part_pairs(pairs: &PartPairs<N, D>, limit: N) -> PairMasks;
 
-    /// Updates the contacts of a convex solid and a chain of segments (2D), or of a ball and a surface (3D); `false` if
-    /// the pair needs the generic path.
+    /// Updates the contacts of a convex solid and a chain of segments (2D), or of a ball and a surface (3D). Returns
+    /// `false` if the pair needs the generic path.
     fn update_quickly(
         contacts: &mut CompositeContacts<N, D>,
         between: &Between<'_, N, D>,
         request: &ManifoldRequest<N>,
     ) -> bool;
 
-    /// Computes the distance of a pair; `None` above `limit`. For solids that clearly overlap,
-    /// returns some number that is not positive.
+    /// Computes the distance of two convex solids; `None` above `limit`. For solids that clearly
+    /// overlap, returns an arbitrary number that is zero or negative.
     fn distance(pair: &Pair<'_, N, D>, limit: N) -> Option<N>;
 
-    /// Computes the distances of many pairs of convex solids, up to a limit.
+    /// Computes the distances of many pairs of convex solids. Writes each to the slot of its pair
+    /// in `out`, `None` above `limit`.
     fn distances(pairs: &mut [ConvexPair<'_, N, D>], limit: N, out: &mut [Option<N>]);
 
-    /// Computes the separations of many pairs of convex solids, up to a limit.
+    /// Computes the separations of many pairs of convex solids. Writes each to the slot of its pair
+    /// in `out`, `None` above `limit`.
     fn separations(
         pairs: &mut [ConvexPair<'_, N, D>],
         limit: N,
         out: &mut [Option<Separation<N, D>>],
     );
 
-    /// Projects a point on a solid; `None` if there is no closed form.
+    /// Projects a point onto a solid; `None` if there is no closed form.
     fn project_on_solid(solid: Kind<'_, N, D>, point: &Point<N, D>) -> Option<Projection<N, D>>;
 
     /// Computes the contact points of a pair: by the SIMD kernel of its kinds if there is one, else from the
@@ -104,13 +108,13 @@ pub trait ByDimension<N: Real, const D: usize>:
         out: &mut RawManifold<N, D>,
     );
 
-    /// Computes the contact points of one pair by the SIMD kernel of its kinds; `false` if there is none or it does not
-    /// support the pair.
+    /// Computes the contact points of one pair by the SIMD kernel of its kinds. Returns `false` if there is no kernel
+    /// or the kernel does not support the pair.
     fn update_pair(question: &PairQuestion<'_, N, D>, out: &mut RawManifold<N, D>) -> bool
     where
         N: Space<D>;
 
-    /// Computes the contact points of a pair whose separation is known.
+    /// Computes the contact points of a pair from its separation, which the caller has computed.
     fn between(
         pair: &Pair<'_, N, D>,
         separation: &Separation<N, D>,
@@ -118,15 +122,18 @@ pub trait ByDimension<N: Real, const D: usize>:
         out: &mut RawManifold<N, D>,
     );
 
-    /// Computes contacts along the normal of a triangle; `false` if there are none.
+    /// Computes the contacts of two solids along the normal in `query`. Returns `false` if they
+    /// must be computed from the separation instead.
     fn on_face(pair: &Pair<'_, N, D>, query: &OnFace<N, D>, out: &mut RawManifold<N, D>) -> bool;
 
-    /// Updates some pairs of a group in SIMD lanes; `false` if there is no kernel for their kinds.
+    /// Updates the dirty pairs of a group in SIMD lanes. Returns `false` if there is no kernel for
+    /// the kinds of `solids`.
     fn update_lanes(solids: [&Solid<N, D>; 2], due: &mut DirtyContacts<'_, '_, N, D>) -> bool
     where
         N: Space<D>;
 
-    /// Computes some pairs of a batch in SIMD lanes; `false` if there is no kernel for their kinds.
+    /// Computes the pairs of a group of a batch in SIMD lanes. Returns `false` if there is no
+    /// kernel for the kinds of `solids`.
     fn update_group(solids: [&Solid<N, D>; 2], group: &mut SolidGroup<'_, '_, N, D>) -> bool;
 
     /// Returns two unit vectors perpendicular to a normal; the second is zero in 2D.
@@ -135,7 +142,8 @@ pub trait ByDimension<N: Real, const D: usize>:
     /// Returns the features that contain the nearest points of two convex solids.
     fn witness_features(pair: &Pair<'_, N, D>, separation: &Separation<N, D>) -> [FeatureId; 2];
 
-    /// Returns the feature of one of the two solids alone.
+    /// Returns the feature of one solid that contains its nearest point: of the second solid if
+    /// `is_second` is true, else of the first.
     fn witness_feature(
         pair: &Pair<'_, N, D>,
         separation: &Separation<N, D>,
@@ -147,7 +155,8 @@ pub trait ByDimension<N: Real, const D: usize>:
     /// in 2D, for a thin triangle, and where `tolerance` leaves the region uncertain.
     fn over(triangle: &Triangle<N, D>, center: &Point<N, D>, tolerance: N) -> Option<FeatureId>;
 
-    /// Returns the interval of times in which the line of a ray is inside a solid.
+    /// Returns the interval of times in which the line of a ray is inside a solid; `None` if it
+    /// misses.
     fn ray_span(solid: Kind<'_, N, D>, ray: &Ray<N, D>) -> Option<Span<N, D>>;
 
     /// Returns the first hit of a ray on a mesh.
@@ -158,7 +167,8 @@ pub trait ByDimension<N: Real, const D: usize>:
     where
         N: Space<D>;
 
-    /// Computes the first hits of many rays on a mesh; `false` if there is no algorithm for many.
+    /// Computes the first hits of many rays on a mesh. Returns `false` if there is no algorithm for
+    /// many rays.
     fn first_hits_on_mesh(
         mesh: &TriMesh<N, D>,
         batch: &RayBatch<'_, N, D>,
@@ -170,13 +180,13 @@ pub trait ByDimension<N: Real, const D: usize>:
     /// Returns the point of the boundary of a solid that is nearest to a point.
     fn surface_point(solid: Kind<'_, N, D>, point: &Point<N, D>) -> SurfacePoint<N, D>;
 
-    /// Returns a solid of revolution as a `Kind`; there is none in 2D.
+    /// Converts a solid of revolution to a `Kind`. The 2D implementation is unreachable.
     fn revolved(solid: &Revolved<N>) -> Kind<'_, N, D>;
 
-    /// Returns the convex hull of points; `None` if it has no volume.
+    /// Returns the convex hull of points; `None` if it has no area (2D) or volume (3D).
     fn hull(points: &[Point<N, D>]) -> Option<ShapeHandle<N, D>>;
 
-    /// Adds a convex solid to a sketch.
+    /// Adds the lines and triangles of a convex solid to a sketch.
     #[cfg(feature = "debug_render")]
     fn sketch(solid: Kind<'_, N, D>, sketch: &mut Sketch<N, D>);
 }

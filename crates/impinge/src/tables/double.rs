@@ -1,4 +1,4 @@
-//! The scalar `f64`; the feature `f64` enables this file.
+//! The implementation of the scalar `f64`, with the feature `f64`.
 
 use super::{Compiled, Here};
 use crate::math::{Real, f64_power_of_two_below};

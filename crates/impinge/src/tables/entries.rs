@@ -1,4 +1,4 @@
-//! Entry points of queries and of pairs.
+//! Entry points of queries, generators, the narrow phase and the broad phase.
 
 use super::{ByDimension, Here, compiled};
 use crate::bounding_volume::Ray;
@@ -24,38 +24,41 @@ use crate::query::{
 use crate::shape::{CompositeShape, FeatureId, Geometry, Kind, Shape};
 
 compiled! {
-    /// Entry points of queries and pairs, compiled once per scalar type and dimension.
+    /// Entries that are always called, compiled once for each scalar and dimension.
     trait Entries;
 
-    /// Computes the separation of two placed shapes, up to `limit`.
+    /// Computes the separation of two placed shapes in the world frame; `None` beyond `limit`.
     fn separation_in_world(
         one: &Placed<'_, N, D>,
         other: &Placed<'_, N, D>,
         limit: N,
     ) -> Option<Separation<N, D>> = separation::in_world;
 
-    /// Computes the deepest contact of two placed shapes, up to `limit`.
+    /// Computes the deepest contact of two placed shapes in the world frame; `None` beyond `limit`.
     fn contact_in_world(
         one: &Placed<'_, N, D>,
         other: &Placed<'_, N, D>,
         limit: N,
     ) -> Option<Separation<N, D>> = mesh::contact_in_world;
 
-    /// Computes the separation of two placed shapes, or an arbitrary overlap of their parts.
+    /// Computes the separation of two placed shapes in the world frame; `None` beyond `limit`. For
+    /// overlapping composites, returns the separation of any two overlapping parts.
     fn touching_in_world(
         one: &Placed<'_, N, D>,
         other: &Placed<'_, N, D>,
         limit: N,
     ) -> Option<Separation<N, D>> = separation::touching_in_world;
 
-    /// Computes the distance of two placed shapes alone.
+    /// Computes the distance of two placed shapes, without points; `None` beyond `limit`. The
+    /// result for an overlap is zero or negative.
     fn distance_in_world(
         one: &Placed<'_, N, D>,
         other: &Placed<'_, N, D>,
         limit: N,
     ) -> Option<N> = separation::distance_in_world;
 
-    /// Computes the nearest points of two placed shapes, optionally with features.
+    /// Computes the nearest points of two placed shapes; `None` beyond `limit`. Computes the
+    /// features of these points if `with_features` is true.
     fn witness_in_world(
         one: &Placed<'_, N, D>,
         other: &Placed<'_, N, D>,
@@ -63,27 +66,28 @@ compiled! {
         with_features: bool,
     ) -> Option<Witness<N, D>> = witness_of_placed;
 
-    /// Computes when and where two solids that move along lines touch.
+    /// Computes the time and place at which two solids that translate first touch.
     fn impact(
         one: &Moving<'_, N, D>,
         other: &Moving<'_, N, D>,
         options: &ImpactOptions<N>,
     ) -> Option<Impact<N, D>> = impact_of_pair;
 
-    /// Computes when two solids that move along lines touch.
+    /// Computes the time at which two solids that translate first touch.
     fn time_of_impact(
         one: &Moving<'_, N, D>,
         other: &Moving<'_, N, D>,
         options: &ImpactOptions<N>,
     ) -> Option<N> = time_of_pair;
 
-    /// Computes when and where two rotating solids touch.
+    /// Computes the time and place at which two solids that translate and rotate first touch.
     fn nonlinear_impact(
         flight: &Flight<'_, N, D>,
         options: &ImpactOptions<N>,
     ) -> Option<Impact<N, D>> = impact_of_flight;
 
-    /// Returns the interval of times in which the line of a ray is inside a solid.
+    /// Returns the interval of times in which the line of a ray is inside a solid; `None` if it
+    /// misses.
     fn ray_span(solid: Kind<'_, N, D>, ray: &Ray<N, D>) -> Option<Span<N, D>> =
         <Here as ByDimension<N, D>>::ray_span;
 
@@ -91,15 +95,16 @@ compiled! {
     fn surface_point(solid: Kind<'_, N, D>, point: &Point<N, D>) -> SurfacePoint<N, D> =
         <Here as ByDimension<N, D>>::surface_point;
 
-    /// Returns the part of a composite that is nearest to a point; with `touching` any part that
-    /// contains it.
+    /// Returns the part of a composite that is nearest to a point. If `touching` is true, any part
+    /// that contains the point may be returned.
     fn nearest_part(
         parts: &dyn CompositeShape<N, D>,
         point: &Point<N, D>,
         touching: bool,
     ) -> Option<PartPoint<N, D>> = composite::nearest_part;
 
-    /// Visits each part of a composite that a ray hits.
+    /// Calls `found` with the first hit of a ray on each part of a composite. `found` returns the
+    /// new maximum time of hits; a negative time ends the search.
     fn each_hit(
         parts: &dyn CompositeShape<N, D>,
         question: &RayQuestion<N, D>,
@@ -110,7 +115,7 @@ compiled! {
     fn is_crossed(parts: &dyn CompositeShape<N, D>, ray: &Ray<N, D>, max_time: N) -> bool =
         composite::is_crossed;
 
-    /// Updates the contacts of a single pair.
+    /// Updates the contacts of a generator for a single pair.
     fn update_generator(
         generator: &mut PairManifoldGenerator<N, D>,
         isometries: [&<N as math::Space<D>>::Isometry; 2],
@@ -119,19 +124,19 @@ compiled! {
         ids: &mut IdAllocator,
     ) = PairManifoldGenerator::refresh;
 
-    /// Returns the manifolds of a single pair in the public form, in the memory of `old`.
+    /// Returns the manifolds of a generator in the public form; reuses the memory of `old`.
     fn read_generator(
         generator: &PairManifoldGenerator<N, D>,
         old: Vec<ContactManifold<N, D>>,
     ) -> Vec<ContactManifold<N, D>> = PairManifoldGenerator::read;
 
-    /// Computes the manifolds of two placed shapes without state.
+    /// Computes the manifolds of two placed shapes without the contacts of an earlier step.
     fn manifolds_of_placed(
         placed: &[Placed<'_, N, D>; 2],
         request: &ManifoldRequest<N>,
     ) -> Vec<ContactManifold<N, D>> = narrow_phase::manifolds_of_placed;
 
-    /// Returns the manifold of two convex solids in the public form, in the memory of `old`.
+    /// Returns the manifold of two convex solids in the public form; reuses the memory of `old`.
     fn public_manifold(
         state: &ContactState<N, D>,
         placed: &[Placed<'_, N, D>; 2],
@@ -139,7 +144,8 @@ compiled! {
         old: ContactManifold<N, D>,
     ) -> ContactManifold<N, D> = ContactState::manifolds;
 
-    /// Returns the manifolds of a pair with a composite in the public form, in the memory of `old`.
+    /// Returns the manifolds of a pair with a composite in the public form; reuses the memory of
+    /// `old`.
     fn composite_manifolds(
         state: &CompositeState<N, D>,
         placed: &[Placed<'_, N, D>; 2],
@@ -147,34 +153,35 @@ compiled! {
         old: Vec<ContactManifold<N, D>>,
     ) -> Vec<ContactManifold<N, D>> = CompositeState::manifolds;
 
-    /// Returns a contact of a manifold view, with its kinematic.
+    /// Returns contact `index` of a manifold view, with its kinematic.
     fn tracked_contact(view: &ManifoldView<'_, N, D>, index: usize) -> TrackedContact<N, D> =
         ManifoldView::tracked;
 
-    /// Updates a narrow phase.
+    /// Updates the contacts and proximities of a narrow phase, and records the events.
     fn update_pairs(
         narrow_phase: &mut DefaultNarrowPhase<N, D>,
         table: &ObjectTable<N, D>,
         events: &mut Events,
     ) = DefaultNarrowPhase::update_pairs_here;
 
-    /// Updates a broad phase: `may_meet` filters, `changed` receives started and stopped pairs.
+    /// Updates a broad phase. `may_meet` returns whether a pair is allowed; `changed` receives each
+    /// pair that started (`true`) or stopped (`false`).
     fn find_pairs(
         finder: &mut PairFinder<N, D>,
         may_meet: &mut dyn FnMut(u32, u32) -> bool,
         changed: &mut dyn FnMut(u32, u32, bool),
     ) = PairFinder::update;
 
-    /// Adds a convex solid to a sketch.
+    /// Adds the lines and triangles of a convex solid to a sketch.
     #[cfg(feature = "debug_render")]
     fn sketch(solid: Kind<'_, N, D>, sketch: &mut Sketch<N, D>) = <Here as ByDimension<N, D>>::sketch;
 }
 
 compiled! {
-    /// Entries small enough to be inlined in an optimised program.
+    /// Entries that are small enough to be inlined in an optimised build.
     inlined trait SmallEntries;
 
-    /// Returns the pose of an isometry.
+    /// Converts an isometry to a pose.
     fn pose_of(isometry: IsometryRef<'_, N, D>) -> Pose<N, D> = math::pose_of;
 
     /// Computes the distance of two shapes.
@@ -185,7 +192,8 @@ compiled! {
         shape2: &dyn Shape<N, D>,
     ) -> N = query::distance_at;
 
-    /// Computes the contact of two shapes, up to a prediction.
+    /// Computes the deepest contact of two shapes; `None` if they are farther apart than
+    /// `prediction`.
     fn contact(
         isometry1: IsometryRef<'_, N, D>,
         shape1: &dyn Shape<N, D>,
@@ -194,7 +202,7 @@ compiled! {
         prediction: N,
     ) -> Option<Contact<N, D>> = query::contact_at;
 
-    /// Computes the nearest points of two shapes, up to a distance.
+    /// Computes the nearest points of two shapes that are at most `max_distance` apart.
     fn closest_points(
         isometry1: IsometryRef<'_, N, D>,
         shape1: &dyn Shape<N, D>,
@@ -203,7 +211,7 @@ compiled! {
         max_distance: N,
     ) -> ClosestPoints<N, D> = query::closest_points_at;
 
-    /// Computes whether two shapes intersect, are within a margin, or farther apart.
+    /// Computes whether two shapes intersect, are at most `margin` apart, or are farther apart.
     fn proximity_at(
         isometry1: IsometryRef<'_, N, D>,
         shape1: &dyn Shape<N, D>,
@@ -212,7 +220,8 @@ compiled! {
         margin: N,
     ) -> Proximity = query::proximity_at;
 
-    /// Computes the nearest points of two shapes with parts and features.
+    /// Computes the nearest points of two shapes, with their parts and features; `None` beyond
+    /// `max_distance`.
     fn witness(
         isometry1: IsometryRef<'_, N, D>,
         shape1: &dyn Shape<N, D>,
@@ -221,7 +230,7 @@ compiled! {
         max_distance: N,
     ) -> Option<Witness<N, D>> = query::witness_at;
 
-    /// Computes the manifolds of two shapes without state.
+    /// Computes the manifolds of two shapes without the contacts of an earlier step.
     fn contact_manifolds(
         isometry1: IsometryRef<'_, N, D>,
         shape1: &dyn Shape<N, D>,
@@ -231,7 +240,7 @@ compiled! {
         max_points: Option<usize>,
     ) -> Vec<ContactManifold<N, D>> = narrow_phase::contact_manifolds_at;
 
-    /// Creates a moving shape.
+    /// Creates a shape at a pose that moves with a constant velocity.
     fn moving<'a>(
         isometry: IsometryRef<'_, N, D>,
         velocity: &Vector<N, D>,
@@ -268,22 +277,23 @@ compiled! {
         point: &Point<N, D>,
     ) -> (PointProjection<N, D>, FeatureId) = point::project_on;
 
-    /// Returns the nearest point of a shape or its boundary and its location on the part, in the
-    /// frame of the shape.
+    /// Projects a point onto a shape, or onto its boundary if `solid` is false, and returns the
+    /// location of the projection. All points are in the frame of the shape.
     fn locate_on(
         shape: Geometry<'_, N, D>,
         point: &Point<N, D>,
         solid: bool,
     ) -> (PointProjection<N, D>, PointLocation<N>) = point::locate_on;
 
-    /// Returns the distance of a point from the boundary of a shape, negative inside, in its frame.
+    /// Returns the distance of a point in the frame of a shape from the shape's boundary, negative
+    /// inside.
     fn signed_distance_on(shape: Geometry<'_, N, D>, point: &Point<N, D>) -> N =
         point::signed_distance_on;
 
-    /// Returns `true` if a shape contains a point, in its frame.
+    /// Returns `true` if a shape contains a point in the frame of the shape.
     fn holds(shape: Geometry<'_, N, D>, point: &Point<N, D>) -> bool = point::holds;
 
-    /// Transforms a projection to the world frame.
+    /// Transforms the projection of `point` from the frame of a shape at `pose` to the world frame.
     fn placed_projection(
         local: &PointProjection<N, D>,
         pose: &Pose<N, D>,
@@ -291,10 +301,10 @@ compiled! {
         solid: bool,
     ) -> PointProjection<N, D> = point::placed;
 
-    /// Returns the normal of a manifold view, as stored and in the world frame.
+    /// Returns the normal of a manifold view twice: as stored, and in the world frame.
     fn own_normal(view: &ManifoldView<'_, N, D>) -> [Vector<N, D>; 2] = ManifoldView::own_normal;
 
-    /// Returns a contact of a manifold view, in the world frame.
+    /// Returns contact `index` of a manifold view, in the world frame.
     fn contact_of_view(
         view: &ManifoldView<'_, N, D>,
         index: usize,

@@ -1,19 +1,20 @@
-//! Entries, which are compiled in this crate instead of the caller, and algorithms by dimension.
+//! Entries (functions that are compiled in this crate instead of the caller's), and the algorithms
+//! that differ by dimension.
 //!
 //! Generic code is compiled where it is first used with concrete types: in the user's crate, at the optimisation level
-//! of that crate, and again after each change there. So the public functions of the library are thin shells around
-//! *entries*: functions that this crate compiles for each scalar and dimension. [`compiled!`] generates them from a
-//! list of signatures. A program links those that it calls and what they call.
+//! of that crate, and again after each change there. So the public functions of the library are thin generic wrappers
+//! around *entries*: functions that this crate compiles for each scalar and dimension. [`compiled!`] generates the
+//! entries from a list of signatures. A program links only the entries that it calls, and their callees.
 //!
 //! ```text
 //!   query::distance::<f32, 3>     generic, compiled in the user's crate
-//!     -> entries::distance_in_world::<f32, 3>     a shell, inlined
+//!     -> entries::distance_in_world::<f32, 3>     a wrapper, inlined
 //!          -> <Here as Entries<f32, 3>>::distance_in_world    not generic: compiled here, if its features are on
 //!               -> separation::distance_in_world::<f32, 3>    generic code again, compiled here with the entry
 //! ```
 //!
-//! Code that differs by dimension is a method of [`ByDimension`], which has one `impl` for each. This module stands
-//! beside the floors: it is the only one that lower floors may use to reach higher ones.
+//! Code that differs by dimension is a method of [`ByDimension`], which has one `impl` for each dimension. This module
+//! is on no floor of `ARCHITECTURE.md`: it is the only module through which lower floors may reach higher floors.
 
 mod by_dimension;
 #[cfg(feature = "f64")]
@@ -22,17 +23,19 @@ pub(crate) mod entries;
 
 pub(crate) use self::by_dimension::ByDimension;
 
-/// Declares entries: a trait with a method for each, its four implementations for [`Here`], and for each entry a
-/// function that is generic over `N: Space<D>` and calls the method for `N` and `D`.
+/// Declares entries. Generates a trait with a method for each entry, the implementations of this trait for [`Here`]
+/// (two scalars, two dimensions), and for each entry a generic function over `N: Space<D>` that calls the method for
+/// `N` and `D`.
 ///
-/// An `inlined trait` has entries that are too small to be called: if the user's build has no debug assertions, the
-/// generic code is compiled into the caller. In a debug build, which does not optimise the caller, a call is many times
-/// as fast, whether this crate is optimised there or not.
+/// An `inlined trait` has entries whose work is small compared with a call: in a build without debug assertions, their
+/// generic code is compiled into the caller. A build with debug assertions usually does not optimise the caller. There
+/// a call of the entry is many times as fast, even if this crate is not optimised either.
 ///
-/// A list `where feature = "…"` is compiled here only with that feature.
+/// Entries of a list `where feature = "…"` are compiled in this crate only with that feature, else
+/// in the crates that call them.
 ///
-/// Signatures use `N` and `D`, which are concrete where targets are named. Without the feature of a dimension its
-/// entries are compiled where they are used, which is nowhere.
+/// Signatures use `N` and `D`, which are concrete types and numbers in the implementations. Without the feature of a
+/// dimension, its entries are `#[inline]` functions that no one calls, so they are not compiled.
 macro_rules! compiled {
     ($(#[$about:meta])* trait $entries:ident; $($list:tt)*) => {
         $crate::tables::compiled! { @list called, all(); $(#[$about])* trait $entries; $($list)* }
@@ -119,13 +122,13 @@ macro_rules! compiled {
 }
 pub(crate) use compiled;
 
-/// Implements the entries and algorithms of all scalars and dimensions. A separate type, so that a user's `N` does not
-/// get methods of the library.
+/// The type that implements the entries and algorithms of all scalars and dimensions. They are not methods of the
+/// scalar, since these would be visible on a user's `N`.
 #[expect(unnameable_types, reason = "for this crate alone")]
 #[derive(Debug)]
 pub struct Here;
 
-/// A scalar with entries in `D` dimensions. Sealed, since it cannot be named outside.
+/// A scalar with entries in `D` dimensions. The trait is sealed: other crates cannot name it.
 #[expect(unnameable_types, reason = "for this crate alone")]
 pub trait Compiled<const D: usize>: Sized {
     /// Always [`Here`].

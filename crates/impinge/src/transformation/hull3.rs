@@ -6,7 +6,7 @@ use super::span::{Scaled, first_four};
 use crate::math::{Mapped, Point, Real, Vector};
 use crate::shape::{ConvexHull, ShapeError};
 
-/// A convex hull as indices of the points it was computed from.
+/// A convex hull as indices of the points from which it was computed.
 ///
 /// ```
 /// use impinge::dim3::math::Point;
@@ -135,7 +135,7 @@ impl Grown {
 }
 
 /// Returns the used vertices in ascending order, and for each old vertex its index among the used
-/// ones.
+/// vertices.
 fn numbered(count: usize, corners: impl Iterator<Item = u32>) -> (Vec<usize>, Vec<u32>) {
     let (mut new_indices, mut used) = (vec![0; count], Vec::with_capacity(count));
     corners.for_each(|corner| new_indices[at(corner)] = 1);

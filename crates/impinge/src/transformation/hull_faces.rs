@@ -9,8 +9,8 @@ use crate::math::{Mapped, Point, Vector};
 
 type P3 = Point<f64, 3>;
 
-/// Whether the smaller of two neighboring triangles lies in the plane of the larger one, within the
-/// tolerance.
+/// Returns whether the smaller of two neighboring triangles lies in the plane of the larger one,
+/// within the tolerance.
 fn is_flat(facet1: &Facet, facet2: &Facet, points: &Scaled<3>) -> bool {
     let is_first_larger = facet1.doubled_area >= facet2.doubled_area;
     let (large, small) = if is_first_larger { (facet1, facet2) } else { (facet2, facet1) };
@@ -18,7 +18,7 @@ fn is_flat(facet1: &Facet, facet2: &Facet, points: &Scaled<3>) -> bool {
     far.all(|&corner| large.height(&points.points, corner).abs() <= points.flat())
 }
 
-/// Returns vertices, no two of them adjacent, whose removal changes the hull by at most `flat`.
+/// Returns vertices whose removal changes the hull by at most `flat`; no two of them are adjacent.
 /// Each lies on the segment between two neighbors or in the plane of all its neighbors.
 pub(super) fn redundant(facets: &[Facet], scaled: &Scaled<3>) -> Vec<u32> {
     let points = &scaled.points;
@@ -70,8 +70,8 @@ fn ring_around(vertex: u32, first: u32, facets: &[Facet]) -> Vec<u32> {
     ring
 }
 
-/// Whether a vertex lies, within `flat`, on the segment between two neighbors, or is surrounded by
-/// its neighbors in one plane.
+/// Returns whether a vertex lies, within `flat`, on the segment between two neighbors, or in one
+/// plane with all its neighbors and surrounded by them.
 fn is_inside(vertex: &P3, neighbors: &[P3], flat: f64) -> bool {
     let pairs =
         neighbors.iter().enumerate().flat_map(|(i, a)| neighbors[..i].iter().map(move |b| (a, b)));
@@ -83,9 +83,9 @@ fn is_inside(vertex: &P3, neighbors: &[P3], flat: f64) -> bool {
         || widest_normal(vertex, pairs).is_some_and(is_amid)
 }
 
-/// Whether the projection along `normal` has neighbors on both sides of each line from the vertex
-/// to a neighbor. False at the rim of a solid hardly thicker than rounding: all neighbors lie in
-/// one plane, but on one side of the vertex.
+/// Returns whether the projection along `normal` has neighbors on both sides of each line from the
+/// vertex to a neighbor. False at the rim of a solid that is almost as thin as rounding errors: all
+/// neighbors lie in one plane, but on one side of the vertex.
 fn is_surrounded(vertex: &P3, neighbors: &[P3], normal: &Vector<f64, 3>) -> bool {
     neighbors.iter().all(|to| {
         let across = normal.cross(&(to - vertex));
@@ -150,8 +150,8 @@ impl FaceRings {
     }
 
     /// Removes each vertex that only two faces share, if it lies on a straight line between its
-    /// neighbors in both. Returns false if such a vertex is not on a straight line, as where two
-    /// nearly coplanar faces meet all around: a vertex with two sides is invalid.
+    /// neighbors in both. Returns false if such a vertex is not on a straight line, as at a closed
+    /// seam between two nearly coplanar faces: a vertex with two sides is invalid.
     fn straighten(&mut self, scaled: &Scaled<3>) -> bool {
         let mut uses = vec![(0_u32, [0; 2]); scaled.points.len()];
         for (face, ring) in self.rings().enumerate() {
@@ -184,7 +184,7 @@ impl FaceRings {
         self.is_closed()
     }
 
-    /// Whether each side of a face occurs, reversed, in exactly one other face.
+    /// Returns whether each side of a face occurs, reversed, in exactly one other face.
     fn is_closed(&self) -> bool {
         let sides = self.rings().flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
         let mut forward: Vec<(u32, u32)> = sides.map(|(&from, &to)| (from, to)).collect();
@@ -195,7 +195,7 @@ impl FaceRings {
     }
 }
 
-/// Whether a vertex of a ring lies on the segment between the vertices before and after it.
+/// Returns whether a vertex of a ring lies on the segment between the vertices before and after it.
 fn is_straight(ring: &[u32], vertex: u32, scaled: &Scaled<3>) -> bool {
     let Some(index) = ring.iter().position(|&corner| corner == vertex) else { return false };
     let corner = |step: usize| &scaled.points[at(ring[(index + step) % ring.len()])];
@@ -220,7 +220,7 @@ pub(super) fn faces(facets: &[Facet], scaled: &Scaled<3>) -> FaceRings {
 struct Merger<'a> {
     facets: &'a [Facet],
     scaled: &'a Scaled<3>,
-    /// For each facet, whether it is part of a face already.
+    /// For each facet, whether a face already contains it.
     is_taken: Vec<bool>,
     /// For each vertex, one more than the seed of the last face that contains it.
     in_face_of: Vec<u32>,
@@ -292,8 +292,8 @@ impl<'a> Merger<'a> {
         let Some(shared) = facet.corners.iter().position(|&corner| corner == from) else {
             return false;
         };
-        // In the facet beyond, the side runs backwards, to `from`; then follow the far corner and
-        // the side back.
+        // In the facet beyond, the side runs backwards and ends at `from`. The far corner follows
+        // `from`, and the remaining side leads back.
         let far = facet.corners[(shared + 1) % 3];
         let Scaled { points, .. } = self.scaled;
         let is_coplanar = || self.facets[at(seed)].height(points, far).abs() <= self.scaled.flat();
@@ -309,7 +309,7 @@ impl<'a> Merger<'a> {
         true
     }
 
-    /// Whether the loop stays convex, within the tolerance, when `far` is inserted after
+    /// Returns whether the loop stays convex, within the tolerance, when `far` is inserted after
     /// `position`.
     fn stays_convex(&self, seed: u32, position: usize, far: u32) -> bool {
         let count = self.ring.len();

@@ -1,8 +1,8 @@
 //! Exact areas and volumes for points on the lattice of multiples of 2⁻⁶⁰ with coordinates below 2.
 //!
-//! Times 2⁶⁰ such a coordinate is an integer of 61 bits and a sign. A difference of two has 62
-//! bits, and a 2×2 minor of differences 125, which fits an `i128`. A volume has about 190 bits, so
-//! its minors are split in two. No product underflows.
+//! Multiplied by 2⁶⁰, such a coordinate is an integer of 61 bits and a sign. A difference of two
+//! coordinates has 62 bits. A 2×2 minor of differences has 125 bits, which fit an `i128`. A volume
+//! has about 190 bits, so its minors are split in two. No product underflows.
 
 use crate::math::{Mapped, Point, Vector, filled};
 
@@ -75,9 +75,9 @@ pub(super) fn area_vector([a, b, c]: [&P3; 3]) -> Vector<f64, 3> {
     Vector::from(minors(offset(b, a), offset(c, a)).mapped(area_of))
 }
 
-/// Returns six times the volume of the tetrahedron, accurate to the last digits. Positive if `q`
-/// lies on the side of the triangle from which its corners appear counter-clockwise; exactly 0 if
-/// it lies in the plane.
+/// Returns six times the volume of the tetrahedron, accurate up to rounding. Positive if `q` lies
+/// on the side of the triangle from which its corners appear counter-clockwise; exactly 0 if `q`
+/// lies in the plane of the triangle.
 #[expect(clippy::cast_possible_truncation, reason = "an upper half has 62 bits, a lower one 63")]
 #[expect(clippy::cast_precision_loss, reason = "rounds to nearest")]
 #[cold]

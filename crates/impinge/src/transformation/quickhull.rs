@@ -49,8 +49,8 @@ impl Facet {
         let (u, v) = (b - a, c - a);
         let mut across = u.cross(&v);
         // The cross product has a rounding error of 2⁻⁵⁰ times the product of the two lengths. That
-        // is 2⁻⁴⁵ of its own length if this is 1/32 of the product; a shorter one is recomputed
-        // exactly.
+        // is at most 2⁻⁴⁵ of its own length if this is at least 1/32 of the product. A shorter
+        // cross product is recomputed exactly.
         if across.norm_squared() * 1024.0 < u.norm_squared() * v.norm_squared() {
             across = area_vector(corner_points);
         }
@@ -122,7 +122,6 @@ pub(super) fn index_of(position: usize) -> u32 {
 
 impl<'a> HullSurface<'a> {
     /// Returns the facets of the hull, grown from a tetrahedron of four of the points; `None` if
-    /// Returns the facets of the hull, grown from a tetrahedron of four of the points; `None` if
     /// these four are coplanar.
     pub(super) fn grown(points: &'a [P3], first: [u32; 4], tolerance: f64) -> Option<Vec<Facet>> {
         let mut surface = Self {
@@ -172,8 +171,9 @@ impl<'a> HullSurface<'a> {
         Some(())
     }
 
-    /// Puts a point into the list of the facet, among those from index `first` on, over which it is
-    /// highest. If it is in front of none of them, it is dropped: it is inside for good.
+    /// Puts a point into the list of the facet over which it is highest, among the facets with an
+    /// index of at least `first`. If it is in front of none of them, it is dropped: it stays inside
+    /// the growing surface.
     ///
     /// A point that is outside, and was in front of a removed facet, is in front of one of the
     /// facets that replaced it.
@@ -189,8 +189,8 @@ impl<'a> HullSurface<'a> {
         }
     }
 
-    /// Returns the facet, among those from index `first` on, with the largest height, and that
-    /// height.
+    /// Returns the facet with the largest height among the facets with an index of at least
+    /// `first`, and that height.
     #[inline]
     fn highest(&self, first: u32, height: impl Fn(&Facet) -> f64) -> (u32, f64) {
         let (mut best, mut top) = (NONE, f64::NEG_INFINITY);
@@ -214,8 +214,9 @@ impl<'a> HullSurface<'a> {
         core::iter::successors(first, next).map(|point| (point, self.waiting[at(point)].height))
     }
 
-    /// Returns the point with the largest height over a facet, the first if there are coinciding
-    /// points; `None` if that height is within the tolerance.
+    /// Returns the point with the largest height over a facet; `None` if that height is within the
+    /// tolerance. Among points within a quarter of the tolerance of the largest height, the last in
+    /// order of coordinates wins, and the first of coinciding points.
     fn farthest(&self, facet: u32) -> Option<u32> {
         let top = self.waiting_at(facet).fold(0.0, |top, (_, height)| larger(top, height));
         if top <= self.tolerance {
@@ -230,7 +231,9 @@ impl<'a> HullSurface<'a> {
         tied.map(|(point, _)| point).reduce(later)
     }
 
-    /// Extends the surface to the point with the largest height over a facet.
+    /// Extends the surface to the point with the largest height over a facet. Appends the new
+    /// facets to `pending`. Does nothing for a removed facet, or if no point is higher than the
+    /// tolerance.
     fn raise(&mut self, facet: u32, pending: &mut Vec<u32>) {
         if self.facets[at(facet)].visited == GONE {
             return;

@@ -32,8 +32,8 @@ impl<const D: usize> Scaled<D> {
         Ok(Self { points: points.iter().map(scaled).collect(), unit })
     }
 
-    /// Returns the tolerance: a point closer than this to the span of the others is treated as part
-    /// of it.
+    /// Returns the tolerance: a point closer than this to the span of other points is treated as
+    /// part of that span.
     pub(super) fn flat(&self) -> f64 {
         4.0 * self.unit
     }
@@ -52,9 +52,9 @@ pub(super) fn direction<const D: usize>(v: &Vector<f64, D>) -> Option<(Vector<f6
     (length > 0.0).then(|| (v / length, length))
 }
 
-/// Whether `a` comes before `b` by the first coordinate that differs. Among points equally far
-/// along some direction the last one is a corner of the hull, never the interior of an edge or of a
-/// face.
+/// Returns whether `a` comes before `b` by the first coordinate that differs. Among points equally
+/// far along some direction, the last in this order is a corner of the hull, never in the interior
+/// of an edge or a face.
 pub(super) fn precedes<const D: usize>(a: &Point<f64, D>, b: &Point<f64, D>) -> bool {
     (0..D).find(|&axis| a[axis] != b[axis]).is_some_and(|axis| a[axis] < b[axis])
 }

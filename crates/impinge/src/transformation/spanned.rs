@@ -36,8 +36,8 @@ pub fn convex_shape2<N: Real>(points: &[Point<N, 2>]) -> Result<ShapeHandle<N, 2
 
 /// Returns the convex hull of at least one point: a [`ConvexHull`]. If all points lie in a plane
 /// within rounding, as in [`convex_hull3`](super::convex_hull3), returns a [`Triangle`] or, for
-/// more corners, the [`TriMesh`] of a flat polygon with two sides. If all lie on a line, returns a
-/// [`Segment`], without length if they coincide.
+/// more corners, the [`TriMesh`] of a flat polygon with two sides. If all points lie on a line,
+/// returns a [`Segment`], without length if they coincide.
 ///
 /// # Errors
 /// If there are no points, or a coordinate is not finite.
@@ -66,8 +66,8 @@ pub fn convex_shape3<N: Real>(points: &[Point<N, 3>]) -> Result<ShapeHandle<N, 3
     }
 }
 
-/// Returns `Ok` if the error means only that the points span no solid, perhaps because they are
-/// few; else the error.
+/// Returns `Ok` if the error only means that the points span no solid, possibly because there are
+/// too few; else returns the error.
 fn without_volume(error: ShapeError) -> Result<(), ShapeError> {
     match error {
         ShapeError::Degenerate { .. } | ShapeError::TooFewPoints { given: 1.., .. } => Ok(()),

@@ -11,7 +11,7 @@ use crate::memory::clone_fields;
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType, ObjectRow, PackedQuery};
 use crate::shape::{Compact, Geometry, Shape, ShapeHandle};
 
-/// The broad phase of a world, of any type.
+/// The broad phase of a world, as a trait object.
 pub(crate) type WorldBroadPhase<N, const D: usize> = dyn WorldsBroadPhase<N, D>;
 
 /// State bit: the narrow phase tests the object against itself.
@@ -20,14 +20,14 @@ const SELF_PAIR: u32 = 1 << 31;
 const FIXED: u32 = 1 << 30;
 /// State bit: the volume in the broad phase also covers a predicted pose.
 const PREDICTED: u32 = 1 << 29;
-/// Mask of the object's index in the list of changes; all bits are set if the object is not in the
-/// list.
+/// Mask of the bits with the object's index in the list of changes. All of these bits are set if
+/// the object is not in the list.
 const CHANGE_INDEX: u32 = PREDICTED - 1;
-/// Greatest number of entries in the list of changes, and so of objects.
+/// Maximum number of entries in the list of changes, and therefore of objects.
 pub(super) const MAX_CHANGES: u32 = CHANGE_INDEX;
 
-/// An object as the user last set it; the phases have copies as of the last update. 96 bytes for
-/// `f32` in 3D.
+/// An object as the user last set it, without the user's data. The two phases have copies as of the
+/// last update. Takes 96 bytes for `f32` in 3D.
 ///
 /// Fields that queries read are adjacent, from `isometry` to `groups`:
 ///
@@ -39,7 +39,7 @@ pub(super) const MAX_CHANGES: u32 = CHANGE_INDEX;
 pub(crate) struct WorldBody<N: Space<D>, const D: usize> {
     pub(crate) shape: ShapeHandle<N, D>,
     pub(crate) isometry: N::Isometry,
-    /// A copy of the shape's numbers, if the shape is small enough.
+    /// A copy of the radius of a ball or the half extents of a box; a marker for any other shape.
     solid: Compact<N, D>,
     pub(crate) proxy: ProxyHandle,
     /// [`SELF_PAIR`], [`FIXED`] and [`PREDICTED`] in the high bits, the index in the list of
@@ -54,8 +54,8 @@ clone_fields!([N: Space<D>, const D: usize] WorldBody<N, D> {
     shape, isometry, solid, proxy, state, handle, groups, query,
 });
 
-/// The fields of a body that change when it moves, and when an update processes the move. With
-/// marks, these are recorded.
+/// The fields of a body that change when it moves, and when an update processes the move. While the
+/// world has marks, a move records them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BodyMotion<N: Space<D>, const D: usize> {
     isometry: N::Isometry,
@@ -121,7 +121,7 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         self.state & FIXED != 0
     }
 
-    /// Returns `true` unless both objects are fixed or the groups of one refuse the other.
+    /// Returns `true` unless both objects are fixed, or the groups do not allow the pair.
     #[inline]
     pub(crate) const fn can_interact(&self, other: &Self) -> bool {
         self.state & other.state & FIXED == 0 && self.groups.can_interact_with_groups(&other.groups)
@@ -144,13 +144,14 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         usable(self.solid.aabb(&self.shape, pose))
     }
 
-    /// Returns the prediction or margin by which the broad phase grows the box; see
+    /// Returns the prediction or margin by which the broad phase grows the object's box; see
     /// [`GeometricQueryType::query_limit`].
     pub(crate) fn query_limit(&self) -> N {
         self.query.get().query_limit()
     }
 
-    /// Evaluates `question` on the geometry. Does not load the shape if the body has a copy of it.
+    /// Calls `question` with the geometry of the shape and returns its result. Does not load a ball
+    /// or a box, of which the body has a copy.
     #[inline(always)]
     pub(crate) fn ask<R>(&self, question: impl FnOnce(Geometry<'_, N, D>) -> R) -> R {
         self.solid.ask(&self.shape, question)
@@ -161,13 +162,13 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         self.state & PREDICTED != 0
     }
 
-    /// Marks the object as fixed, as it was before it was saved.
+    /// Marks an object as fixed that is restored from a saved world.
     #[cfg(feature = "serde")]
     pub(super) const fn restore_fixed(&mut self) {
         self.state |= FIXED;
     }
 
-    /// Marks the pose of the object as predicted, as it was before it was saved.
+    /// Marks an object as having a predicted pose that is restored from a saved world.
     #[cfg(feature = "serde")]
     pub(super) const fn restore_predicted(&mut self) {
         self.state |= PREDICTED;
@@ -184,8 +185,8 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
     }
 
     /// Moves the object and clears its prediction. Fails if a number of the isometry is not finite,
-    /// or its rotation is not of unit length. An object that is already there does not become
-    /// changed.
+    /// or its rotation is not of unit length. An object without a prediction that is already at
+    /// `isometry` is not marked as changed.
     pub(crate) fn set_isometry(
         &mut self,
         list: &mut ChangeList<N, D>,

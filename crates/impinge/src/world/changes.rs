@@ -1,9 +1,9 @@
-//! Changes since the last update. The next update writes them to the phases; until then queries
-//! find them here.
+//! Changes since the last update. The next update writes them to the broad phase and the object
+//! table; until then queries read them here.
 //!
 //! The broad phase has the boxes of the last update. Objects whose boxes changed since then are
-//! dirty. The first query after a change builds a [`DirtyTree`] of them, and each later change
-//! updates it. Without queries there is no such tree.
+//! dirty. The first query after a change builds a [`DirtyTree`] of their boxes, and each later
+//! change updates the tree. Without queries no tree is built.
 
 use super::entries;
 use std::sync::OnceLock;
@@ -24,9 +24,11 @@ const GONE: u32 = u32::MAX;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct BodyChanges {
-    /// Another object, shape or query type: the whole row of the table must be written.
+    /// Whether the whole row of the object table must be written: the object is new, or its shape,
+    /// query type or skin changed.
     row: bool,
-    /// Whether the shape, query type or skin changed of an object that may have pairs.
+    /// Whether the shape, query type or skin changed, so that the algorithms of the object's pairs
+    /// must be chosen again.
     algorithm: bool,
     /// Whether the volume in the broad phase is out of date, so that the object is dirty.
     volume: bool,
@@ -40,7 +42,8 @@ pub(crate) struct BodyEntry<N: Real, const D: usize> {
     /// Handle index, or [`GONE`] if the object was removed.
     index: u32,
     changes: BodyChanges,
-    /// Exact box of the shape at the present pose; the unbounded box if the volume has not changed.
+    /// Exact box of the shape at the present pose. The unbounded box, which is not read, if
+    /// `changes.volume` is `false`.
     aabb: Aabb<N, D>,
 }
 
@@ -66,7 +69,7 @@ clone_fields!([N: Space<D>, const D: usize] ChangeList<N, D> {
     entries, predictions, skins, dirty, order, self_changed,
 });
 
-/// The parts that receive the changes at the start of an update.
+/// The parts of a world that receive the changes at the start of an update.
 pub(crate) struct ChangeTargets<'a, N: Space<D>, const D: usize> {
     pub(crate) table: &'a mut ObjectTable<N, D>,
     pub(crate) broad_phase: &'a mut WorldBroadPhase<N, D>,
@@ -86,8 +89,8 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         }
     }
 
-    /// Creates the body of a new object. `proxy` registers the object's volume in the broad phase
-    /// and returns its handle.
+    /// Creates the body of a new object, and records the object as changed. `proxy` registers the
+    /// object's volume in the broad phase and returns its handle.
     pub(crate) fn new_body(
         &mut self,
         row: ObjectRow<N, D>,
@@ -106,7 +109,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         body.is_predicted().then(|| &self.predictions[body.index() as usize])
     }
 
-    /// Returns the skin of an object, 0 by default.
+    /// Returns the skin of the object with handle index `index`; 0 by default.
     pub(crate) fn skin(&self, index: u32) -> N {
         self.skins.get(index as usize).copied().unwrap_or(N::ZERO)
     }
@@ -125,8 +128,8 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         self.predictions[index] = predicted;
     }
 
-    /// Returns the volume of an object in the broad phase: its exact box, merged with the box at
-    /// the predicted pose and grown by query limit and skin.
+    /// Returns the volume of an object in the broad phase: the box of its shape, merged with the
+    /// box at the predicted pose if there is a prediction, and grown by query limit and skin.
     pub(crate) fn volume(&self, body: &WorldBody<N, D>) -> Aabb<N, D> {
         self.volume_around(body, &body.aabb())
     }
@@ -171,12 +174,14 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         self.dirty_indices().count()
     }
 
-    /// Iterates over the boxes of the dirty objects, each with its index in this list.
+    /// Iterates over the boxes of the dirty objects, grown by the slack for rounding. Each comes
+    /// with its index in this list.
     pub(crate) fn dirty_boxes(&self) -> impl Iterator<Item = (u32, Aabb<N, D>)> {
         self.dirty_indices().map(|change_index| (change_index, self.box_at(change_index)))
     }
 
-    /// Returns the box of an object; `None` unless the object is dirty.
+    /// Returns the box of a dirty object, grown by the slack for rounding; `None` if the object is
+    /// not dirty.
     pub(crate) fn dirty_box(&self, body: &WorldBody<N, D>) -> Option<Aabb<N, D>> {
         let change_index = body.change_index().filter(|_| self.is_dirty(body))?;
         Some(self.box_at(change_index))
@@ -190,13 +195,14 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
             .map(|(change_index, _)| change_index)
     }
 
-    /// Returns the box of the dirty object at index `change_index`, grown by the slack for rounding.
+    /// Returns the box of the dirty object at index `change_index`, grown by the slack for
+    /// rounding.
     fn box_at(&self, change_index: u32) -> Aabb<N, D> {
         grown(&self.entries[change_index as usize].aabb, N::ZERO)
     }
 
     /// Returns the tree that queries search in addition to the broad phase, or instead of it. The
-    /// first call after an update builds it with `make`. `None` if nothing changed.
+    /// first call after an update builds the tree with `make`. `None` if no object changed.
     pub(crate) fn dirty_tree(&self, make: impl FnOnce() -> DirtyTree<D>) -> Option<&DirtyTree<D>> {
         if self.entries.is_empty() {
             return None;
@@ -215,14 +221,14 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         self.dirty.get()
     }
 
-    /// Returns the handle index of the object that has the id `id` in the tree.
+    /// Returns the handle index of the object with id `id` in the tree.
     #[inline]
     pub(crate) fn dirty_index(&self, tree: &DirtyTree<D>, id: u32) -> u32 {
         if tree.has_all() { id } else { self.entries[id as usize].index }
     }
 
-    /// Takes the sorted list of the handle indices of the changed objects. [`Self::clear`] returns
-    /// its memory.
+    /// Takes the sorted list of the handle indices of the changed objects. [`Self::clear`] takes
+    /// the list back and reuses its memory.
     pub(crate) fn take_order(&mut self) -> Vec<u32> {
         let mut order = core::mem::take(&mut self.order);
         order.extend(self.entries.iter().map(|entry| entry.index).filter(|&index| index != GONE));
@@ -261,8 +267,8 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         }
     }
 
-    /// Clears all changes, except the list of objects whose self-pairs change. `order` is the list
-    /// of [`Self::take_order`].
+    /// Clears all changes, except the list of objects whose pair with themselves begins or ends.
+    /// `order` is the list of [`Self::take_order`].
     pub(crate) fn clear(&mut self, mut order: Vec<u32>) {
         order.clear();
         self.order = order;
@@ -270,7 +276,8 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         self.dirty.take();
     }
 
-    /// Takes the handle indices of the objects whose self-pairs begin or end, as of the last flush.
+    /// Takes the handle indices of the objects whose pair with themselves begins or ends, as of the
+    /// last flush.
     pub(crate) fn take_self_changed(&mut self) -> Vec<u32> {
         core::mem::take(&mut self.self_changed)
     }
@@ -323,8 +330,8 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         &mut self.entries[change_index as usize].changes
     }
 
-    /// Updates the box of an object in the dirty tree. Drops the tree if it has had too many
-    /// changes.
+    /// Updates the box of an object in the dirty tree. Drops the tree if it has had so many changes
+    /// that it needs a rebuild.
     #[cold]
     fn update_dirty_tree(&mut self, body: &WorldBody<N, D>, change_index: u32) {
         let aabb = self.box_at(change_index);
@@ -336,7 +343,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         }
     }
 
-    /// Adds an object to the list, unless it is already there; returns its index.
+    /// Adds an object to the list, unless it is already there; returns its index in the list.
     #[inline]
     fn note(&mut self, body: &mut WorldBody<N, D>) -> u32 {
         body.change_index().unwrap_or_else(|| {
@@ -351,19 +358,20 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         &self.entries
     }
 
-    /// Replaces the list of changes by `entries`, for a rewind.
+    /// Replaces the entries by `entries`, for a rewind.
     pub(super) fn go_back(&mut self, entries: &[BodyEntry<N, D>]) {
         self.entries.clear();
         self.entries.extend_from_slice(entries);
         self.dirty.take();
     }
 
-    /// Returns the pose stored at an index; it is meaningless if the object has no prediction.
+    /// Returns the pose in `predictions` at a handle index, which is meaningless for an object
+    /// without a prediction; `None` beyond the end of the array.
     pub(super) fn known_prediction(&self, index: u32) -> Option<N::Isometry> {
         self.predictions.get(index as usize).copied()
     }
 
-    /// Restores the skin and the stored prediction of an object, for a rewind.
+    /// Restores the skin and the stored predicted pose of an object, for a rewind.
     pub(super) fn keep(&mut self, index: u32, skin: N, prediction: Option<N::Isometry>) {
         if skin != self.skin(index) {
             self.put_skin(index, skin);
@@ -373,13 +381,14 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         }
     }
 
-    /// Returns the changes of an object since the last update.
+    /// Returns the changes of an object since the last update; `None` if the object is not in the
+    /// list.
     #[cfg(feature = "serde")]
     pub(super) fn of_body(&self, body: &WorldBody<N, D>) -> Option<BodyChanges> {
         body.change_index().map(|change_index| self.entries[change_index as usize].changes)
     }
 
-    /// Restores the changes of an object since the last update.
+    /// Restores the changes of an object since the last update, for an object of a saved world.
     #[cfg(feature = "serde")]
     pub(super) fn restore_changes(&mut self, body: &mut WorldBody<N, D>, changes: BodyChanges) {
         let (change_index, aabb) = (self.note(body), body.aabb());
@@ -390,7 +399,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         }
     }
 
-    /// Checks that the entry at the index of an object is its own.
+    /// Checks that the entry at the body's index in the list belongs to that object.
     pub(crate) fn validate(&self, body: &WorldBody<N, D>) -> Result<(), String> {
         match body.change_index().map(|change_index| self.entries.get(change_index as usize)) {
             Some(entry) if entry.map(|entry| entry.index) != Some(body.index()) => {

@@ -8,7 +8,7 @@ use crate::math::Space;
 const DEFAULT_MARGIN: f64 = 0.02;
 
 /// Creates an empty world with margin 0.02, which suits objects of size 1. The margin never affects
-/// exact results; [`CollisionWorld::new`] takes another one.
+/// exact results; [`CollisionWorld::new`] has it as an argument.
 impl<N: Space<D>, const D: usize, T> Default for CollisionWorld<N, D, T> {
     fn default() -> Self {
         Self::new(N::lit(DEFAULT_MARGIN))

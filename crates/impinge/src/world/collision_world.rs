@@ -1,5 +1,5 @@
-//! The world: objects are added and changed by handle; pairs, contacts and events follow at the
-//! next update.
+//! The world: objects are added, changed and removed by handle. Pairs, contacts and events change
+//! at the next update.
 //!
 //! An operation that fails has changed nothing.
 
@@ -25,8 +25,8 @@ use crate::shape::ShapeHandle;
 ///
 /// Objects are added, moved, changed and removed by handle. [`Self::update`] then finds the pairs
 /// (broad phase), computes their contacts and proximities (narrow phase), and collects the events
-/// since the previous update. Queries of the world see every change at once; pairs, contacts and
-/// events are those of the last update.
+/// since the previous update. Queries of the world reflect every change at once; pairs, contacts
+/// and events are those of the last update.
 ///
 /// `T` is the user's data, which the world stores and never accesses. It need not be `Send` or
 /// `Sync`; the world is `Send` or `Sync` if `T` is. All orders are canonical, by handle.
@@ -55,7 +55,8 @@ pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
     pub(super) objects: CollisionObjects<N, D, T>,
     pub(super) broad_phase: Box<WorldBroadPhase<N, D>>,
     pub(super) narrow_phase: Box<dyn WorldsNarrowPhase<N, D, T>>,
-    /// The phases that replace the present ones at the next update; `None` if those stay.
+    /// The phases that replace the present phases at the next update; `None` if a phase is not
+    /// replaced.
     pub(super) next_broad_phase: Option<Box<WorldBroadPhase<N, D>>>,
     pub(super) next_narrow_phase: Option<Box<dyn WorldsNarrowPhase<N, D, T>>>,
     pub(super) filters: Filters<N, D, T>,
@@ -81,9 +82,9 @@ pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Creates an empty world.
     ///
-    /// `margin` is the distance by which the broad phase loosens each box on every side, so that
-    /// objects that move less cost little. A fiftieth of the size of a typical object is a good
-    /// value. The margin never affects exact results.
+    /// `margin` is the distance by which the broad phase loosens each box on every side. An object
+    /// costs little while its box stays within the loosened box. A fiftieth of the size of a
+    /// typical object is a good value. The margin never affects exact results.
     ///
     /// # Panics
     /// If the margin is negative or not finite; [`Self::try_new`] returns an error instead.
@@ -119,12 +120,12 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         })
     }
 
-    /// Adds an object and returns its handle. Queries see it at once, and pairs follow at the next
-    /// update.
+    /// Adds an object and returns its handle. Queries find the object at once, and pairs follow at
+    /// the next update.
     ///
     /// `query_type` is a [`GeometricQueryType`], a
     /// [`ContactQuery`](crate::narrow_phase::ContactQuery) or a
-    /// [`ProximityQuery`](crate::narrow_phase::ProximityQuery); the last two name their numbers.
+    /// [`ProximityQuery`](crate::narrow_phase::ProximityQuery). The last two have named fields.
     ///
     /// # Panics
     /// If a number of the position is not finite, the rotation is not of unit length, a number of
@@ -214,9 +215,9 @@ fn refuse_repeated(handles: &[CollisionObjectHandle]) -> Result<(), WorldError> 
     }
 }
 
-/// Changing objects in place.
+/// Changing objects.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Moves an object. Queries see the move at once, and pairs follow at the next update.
+    /// Moves an object. Queries use the new position at once, and pairs follow at the next update.
     ///
     /// # Panics
     /// If the handle is stale, a number of the position is not finite, or the rotation is not of
@@ -270,8 +271,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         Ok(())
     }
 
-    /// Replaces the shape of an object. Queries see it at once; the object's pairs are computed
-    /// anew at the next update.
+    /// Replaces the shape of an object. Queries use the new shape at once; the object's pairs are
+    /// computed anew at the next update.
     ///
     /// # Panics
     /// If the handle is stale; [`Self::try_set_shape`] returns an error instead.
@@ -294,7 +295,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         Ok(())
     }
 
-    /// Replaces the groups of an object. Queries see the groups at once; pairs start and stop
+    /// Replaces the groups of an object. Queries use the new groups at once; pairs start and stop
     /// accordingly at the next update.
     ///
     /// # Panics
@@ -318,8 +319,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         Ok(())
     }
 
-    /// Changes the query type of an object. From the next update on its pairs are computed
-    /// accordingly.
+    /// Changes the query type of an object. Its pairs are computed accordingly from the next update
+    /// on.
     ///
     /// # Panics
     /// If the handle is stale, or a number of the query type is negative or not finite;
@@ -349,7 +350,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 }
 
-/// Looking objects up.
+/// Look-up of objects.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns the object with this handle; `None` for a stale handle.
     #[must_use]
@@ -401,7 +402,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Iterates over the free indices ([`CollisionObjectHandle::uid`]) of removed objects. New
-    /// objects take the last index of the list first; after all of these they take new indices.
+    /// objects take the last free index first. When no free index is left, they take new indices.
     ///
     /// Together with the objects, these indices determine the handles of all later objects.
     ///

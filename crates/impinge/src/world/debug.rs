@@ -60,7 +60,7 @@ impl<N: Space<D>, const D: usize, T: fmt::Debug> fmt::Debug for CollisionObject<
     }
 }
 
-/// A pair filter, as a function without state.
+/// A pair filter, as a function that changes no state.
 type PairRule<'a, N, const D: usize, T> =
     dyn Fn(&CollisionObject<N, D, T>, &CollisionObject<N, D, T>) -> bool + 'a;
 

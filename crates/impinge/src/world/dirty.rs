@@ -1,13 +1,15 @@
-//! Tree of the boxes of dirty objects, for the queries before the next update.
+//! The tree of the boxes of dirty objects, for queries before the next update.
 //!
-//! The tree is built at once, in an order that makes searches fast, and then updated box by box: each change costs the
-//! path from a leaf block to the root. Changes spoil the order: after `max(32, n / 4)` changes of a tree of `n` boxes
-//! it is dropped, and the next query builds a new one. So a change costs amortised O(log n), whether queries come after
-//! each change or after many. A search costs as much as in the broad phase, plus one block for every 16 boxes that were
-//! added since the tree was built.
+//! The tree is built at once, in an order that makes searches fast, and then updated box by box:
+//! each change costs the path from a leaf block to the root. Changes degrade the order: after
+//! `max(32, n / 4)` changes, a tree of `n` boxes is dropped, and the next query builds a new one.
+//! So a change costs amortised O(log n), whether queries come after each change or after many. A
+//! search costs as much as in the broad phase, plus one block for every 16 boxes that were added
+//! since the tree was built.
 //!
-//! Searching two trees costs more than searching one tree of all boxes. If at least a quarter of the objects are dirty,
-//! this tree also has the boxes of the others (`has_all`), and queries skip the broad phase.
+//! Searching two trees costs more than searching one tree of all boxes. If at least a quarter of
+//! the objects are dirty, this tree also has the boxes of all other objects (`has_all`), and
+//! queries skip the broad phase.
 
 use super::bodies::WorldBody;
 use crate::bounding_volume::Aabb;
@@ -15,12 +17,14 @@ use crate::bvh::{Bounds, Lanes, Tree};
 use crate::math::{Real, Space};
 use crate::partitioning::{Search, Sweep, packed};
 
-/// Least number of changes after which a tree is dropped.
+/// Minimum number of changes after which a tree is dropped.
 const MIN_CHANGES: usize = 32;
-/// A tree of `n` boxes is dropped after `n / CHANGES_DIVISOR` changes, if that is more than [`MIN_CHANGES`].
+/// A tree of `n` boxes is dropped after `n / CHANGES_DIVISOR` changes, if that is more than
+/// [`MIN_CHANGES`].
 const CHANGES_DIVISOR: usize = 4;
 
-/// Boxes with ids. The ids are handle indices if the tree has all objects, else indices in the list of changes.
+/// A tree of boxes with ids. The ids are handle indices if the tree has the boxes of all objects,
+/// else indices in the list of changes.
 #[derive(Clone, Debug)]
 pub(crate) struct DirtyTree<const D: usize> {
     has_all: bool,
@@ -32,11 +36,13 @@ pub(crate) struct DirtyTree<const D: usize> {
     changes_left: usize,
 }
 
-/// Receives a group of ids with lower bounds of their keys; returns the new limit of keys.
+/// Receives a group of ids, each with a lower bound of its key (a time or a distance), and returns
+/// the new limit of keys.
 pub(crate) type DirtyVisitor<'a, N> = dyn FnMut(&[(u32, N)]) -> N + 'a;
 
 impl<const D: usize> DirtyTree<D> {
-    /// Builds a tree from boxes with distinct ids. `has_all` is `true` if they are the boxes of all objects.
+    /// Builds a tree from boxes with distinct ids. `has_all` is `true` if they are the boxes of all
+    /// objects.
     pub(crate) fn new<N: Real>(
         has_all: bool,
         boxes: &mut dyn Iterator<Item = (u32, Aabb<N, D>)>,
@@ -47,7 +53,8 @@ impl<const D: usize> DirtyTree<D> {
         Self { has_all, tree, unbounded, lanes, changes_left }
     }
 
-    /// Returns `true` if the tree also has the boxes of clean objects; its ids are then handle indices.
+    /// Returns `true` if the tree also has the boxes of the objects that are not dirty; its ids are
+    /// then handle indices.
     #[inline]
     pub(crate) const fn has_all(&self) -> bool {
         self.has_all
@@ -58,7 +65,8 @@ impl<const D: usize> DirtyTree<D> {
         self.changes_left == 0
     }
 
-    /// Returns the id under which the tree has the object, if at all; `None` if it cannot be in the tree.
+    /// Returns the id of the object in the tree, which may be absent from it. `None` for an object
+    /// that certainly is not in the tree.
     pub(crate) fn id_of<N: Space<D>>(&self, body: &WorldBody<N, D>) -> Option<u32> {
         if self.has_all { Some(body.index()) } else { body.change_index() }
     }
@@ -86,8 +94,8 @@ impl<const D: usize> DirtyTree<D> {
         }
     }
 
-    /// Calls `found` with groups of ids whose boxes the moving box may touch by `limit`, each with a lower bound of the
-    /// time.
+    /// Calls `found` with groups of ids whose boxes the moving box may touch by `limit`, each with
+    /// a lower bound of the time.
     pub(crate) fn by_time<N: Real>(
         &self,
         sweep: &Sweep<N, D>,
@@ -97,8 +105,8 @@ impl<const D: usize> DirtyTree<D> {
         self.search().groups_by_time(sweep, limit, found);
     }
 
-    /// Calls `found` with groups of ids whose boxes may be at most `limit` from `aabb`, each with a lower bound of the
-    /// distance.
+    /// Calls `found` with groups of ids whose boxes may be at most `limit` from `aabb`, each with a
+    /// lower bound of the distance.
     pub(crate) fn by_distance<N: Real>(
         &self,
         aabb: &Aabb<N, D>,
@@ -108,7 +116,8 @@ impl<const D: usize> DirtyTree<D> {
         self.search().groups_by_distance(aabb, limit, found);
     }
 
-    /// Checks the tree, and that it has exactly these boxes; the error describes the violation.
+    /// Checks the invariants of the tree, and that it has exactly these boxes; the error describes
+    /// the violation.
     pub(crate) fn validate<N: Real>(
         &self,
         boxes: &mut dyn Iterator<Item = (u32, Aabb<N, D>)>,
@@ -162,7 +171,7 @@ mod tests {
         Vector::from([(); 2].map(|()| f32::from(below(state, side))))
     }
 
-    /// Returns the number of blocks that a search for a square opens.
+    /// Returns the number of blocks that a search for overlaps with `square` opens.
     fn opened(dirty: &DirtyTree<2>, square: &Box2) -> usize {
         let (mut count, still) = (0, Vector::zeros());
         let test = |block: &Block<2>| {
@@ -173,8 +182,9 @@ mod tests {
         count
     }
 
-    /// Adds `count` boxes one by one, then moves them one by one, with a search after each change. Returns the mean
-    /// number of opened blocks per search, for each of the two phases.
+    /// Adds `count` boxes one by one, then moves them one by one, with a search after each change.
+    /// Returns the mean number of opened blocks per search while boxes are added, and while they
+    /// are moved.
     fn opened_on_average(count: u16, state: &mut u64) -> [f64; 2] {
         let side = (1..256).find(|side| side * side > count).unwrap_or(256) - 1;
         let mut boxes: Vec<(u32, Box2)> = Vec::new();
@@ -200,7 +210,8 @@ mod tests {
     fn searches_among_many_changes_look_at_few_blocks() {
         let [[few_new, few], [many_new, many]] =
             [512, 8192].map(|count| opened_on_average(count, &mut 9));
-        // Boxes that were added since the tree was built, on average an eighth of all, lie in blocks by age.
+        // Boxes that were added since the tree was built, on average an eighth of all boxes, are in
+        // blocks in order of insertion.
         let unsorted = |count: f64| count / 8.0 / 16.0;
         for (count, opened) in [(512.0, few_new), (8192.0, many_new)] {
             assert!(opened < 8.0 + unsorted(count), "{opened} blocks of {count} boxes");

@@ -1,5 +1,4 @@
-//! Entry points of worlds: functions without the user's data type, which are compiled in this
-//! crate.
+//! Functions of worlds without the user's data type, so that they can be compiled in this crate.
 
 use super::bodies::WorldBody;
 use super::changes::{ChangeList, ChangeTargets};
@@ -22,7 +21,7 @@ use crate::shape::{Geometry, Shape, ShapeHandle};
 use crate::tables::compiled;
 
 compiled! {
-    /// Entry points of worlds.
+    /// The functions of worlds that are compiled in this crate.
     trait WorldEntries;
 
     /// Creates the broad phase of a new world.
@@ -105,7 +104,8 @@ compiled! {
     /// Returns `true` if the object contains a point.
     fn holds(body: &WorldBody<N, D>, point: &Point<N, D>) -> bool = WorldBody::holds;
 
-    /// Iterates over all manifolds, read in place; `slots` has the handles of the objects.
+    /// Iterates over all manifolds, read in place if possible; `slots` has the handles of the
+    /// objects.
     fn contact_views<'a>(
         narrow_phase: &'a DefaultNarrowPhase<N, D>,
         table: &'a ObjectTable<N, D>,
@@ -165,8 +165,8 @@ compiled! {
 }
 
 compiled! {
-    /// Entry points for single objects in queries, small enough to be inlined in an optimised
-    /// program.
+    /// The functions for single objects in queries. They are small enough to be inlined in an
+    /// optimised program.
     inlined trait SmallWorldEntries;
 
     /// Returns `true` if the exact box of an object overlaps `aabb`.
@@ -203,8 +203,8 @@ compiled! {
         options: &ImpactOptions<N>,
     ) -> Option<Cast<'a, N, D>> = Cast::new;
 
-    /// Returns the time and the impact of the cast shape with an object; `None` if it does not hit
-    /// the object by `latest`.
+    /// Returns the time and the impact of the cast shape on an object; `None` if the shape does not
+    /// hit the object by time `latest`.
     fn cast_impact(
         cast: &Cast<'_, N, D>,
         body: &WorldBody<N, D>,

@@ -6,8 +6,8 @@ use super::WorldMark;
 use crate::math::{Pose, Real, Space, is_unit};
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
 
-/// The reason why a world refused an operation, which then changed nothing. Values are converted to
-/// `f64` exactly.
+/// The reason why a world refused an operation, which then has changed nothing. Values are
+/// converted to `f64` exactly.
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;
@@ -32,11 +32,11 @@ pub enum WorldError {
     Position {
         /// The object to be moved; `None` for an object to be added.
         handle: Option<CollisionObjectHandle>,
-        /// The number.
+        /// The rejected value.
         value: f64,
     },
-    /// The rotation of a position, a complex number or quaternion, is not of unit length: it
-    /// differs from 1 by more than 0.8 %.
+    /// The rotation of a position, a complex number or quaternion, is not of unit length: its
+    /// length differs from 1 by more than 0.8 %.
     Rotation {
         /// The object to be moved; `None` for an object to be added.
         handle: Option<CollisionObjectHandle>,
@@ -45,19 +45,19 @@ pub enum WorldError {
     },
     /// A number of a query type is negative, NaN or infinite.
     QueryType {
-        /// The number.
+        /// The rejected value.
         value: f64,
     },
     /// The skin of an object is negative, NaN or infinite.
     Skin {
         /// The object.
         handle: CollisionObjectHandle,
-        /// The number.
+        /// The rejected value.
         value: f64,
     },
     /// The margin of a world is negative, NaN or infinite.
     Margin {
-        /// The number.
+        /// The rejected value.
         value: f64,
     },
     /// The shape of the object is not of the type that is to be deformed.

@@ -1,4 +1,4 @@
-//! Filters of the user on the pairs that the broad phase finds.
+//! The user's filters of pairs that the broad phase finds.
 
 use core::fmt;
 use std::sync::Arc;
@@ -50,7 +50,7 @@ impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
         Self { filters: Vec::new(), have_changed: false }
     }
 
-    /// Registers a filter under a name; replaces the filter that has this name.
+    /// Registers a filter under a name; replaces an earlier filter with the same name.
     pub(super) fn register(&mut self, name: &str, filter: Arc<dyn BroadPhasePairFilter<N, D, T>>) {
         self.have_changed = true;
         match self.position(name) {
@@ -102,7 +102,7 @@ impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
         self.have_changed = false;
     }
 
-    /// Whether they are others than at the last update.
+    /// Restores whether a filter was registered or unregistered since the last update.
     #[cfg(feature = "serde")]
     pub(super) const fn note_change(&mut self, have_changed: bool) {
         self.have_changed = have_changed;
@@ -125,7 +125,7 @@ impl<N: Space<D>, const D: usize, T> fmt::Debug for Filters<N, D, T> {
 
 /// Registering filters, and filtering pairs again.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Registers a pair filter; replaces the filter with this name if there is one. All pairs are
+    /// Registers a pair filter; replaces an earlier filter with the same name. All pairs are
     /// filtered again at the next update.
     pub fn register_broad_phase_pair_filter<F>(&mut self, name: &str, filter: F)
     where
@@ -143,9 +143,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
     }
 
-    /// Makes the next update filter all pairs again: it checks groups and filters for every two
-    /// objects whose boxes overlap. Call this when rules have changed, and for
-    /// [`Self::update_with`].
+    /// Makes the next update filter all pairs again: it tests groups and filters for every two
+    /// objects whose boxes overlap. Call this when the rules of a filter have changed, also of a
+    /// filter of [`Self::update_with`].
     pub fn refilter_pairs(&mut self) {
         self.broad_phase.deferred_recompute_all_proximities();
     }

@@ -2,8 +2,8 @@
 
 use super::groups::{ALL_GROUPS, CollisionGroups, GroupError};
 
-/// Returns the mask; an error if it has bit 30 or 31, which are not groups. The error has the lower
-/// of these bits.
+/// Returns the mask; an error if it has bit 30 or 31, which belong to no group. The error has the
+/// lower of these bits.
 fn checked(mask: u32) -> Result<u32, GroupError> {
     match mask & !ALL_GROUPS {
         0 => Ok(mask),
@@ -104,7 +104,7 @@ impl CollisionGroups {
     /// Returns these groups with another membership, given as a mask.
     ///
     /// # Errors
-    /// If the mask has bit 30 or 31; the error has the lower one.
+    /// If the mask has bit 30 or 31; the error has the lower of these bits.
     pub fn try_with_membership_by_mask(self, mask: u32) -> Result<Self, GroupError> {
         let source = Self::of_masks(checked(mask)?, 0, 0);
         let mut groups = self;
@@ -125,7 +125,7 @@ impl CollisionGroups {
     /// Returns these groups with another whitelist, given as a mask.
     ///
     /// # Errors
-    /// If the mask has bit 30 or 31; the error has the lower one.
+    /// If the mask has bit 30 or 31; the error has the lower of these bits.
     pub fn try_with_whitelist_by_mask(self, mask: u32) -> Result<Self, GroupError> {
         let source = Self::of_masks(0, checked(mask)?, 0);
         let mut groups = self;
@@ -146,7 +146,7 @@ impl CollisionGroups {
     /// Returns these groups with another blacklist, given as a mask.
     ///
     /// # Errors
-    /// If the mask has bit 30 or 31; the error has the lower one.
+    /// If the mask has bit 30 or 31; the error has the lower of these bits.
     pub fn try_with_blacklist_by_mask(self, mask: u32) -> Result<Self, GroupError> {
         let source = Self::of_masks(0, 0, checked(mask)?);
         let mut groups = self;

@@ -1,4 +1,4 @@
-//! Groups as bit masks: which objects may interact.
+//! Collision groups as bit masks, which decide which objects may interact.
 
 use core::fmt;
 
@@ -28,7 +28,7 @@ pub(super) const ALL_GROUPS: u32 = (1 << (LAST_GROUP + 1)) - 1;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(from = "SerializedGroups", into = "SerializedGroups"))]
 pub struct CollisionGroups {
-    /// Bits 0 to 29 are groups, as in the other masks; bit 31 is [`SELF_COLLISION`].
+    /// Bits 0 to 29 are groups, as in `whitelist` and `blacklist`; bit 31 is [`SELF_COLLISION`].
     membership: u32,
     whitelist: u32,
     blacklist: u32,
@@ -139,8 +139,8 @@ fn or_panic(result: Result<(), GroupError>) {
 }
 
 impl CollisionGroups {
-    /// Creates groups of an object that is a member of all groups, whitelists all and blacklists
-    /// none, without self-collision.
+    /// Creates the groups of an object that is a member of all groups, whitelists all groups and
+    /// blacklists none, without self-collision.
     #[must_use]
     pub const fn new() -> Self {
         Self { membership: ALL_GROUPS, whitelist: ALL_GROUPS, blacklist: 0 }
@@ -169,109 +169,109 @@ impl CollisionGroups {
         self.blacklist
     }
 
-    /// Makes the object a member of these groups and no others.
+    /// Sets the membership: the object is a member of these groups and of no others.
     ///
     /// # Panics
-    /// On a group above 29; [`Self::try_set_membership`] returns it.
+    /// If a group is above 29; [`Self::try_set_membership`] returns an error instead.
     #[track_caller]
     pub fn set_membership(&mut self, groups: &[usize]) {
         or_panic(self.try_set_membership(groups));
     }
 
-    /// Makes the object a member of these groups and no others.
+    /// Sets the membership: the object is a member of these groups and of no others.
     ///
     /// # Errors
-    /// On a group above 29; nothing is changed then.
+    /// If a group is above 29. Then nothing changes.
     pub fn try_set_membership(&mut self, groups: &[usize]) -> Result<(), GroupError> {
         self.membership = self.membership & SELF_COLLISION | mask(groups)?;
         Ok(())
     }
 
-    /// Lets the object interact with members of these groups and no others.
+    /// Sets the whitelist: the object may interact only with members of these groups.
     ///
     /// # Panics
-    /// On a group above 29; [`Self::try_set_whitelist`] returns it.
+    /// If a group is above 29; [`Self::try_set_whitelist`] returns an error instead.
     #[track_caller]
     pub fn set_whitelist(&mut self, groups: &[usize]) {
         or_panic(self.try_set_whitelist(groups));
     }
 
-    /// Lets the object interact with members of these groups and no others.
+    /// Sets the whitelist: the object may interact only with members of these groups.
     ///
     /// # Errors
-    /// On a group above 29; nothing is changed then.
+    /// If a group is above 29. Then nothing changes.
     pub fn try_set_whitelist(&mut self, groups: &[usize]) -> Result<(), GroupError> {
         self.whitelist = mask(groups)?;
         Ok(())
     }
 
-    /// Keeps the object from interacting with members of these groups and no others.
+    /// Sets the blacklist: the object does not interact with members of these groups.
     ///
     /// # Panics
-    /// On a group above 29; [`Self::try_set_blacklist`] returns it.
+    /// If a group is above 29; [`Self::try_set_blacklist`] returns an error instead.
     #[track_caller]
     pub fn set_blacklist(&mut self, groups: &[usize]) {
         or_panic(self.try_set_blacklist(groups));
     }
 
-    /// Keeps the object from interacting with members of these groups and no others.
+    /// Sets the blacklist: the object does not interact with members of these groups.
     ///
     /// # Errors
-    /// On a group above 29; nothing is changed then.
+    /// If a group is above 29. Then nothing changes.
     pub fn try_set_blacklist(&mut self, groups: &[usize]) -> Result<(), GroupError> {
         self.blacklist = mask(groups)?;
         Ok(())
     }
 
-    /// Makes the object a member of one group, or no longer a member.
+    /// Makes the object a member of the group if `add` is `true`, else ends its membership.
     ///
     /// # Panics
-    /// On a group above 29; [`Self::try_modify_membership`] returns it.
+    /// If the group is above 29; [`Self::try_modify_membership`] returns an error instead.
     #[track_caller]
     pub fn modify_membership(&mut self, group: usize, add: bool) {
         or_panic(self.try_modify_membership(group, add));
     }
 
-    /// Makes the object a member of one group, or no longer a member.
+    /// Makes the object a member of the group if `add` is `true`, else ends its membership.
     ///
     /// # Errors
-    /// On a group above 29; nothing is changed then.
+    /// If a group is above 29. Then nothing changes.
     pub fn try_modify_membership(&mut self, group: usize, add: bool) -> Result<(), GroupError> {
         self.membership = with_group(self.membership, group, add)?;
         Ok(())
     }
 
-    /// Puts one group on the whitelist, or takes it off.
+    /// Puts the group on the whitelist if `add` is `true`, else takes it off.
     ///
     /// # Panics
-    /// On a group above 29; [`Self::try_modify_whitelist`] returns it.
+    /// If the group is above 29; [`Self::try_modify_whitelist`] returns an error instead.
     #[track_caller]
     pub fn modify_whitelist(&mut self, group: usize, add: bool) {
         or_panic(self.try_modify_whitelist(group, add));
     }
 
-    /// Puts one group on the whitelist, or takes it off.
+    /// Puts the group on the whitelist if `add` is `true`, else takes it off.
     ///
     /// # Errors
-    /// On a group above 29; nothing is changed then.
+    /// If a group is above 29. Then nothing changes.
     pub fn try_modify_whitelist(&mut self, group: usize, add: bool) -> Result<(), GroupError> {
         self.whitelist = with_group(self.whitelist, group, add)?;
         Ok(())
     }
 
-    /// Puts one group on the blacklist, or takes it off.
+    /// Puts the group on the blacklist if `add` is `true`, else takes it off.
     ///
     /// # Panics
-    /// On a group above 29; [`Self::try_modify_blacklist`] returns it.
+    /// If the group is above 29; [`Self::try_modify_blacklist`] returns an error instead.
     #[track_caller]
     pub fn modify_blacklist(&mut self, group: usize, add: bool) {
         or_panic(self.try_modify_blacklist(group, add));
     }
 
-    /// Puts one group on the blacklist, or takes it off.
+    /// Puts the group on the blacklist if `add` is `true`, else takes it off.
     ///
     /// # Errors
-    /// On a group above 29; nothing is changed then.
+    /// If a group is above 29. Then nothing changes.
     pub fn try_modify_blacklist(&mut self, group: usize, add: bool) -> Result<(), GroupError> {
         self.blacklist = with_group(self.blacklist, group, add)?;
         Ok(())
@@ -311,8 +311,8 @@ impl CollisionGroups {
         has(self.blacklist, group)
     }
 
-    /// Makes the narrow phase test the object against itself: contacts and events then name it
-    /// twice. Of a composite, the parts that are not adjacent are tested
+    /// Makes the narrow phase test the object against itself. Contacts and events of this pair have
+    /// the object's handle twice. For a composite, two parts are tested unless they are adjacent
     /// ([`CompositeShape::are_adjacent`](crate::shape::CompositeShape::are_adjacent)); a convex
     /// solid never touches itself. No filter applies. Off by default.
     pub const fn enable_self_collision(&mut self) {

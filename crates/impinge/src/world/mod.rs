@@ -1,8 +1,8 @@
-//! The world: objects, and the pairs, contacts and events among them, brought up to date by each
-//! update.
+//! The world: objects, and the pairs, contacts and events among them, which each update computes.
 //!
-//! The world is a thin shell around the two phases. Each object is one record: pose, shape, groups and query type as
-//! the user last set them (`bodies`), and the user's data. The phases hold copies as of the last update:
+//! The world connects the broad phase and the narrow phase. It has one record for each object:
+//! pose, shape, groups and query type as the user last set them (`bodies`), and the user's data.
+//! The two phases have copies of these as of the last update:
 //!
 //! ```text
 //! CollisionWorld
@@ -10,7 +10,7 @@
 //!      │          changes: dirty objects, until update()
 //!      ├── boxes ───────────> broad_phase    (as of the last update)
 //!      └── poses, shapes ───> ObjectTable ─> narrow_phase   (rows of objects with pairs only)
-//!   queries read objects and the tree of dirty boxes: they see every change at once
+//!   queries read the objects and the tree of dirty boxes, so each change has an effect at once
 //! ```
 
 mod bodies;

@@ -1,5 +1,5 @@
-//! Properties of motion that affect pairs: fixed objects have no pairs with each other, and the volume of a fast object
-//! covers its path.
+//! Fixed objects, which have no pairs with each other, and predicted positions, which extend the
+//! volume of a fast object over its path.
 
 use super::entries;
 use super::error::or_panic;
@@ -9,14 +9,17 @@ use crate::narrow_phase::CollisionObjectHandle;
 
 /// Fixed objects and predicted positions.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Marks an object as fixed, or clears the mark. Two fixed objects have no pair: the walls and floors of a level,
-    /// which overlap each other, cost nothing in the narrow phase and have no events.
+    /// Marks an object as fixed, or clears the mark. Two fixed objects have no pair: the walls and
+    /// floors of a level, which overlap each other, cost nothing in the narrow phase and have no
+    /// events.
     ///
-    /// A new object is not fixed. Takes effect at the next update: pairs of two objects that are both fixed by then
-    /// stop, with their events, and pairs of two objects that are no longer both fixed start. A fixed object can still
-    /// be moved. It has pairs with all objects that are not fixed, and with itself if its groups enable that
-    /// ([`CollisionGroups::enable_self_collision`]); queries treat it like any other object. The mark is tested before
-    /// groups and filters, once, when the boxes of two objects begin to overlap.
+    /// A new object is not fixed. Takes effect at the next update: pairs of two objects that are
+    /// both fixed by then stop, with their events, and pairs of two objects that are no longer both
+    /// fixed start. A fixed object can still be moved. It has pairs with all objects that are not
+    /// fixed, and with itself if its groups enable that
+    /// ([`CollisionGroups::enable_self_collision`]); queries treat it like any other object. The
+    /// mark is tested before groups and filters, once, when the boxes of two objects begin to
+    /// overlap.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Vector};
@@ -63,21 +66,24 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         Ok(())
     }
 
-    /// Moves an object and predicts its next position. The volume in the broad phase covers the box of the object at
-    /// both positions. So the object has a pair with all objects whose boxes it may meet in between, and two fast
-    /// bodies have a pair although their boxes never overlap at an update.
-    ///
-    /// Such pairs are meant for a continuous test by
-    /// [`nonlinear_time_of_impact`](crate::query::nonlinear_time_of_impact) and [`Self::update_pair`]. Their contacts
-    /// and proximities are computed at `position`, and so are the results of all queries. The prediction holds until
-    /// the object is moved again, by [`Self::set_position`] (even to the same position) or with another prediction;
-    /// other changes keep it. As with any change, queries see the position at once, and pairs follow at the next
+    /// Moves an object and predicts its next position. The volume in the broad phase covers the box
+    /// of the object at both positions. So the object has a pair with each object whose box it may
+    /// meet in between, and two fast bodies have a pair although their boxes never overlap at an
     /// update.
     ///
-    /// The volume covers the whole path of a translation. A body that rotates on the way can leave it by as much as the
-    /// rotation moves its surface outside both boxes; a larger margin of the world, or a larger prediction of the query
-    /// type, allows for that. A pair costs memory and time even if it does not touch, so predict only for bodies that
-    /// move by more than about their size in a step.
+    /// Such pairs are meant for a continuous test by
+    /// [`nonlinear_time_of_impact`](crate::query::nonlinear_time_of_impact) and
+    /// [`Self::update_pair`]. Their contacts and proximities are computed at `position`, and so are
+    /// the results of all queries. The prediction holds until the object is moved again, by
+    /// [`Self::set_position`] (even to the same position) or with another prediction; other changes
+    /// keep it. As with any change, queries use the position at once, and pairs follow at the next
+    /// update.
+    ///
+    /// The volume covers the whole path of a translation. The surface of a body that rotates on the
+    /// way can leave both boxes, and therefore the volume; a larger margin of the world, or a
+    /// larger prediction of the query type, allows for that. A pair costs memory and time even if
+    /// it does not touch, so predict only for bodies that move by more than about their size in a
+    /// step.
     ///
     /// ```
     /// use impinge::dim3::math::Isometry;
@@ -98,8 +104,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// ```
     ///
     /// # Panics
-    /// If the handle is stale, a number of a position is not finite, or a rotation is not of unit length;
-    /// [`Self::try_set_position_with_prediction`] returns an error instead.
+    /// If the handle is stale, a number of a position is not finite, or a rotation is not of unit
+    /// length; [`Self::try_set_position_with_prediction`] returns an error instead.
     #[track_caller]
     pub fn set_position_with_prediction(
         &mut self,
@@ -113,8 +119,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Moves an object and predicts its next position; see [`Self::set_position_with_prediction`].
     ///
     /// # Errors
-    /// If the handle is stale, a number of a position is not finite, or a rotation is not of unit length. Then the
-    /// world is unchanged.
+    /// If the handle is stale, a number of a position is not finite, or a rotation is not of unit
+    /// length. Then the world is unchanged.
     pub fn try_set_position_with_prediction(
         &mut self,
         handle: CollisionObjectHandle,
@@ -125,8 +131,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         entries::set_predicted(body, changes, position, predicted)
     }
 
-    /// Returns the position that [`Self::set_position_with_prediction`] predicted. `None` for a stale handle, and if
-    /// the object was moved without a prediction since.
+    /// Returns the position that [`Self::set_position_with_prediction`] predicted. `None` for a
+    /// stale handle, and if the object was moved without a prediction since.
     #[must_use]
     pub fn predicted_position(&self, handle: CollisionObjectHandle) -> Option<&N::Isometry> {
         let object = self.objects.get(handle)?;

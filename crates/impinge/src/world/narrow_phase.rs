@@ -1,4 +1,5 @@
-//! The interface between a world and its narrow phase: pairs in, contacts and proximities out.
+//! The interface of a narrow phase to its world: it receives pairs, and returns contacts and
+//! proximities.
 
 use super::objects::{Slot, handle_at};
 use super::{CollisionObjects, entries};
@@ -24,7 +25,7 @@ pub type ContactManifolds<'a, N, const D: usize> = Box<
         + 'a,
 >;
 
-/// Manifolds with at least one contact, read in place, in unspecified order.
+/// Manifolds with at least one contact, read in place if possible, in unspecified order.
 pub type ContactViews<'a, N, const D: usize> = Box<
     dyn Iterator<Item = (CollisionObjectHandle, CollisionObjectHandle, ManifoldView<'a, N, D>)>
         + 'a,
@@ -39,11 +40,12 @@ pub type ContactViewPiece<'a, N, const D: usize> = Box<
 
 /// Computes contacts and proximities for the pairs that the broad phase proposes.
 ///
-/// In each update a world calls [`Self::handle_change`] for each object with another shape or query
-/// type, then [`Self::handle_interactions`] with the pairs that started or stopped, then
-/// [`Self::update`]. In all calls `handle1 < handle2`; they are equal for an object that is tested
-/// against itself. During a call [`CollisionObjects::table`] has the poses, shapes and query types
-/// of the objects in the call, and of all objects with pairs.
+/// In each update a world calls [`Self::handle_interactions`] for objects whose pair with
+/// themselves starts or stops, then [`Self::handle_change`] for each object whose shape, query type
+/// or skin changed. Then it calls [`Self::handle_interactions`] with the pairs of two objects that
+/// started or stopped, and [`Self::update`]. In all calls `handle1 < handle2`; they are equal for
+/// an object that is tested against itself. During a call [`CollisionObjects::table`] has the
+/// poses, shapes and query types of the objects in the call, and of all objects with pairs.
 ///
 /// ```
 /// use impinge::dim2::narrow_phase::{DefaultNarrowPhase, NarrowPhase};
@@ -79,8 +81,8 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
     }
 
     /// Starts or stops a pair, without a geometric query. A started pair gets its algorithm;
-    /// nothing changes if the pair is already there. A stopped pair is removed, with a final event
-    /// if it was touching or near.
+    /// nothing changes if the pair already exists. A stopped pair is removed, with a final event if
+    /// it was touching or near.
     fn handle_interaction(
         &mut self,
         events: &mut Events,
@@ -113,8 +115,8 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         handle2: CollisionObjectHandle,
     );
 
-    /// Chooses the algorithms of an object's pairs again, because the object's shape or query type
-    /// has changed.
+    /// Chooses the algorithms of an object's pairs again, because the object's shape, query type or
+    /// skin has changed.
     fn handle_change(
         &mut self,
         events: &mut Events,
@@ -148,14 +150,15 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         partners
     }
 
-    /// Returns the allocator of contact ids, which passes to the next narrow phase so that no id is
-    /// issued twice. `None` if this narrow phase has no allocator.
+    /// Returns the allocator of contact ids. If this narrow phase is replaced, its allocator passes
+    /// to the new narrow phase, so that no id is issued twice. `None` (the default) if this narrow
+    /// phase has no allocator.
     fn ids(&mut self) -> Option<&mut IdAllocator> {
         None
     }
 
     /// Returns the contacts of a pair as of the last update; `None` if there is no such pair or its
-    /// query type is proximity.
+    /// query is for proximity.
     fn contact_pair<'a>(
         &'a self,
         objects: &'a CollisionObjects<N, D, T>,
@@ -164,7 +167,7 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
     ) -> Option<ContactPair<'a, N, D>>;
 
     /// Returns the proximity of a pair as of the last update; `None` if there is no such pair or
-    /// its query type is contacts.
+    /// its query is for contacts.
     fn proximity_pair(
         &self,
         objects: &CollisionObjects<N, D, T>,
@@ -172,7 +175,7 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         handle2: CollisionObjectHandle,
     ) -> Option<ProximityPair>;
 
-    /// Returns all pairs whose query type is contacts.
+    /// Returns all pairs whose query is for contacts.
     fn contact_pairs<'a>(
         &'a self,
         objects: &'a CollisionObjects<N, D, T>,
@@ -223,7 +226,7 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         stream.fill(views.filter(|(first, second, _)| are_here(*first, *second)));
     }
 
-    /// Returns all pairs whose query type is proximity.
+    /// Returns all pairs whose query is for proximity.
     fn proximity_pairs<'a>(&'a self, objects: &'a CollisionObjects<N, D, T>) -> ProximityPairs<'a>;
 }
 
@@ -401,8 +404,8 @@ pub(super) fn read_all<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns views with the handles of their objects. Plain and particular views have separate
-/// iterators, since a chain of both is slower to read.
+/// Returns views with the handles of their objects. If all pairs are read in place, the iterator
+/// has no branch for built manifolds, because that would slow down reading.
 fn views_with_handles<'a, N: Space<D>, const D: usize>(
     views: Views<'a, N, D>,
     slots: &'a [Slot],
@@ -414,7 +417,7 @@ fn views_with_handles<'a, N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns a function that replaces the indices of two living objects by their handles.
+/// Returns a function that replaces the handle indices of two present objects by their handles.
 fn with_handles<F>(
     slots: &[Slot],
 ) -> impl Fn((u32, u32, F)) -> (CollisionObjectHandle, CollisionObjectHandle, F) + Copy {

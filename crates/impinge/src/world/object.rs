@@ -48,7 +48,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObject<N, D, T> {
         self.body.proxy
     }
 
-    /// Returns the position of the object, as the user gave it.
+    /// Returns the position of the object, as the user set it.
     #[must_use]
     pub const fn position(&self) -> &N::Isometry {
         &self.body.isometry
@@ -73,7 +73,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObject<N, D, T> {
         self.body.is_fixed()
     }
 
-    /// Returns the query type, which decides what is computed for the object's pairs.
+    /// Returns the query type: whether contacts or proximities are computed for the object's pairs.
     #[must_use]
     pub fn query_type(&self) -> GeometricQueryType<N> {
         self.body.query.get()

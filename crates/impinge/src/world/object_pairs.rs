@@ -5,18 +5,19 @@ use crate::math::Space;
 use crate::narrow_phase::{CollisionObjectHandle, ContactPair};
 use crate::query::{ContactPoint, ManifoldView, Proximity};
 
-/// The pairs of one object as of the last update, in order of the other objects' handles, without
-/// objects that were removed since. Costs a look-up for each pair of the object, whatever the size
-/// of the world; for a custom narrow phase see
+/// The pairs of one object as of the last update, in order of the other objects' handles. Pairs
+/// with objects that were removed since are omitted. The cost is one look-up for each pair of the
+/// object, and does not depend on the size of the world. For a custom narrow phase see
 /// [`NarrowPhase::partners_of`](super::NarrowPhase::partners_of).
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Iterates over the objects that have a pair with this object, touching or not, in order of
     /// their handles. Includes the object itself if it is tested against itself. Empty for a stale
     /// handle.
     ///
-    /// These are the objects whose boxes overlap and that groups and filters allow. Which pairs
-    /// without contact are among them depends on the margin. [`Self::contact_pair`] and
-    /// [`Self::proximity_pair`] return the contacts or the proximity of such a pair.
+    /// These are the objects whose loosened boxes overlap that of this object, and that groups and
+    /// filters allow. So the margin of the world decides which pairs without contact are among
+    /// them. [`Self::contact_pair`] and [`Self::proximity_pair`] return the contacts or the
+    /// proximity of such a pair.
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;
@@ -83,8 +84,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         })
     }
 
-    /// Iterates over the objects near this object, with their proximity: the pairs whose query type
-    /// is proximity. Omits disjoint pairs, since their presence depends on the margin. Empty for a
+    /// Iterates over the objects near this object, with their proximity: the pairs whose query is
+    /// for proximity. Omits disjoint pairs, since their presence depends on the margin. Empty for a
     /// stale handle.
     ///
     /// ```

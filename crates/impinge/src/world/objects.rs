@@ -1,4 +1,5 @@
-//! The objects of a world: handle slots, records, changes, and the table for the narrow phase.
+//! The objects of a world: handle slots, records, the list of changes, and the table for the narrow
+//! phase.
 
 use super::bodies::{MAX_CHANGES, WorldBody, WorldBroadPhase};
 use super::changes::{BodyEntry, ChangeList, ChangeTargets};
@@ -36,10 +37,10 @@ pub struct CollisionObjects<N: Space<D>, const D: usize, T> {
     /// Generation of the first object at each index.
     pub(super) first: Generation,
     pub(super) slots: Vec<Slot>,
-    /// The objects in no particular order, without gaps. Whether a handle is stale depends on its
+    /// The objects, without gaps and in unspecified order. Whether a handle is stale depends on its
     /// slot alone, so code that only forwards references does not wait for these records to load.
     pub(super) records: Vec<CollisionObject<N, D, T>>,
-    /// Free indices; the last one in the list is used next.
+    /// Free handle indices; the last one in the list is used next.
     pub(super) free: Vec<u32>,
     pub(super) changes: ChangeList<N, D>,
     pub(super) table: ObjectTable<N, D>,
@@ -66,7 +67,7 @@ pub(crate) struct Slot {
 
 #[cfg(feature = "serde")]
 impl Slot {
-    /// A slot whose next object has this generation.
+    /// Returns a free slot whose next object has this generation.
     pub(super) const fn without_object(generation: Generation) -> Self {
         Self { generation, record: NO_RECORD }
     }
@@ -171,7 +172,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }))
     }
 
-    /// Returns the object that has the id `id` in the dirty tree.
+    /// Returns the object with id `id` in the dirty tree.
     #[inline]
     pub(super) fn dirty_object(
         &self,
@@ -191,8 +192,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         in_order.or_else(|| self.object_at(u32::try_from(uid).ok()?).filter(has_proxy))
     }
 
-    /// Returns `true` unless both objects are fixed, the groups of one refuse the other, or an
-    /// index is free.
+    /// Returns `true` unless both objects are fixed, the groups do not allow the pair, or an index
+    /// is free.
     #[inline]
     pub(super) fn can_interact(&self, index1: u32, index2: u32) -> bool {
         let both = self.body(index1).zip(self.body(index2));
@@ -251,8 +252,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         Ok((&mut object.body, &mut self.changes))
     }
 
-    /// Returns what [`Self::body_mut`] returns, but for a change of position only: less is recorded if
-    /// there are marks.
+    /// Returns the body of an object and the list of changes, for a move of the object. Equals
+    /// [`Self::body_mut`], but records only the object's motion if there are marks.
     pub(super) fn body_mut_to_move(
         &mut self,
         handle: CollisionObjectHandle,
@@ -321,8 +322,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     }
 
     /// Writes the changes since the last update to the table and the broad phase, in order of
-    /// handle indices, and clears them. Fills `algorithms` with the objects whose pairs need other
-    /// algorithms.
+    /// handle indices, and clears them. Fills `algorithms` with the handle indices of the objects
+    /// whose pairs need other algorithms.
     pub(super) fn flush(
         &mut self,
         broad_phase: &mut WorldBroadPhase<N, D>,
@@ -342,7 +343,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         changes.clear(order);
     }
 
-    /// Writes the row of an object to the table; does nothing if it has one.
+    /// Writes the row of an object to the table; does nothing if the object has a row already.
     pub(super) fn acquire_row(&mut self, index: u32) {
         let Self { slots, records, table, .. } = self;
         let slot = slots.get(index as usize);

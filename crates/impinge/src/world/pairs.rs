@@ -10,18 +10,18 @@ use crate::query::{ContactManifold, ManifoldView};
 
 type Object<N, const D: usize, T> = CollisionObject<N, D, T>;
 
-/// Two objects and one of their manifolds.
+/// Two objects and a manifold of their pair.
 type PairView<'a, N, const D: usize, T> =
     (&'a Object<N, D, T>, &'a Object<N, D, T>, ManifoldView<'a, N, D>);
 
-/// Iterates over manifolds with their objects. Not built of adapters, since the closure of an
-/// adapter is not inlined and costs a call for each manifold.
+/// Iterator over manifolds with their objects. It is not built of adapters, because the closure of
+/// an adapter is not inlined and costs a call for each manifold.
 struct PairViews<'a, N: Space<D>, const D: usize, T, I> {
     objects: &'a CollisionObjects<N, D, T>,
     views: I,
 }
 
-/// Two handles and a manifold.
+/// The handles of two objects and a manifold of their pair.
 type HandleView<'a, N, const D: usize> =
     (CollisionObjectHandle, CollisionObjectHandle, ManifoldView<'a, N, D>);
 
@@ -51,7 +51,7 @@ where
 /// second object.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns the contacts of two objects, given in either order. `None` for a stale handle, for
-    /// objects without a pair in the broad phase, and for a pair whose query type is proximity.
+    /// objects without a pair in the broad phase, and for a pair whose query is for proximity.
     #[must_use]
     pub fn contact_pair(
         &self,
@@ -63,7 +63,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Returns the proximity of two objects, given in either order. `None` for a stale handle, for
-    /// objects without a pair in the broad phase, and for a pair whose query type is contacts.
+    /// objects without a pair in the broad phase, and for a pair whose query is for contacts.
     #[must_use]
     pub fn proximity_pair(
         &self,
@@ -84,8 +84,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         alive.then(|| in_order(handle1, handle2))
     }
 
-    /// Iterates over all pairs of the broad phase whose query type is contacts, with or without
-    /// contact points. Which pairs without points are included depends on the margin.
+    /// Iterates over all pairs of the broad phase whose query is for contacts, with or without
+    /// contact points. The margin of the world decides which pairs without points are included.
     pub fn contact_pairs(
         &self,
     ) -> impl Iterator<Item = (&Object<N, D, T>, &Object<N, D, T>, ContactPair<'_, N, D>)> {
@@ -95,8 +95,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         })
     }
 
-    /// Iterates over all pairs of the broad phase whose query type is proximity. Which disjoint
-    /// pairs are included depends on the margin.
+    /// Iterates over all pairs of the broad phase whose query is for proximity. The margin of the
+    /// world decides which disjoint pairs are included.
     pub fn proximity_pairs(
         &self,
     ) -> impl Iterator<Item = (&Object<N, D, T>, &Object<N, D, T>, ProximityPair)> {
@@ -118,10 +118,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         })
     }
 
-    /// Iterates over all manifolds with at least one contact, read in place; see [`ManifoldView`].
+    /// Iterates over all manifolds with at least one contact, read in place if possible; see
+    /// [`ManifoldView`].
     ///
-    /// The order is that of the library's memory. It is unspecified, but equal for equal histories,
-    /// on every machine and with any number of threads.
+    /// Manifolds come in memory order. It is unspecified, but equal for equal histories, on every
+    /// machine and with any number of threads.
     ///
     /// ```
     /// use impinge::math::{Isometry2, Vector};
@@ -152,10 +153,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Splits the sequence of [`Self::contact_views`] into consecutive iterators over about equally
-    /// many pairs: at least one, and at most `pieces`. They are for threads of the user.
+    /// many pairs: at least one iterator, and at most `pieces`. Each iterator can be sent to
+    /// another thread.
     ///
     /// The cuts depend only on `pieces` and the pairs. Pairs that touch a mesh cost more than
-    /// others; four pieces for each thread let idle threads take over work.
+    /// others. With four pieces for each thread, idle threads can take over work.
     ///
     /// ```
     /// use impinge::math::{Isometry3, Vector};

@@ -1,4 +1,4 @@
-//! Removed objects, which are kept as long as an event contains their handle.
+//! Removed objects. They are kept as long as an event contains their handle.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,13 +9,13 @@ use crate::narrow_phase::{CollisionObjectHandle, Events};
 
 /// The removed objects whose handles are in events, and the set of all handles in events.
 ///
-/// Until an object is removed, nothing is stored and no event is read.
+/// As long as no object is removed, nothing is stored and no event is read.
 pub(super) struct RemovedObjects<N: Space<D>, const D: usize, T> {
     pub(super) objects: BTreeMap<CollisionObjectHandle, CollisionObject<N, D, T>>,
-    /// Handles named by the events that [`Self::note`] has read since the update.
+    /// The handles in the events that [`Self::note`] has read since the last update.
     referenced: BTreeSet<CollisionObjectHandle>,
-    /// Numbers of contact and of proximity events that have been read: of the last update, and
-    /// queued since.
+    /// Numbers of contact and proximity events that have been read: first of the events of the last
+    /// update, then of the events queued since.
     num_read: [(usize, usize); 2],
 }
 
@@ -34,7 +34,7 @@ impl<N: Space<D>, const D: usize, T> RemovedObjects<N, D, T> {
         }
     }
 
-    /// Keeps a removed object if an event has its handle; else drops it.
+    /// Keeps a removed object if an event has its handle; otherwise drops it.
     pub(super) fn keep(&mut self, object: CollisionObject<N, D, T>) {
         let handle = object.handle();
         if self.referenced.contains(&handle) {
@@ -57,15 +57,15 @@ impl<N: Space<D>, const D: usize, T> RemovedObjects<N, D, T> {
 /// Access to removed objects whose handles are still in events.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns a removed object, in its last state, as long as an event contains its handle: an
-    /// event of the last update, or one that the removal has queued for the next. So every handle
-    /// in [`Self::contact_events`] and [`Self::proximity_events`] has an object, which this method
-    /// or [`Self::collision_object`] returns.
+    /// event of the last update, or an event that the removal has queued for the next update. So
+    /// every handle in [`Self::contact_events`] and [`Self::proximity_events`] has an object, which
+    /// this method or [`Self::collision_object`] returns.
     ///
-    /// `None` for objects that have not been removed, for stale handles in no event, and for
-    /// objects taken by [`Self::take_removed`]. A removed object whose handle is in no event is
-    /// dropped at once. Others are dropped by the update that discards the last event with their
+    /// `None` for an object that has not been removed, for a stale handle in no event, and for an
+    /// object taken by [`Self::take_removed`]. A removed object whose handle is in no event is
+    /// dropped at once. Otherwise it is dropped by the update that discards the last event with its
     /// handle: without [`Self::keep_events`], at the latest the second update after the removal.
-    /// Until then their data and shapes take memory.
+    /// Until then its data and shape take memory.
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;
@@ -96,7 +96,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Takes the data of a removed object, which [`Self::removed_object`] then no longer returns.
-    /// `None` where that method returns `None`.
+    /// `None` if that method returns `None` for this handle.
     pub fn take_removed(&mut self, handle: CollisionObjectHandle) -> Option<T> {
         self.removed.objects.remove(&handle).map(|object| object.data)
     }

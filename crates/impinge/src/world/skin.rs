@@ -1,4 +1,4 @@
-//! Contact skins: contacts are computed for shapes grown by a distance.
+//! Contact skins: distances by which shapes are grown when their contacts are computed.
 
 use super::entries;
 use super::error::or_panic;
@@ -22,9 +22,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// part of a composite is grown.
     ///
     /// Proximities, queries and the algorithms of a custom dispatcher ignore the skin. Takes effect
-    /// at the next update; contacts keep their ids. Costs nothing in a world without skins.
-    /// Otherwise boxes are larger by the skin, and the manifolds of an object with a skin are built
-    /// on first access.
+    /// at the next update; contacts keep their ids. Costs nothing in a world without skins. The box
+    /// of an object with a skin is larger by the skin, and its manifolds are built on first access.
     ///
     /// ```
     /// use impinge::dim3::math::{Isometry, Vector};

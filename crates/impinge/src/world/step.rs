@@ -7,8 +7,8 @@ use crate::narrow_phase::{
 };
 use crate::query::Proximity;
 
-/// Number of pairs passed to the narrow phase at once: few enough that the rows of their objects
-/// are still in the cache when they are released.
+/// Maximum number of pairs passed to the narrow phase at once. It is small enough that the rows of
+/// their objects are still in the cache when they are released.
 const BATCH: usize = 512;
 
 type HandlePair = (CollisionObjectHandle, CollisionObjectHandle);
@@ -34,8 +34,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// registered filters have allowed it; if it returns `false`, the pair does not start. The
     /// object with the smaller handle is the first argument, and the order of calls does not depend
     /// on the number of threads. Like every pair filter it must not change over time: it is called
-    /// when the boxes of two objects begin to overlap, and later updates call no filter again,
-    /// neither for a pair that started nor for one that was refused.
+    /// when the boxes of two objects begin to overlap. Later updates do not call any filter again
+    /// for this pair, whether it started or was refused.
     ///
     /// To call the filter again, call [`Self::refilter_pairs`] or [`Self::refilter_pairs_of`]
     /// before the update: pairs that the filter refuses then stop, with their events, and pairs
@@ -94,7 +94,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
     }
 
-    /// Begins the batch of events of an update, behind the last batch if that is kept. Drops
+    /// Begins the batch of events of an update, behind the last batch if that is kept. Drops the
     /// removed objects whose handle is in no event any more.
     fn begin_events(&mut self) {
         if !core::mem::take(&mut self.keeps_events) {
@@ -104,12 +104,13 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.removed.keep_referenced(&self.events);
     }
 
-    /// Makes the next update keep the events of the last one and append its own. So a program that
-    /// updates twice in a step can read the events of both updates together.
+    /// Makes the next update keep the events of the last update and append its own. So a program
+    /// that updates twice in a step can read the events of both updates together.
     ///
     /// The events of each update form a batch in canonical order; a `Started` in the first batch
-    /// can be followed by a `Stopped` of the same pair in the second. The call affects one update;
-    /// to collect the events of several, call this before each update except the first.
+    /// can be followed by a `Stopped` of the same pair in the second batch. The call affects one
+    /// update; to collect the events of several updates, call this before each of them except the
+    /// first.
     ///
     /// ```
     /// use impinge::dim2::events::ContactEvent;
@@ -133,8 +134,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.keeps_events = true;
     }
 
-    /// Writes the changes since the last update to the object table and the broad phase, and starts
-    /// or stops pairs of objects with themselves.
+    /// Writes the changes since the last update to the object table and the broad phase. Starts or
+    /// stops pairs of objects with themselves, and passes changed objects to the narrow phase.
     fn write_changes(&mut self) {
         self.objects.flush(&mut *self.broad_phase, &mut self.algorithms);
         for index in self.objects.changes.take_self_changed() {
@@ -200,8 +201,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
     }
 
-    /// Releases the table rows of a stopped pair's objects, unless the narrow phase has other pairs
-    /// of an object.
+    /// Releases the table row of each object of a stopped pair, unless the narrow phase has another
+    /// pair of the object.
     pub(super) fn release_rows(&mut self, pair: HandlePair) {
         for handle in [pair.0, pair.1] {
             if !self.narrow_phase.has_pairs_of(handle) {
@@ -219,17 +220,18 @@ pub(super) fn in_order(
     if handle2 < handle1 { (handle2, handle1) } else { (handle1, handle2) }
 }
 
-/// Status of a pair that has events: touching, or a proximity other than disjoint.
+/// The status of a pair that is not disjoint: touching, or a proximity other than `Disjoint`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum StepStatus {
     Touching,
     Near(Proximity),
 }
 
-/// Replacing the phases. The old ones are used until the next update, which creates all proxies
-/// anew.
+/// Replacing the phases. The present phases are used until the next update, which creates all
+/// proxies anew.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Replaces the broad phase by an empty one: any type that is `Clone`, `Send` and `Sync`.
+    /// Replaces the broad phase by an empty broad phase of any type that is `Clone`, `Send` and
+    /// `Sync`.
     ///
     /// The new broad phase takes over at the next update, which reports changes as any other update
     /// does, and ends all marks.
@@ -243,7 +245,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         &*self.broad_phase
     }
 
-    /// Replaces the narrow phase by one without pairs: any type that is `Clone`.
+    /// Replaces the narrow phase by a narrow phase without pairs, of any type that is `Clone`.
     ///
     /// The new narrow phase takes over at the next update, which reports changes as any other
     /// update does, and ends all marks. Contacts get new ids.
@@ -251,10 +253,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.next_narrow_phase = Some(narrow_phase);
     }
 
-    /// Updates with a new broad phase or narrow phase. All proxies are new, so the broad phase
-    /// reports every pair as started. A narrow phase that stays already has most of these; its
-    /// pairs that the broad phase did not report are stopped. A new narrow phase starts without
-    /// pairs; its events are the differences between the old statuses and the new ones.
+    /// Updates with a new broad phase or a new narrow phase. All proxies are new, so the broad
+    /// phase reports every pair as started. If the narrow phase stays, it already has most of these
+    /// pairs; those that the broad phase does not report again are stopped. A new narrow phase
+    /// starts without pairs; its events are the differences between the old and the new statuses.
     fn update_with_other_phases(&mut self, filter: Option<UpdateFilter<'_, N, D, T>>) {
         self.end_marks();
         let Some(mut narrow_phase) = self.next_narrow_phase.take() else {
@@ -273,7 +275,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.write_changes();
         let alone = self.objects.bodies().filter(|body| body.has_self_pair());
         for handle in alone.map(|body| body.handle).collect::<Vec<_>>() {
-            // Has no effect for a self-pair that began in this update.
+            // Has no effect for a pair with itself that began in this update.
             self.begin_or_end_pair((handle, handle), true);
         }
         self.started_pairs(filter);

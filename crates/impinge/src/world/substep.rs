@@ -12,17 +12,17 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// update. The handles may be in either order. For the substeps of a solver that moves a fast
     /// body to the position of its impact.
     ///
-    /// Returns `false`, without a change, if the two had no pair at the last update. The broad
-    /// phase is not searched: if two bodies may meet within a step, their volumes must cover that
-    /// step ([`Self::set_position_with_prediction`]). The pair is computed as in an update:
-    /// contacts that only moved keep their ids. Until the next update all readers see this pair at
-    /// the new positions, and every other pair as of the last update. Shapes, query types and
-    /// groups are those of the last update.
+    /// Returns `false`, without a change, if the two objects had no pair at the last update. The
+    /// broad phase is not searched: if two bodies may meet within a step, their volumes must cover
+    /// that step ([`Self::set_position_with_prediction`]). The pair is computed as in an update:
+    /// contacts that only moved keep their ids. Until the next update this pair is read at the new
+    /// positions, and every other pair as of the last update. Shapes, query types and groups are
+    /// those of the last update.
     ///
     /// If the pair began or ceased to touch, the event is queued. The next update delivers it
-    /// first, with the events of removals, in the order in which they occurred for the pair. Each
-    /// `Started` still has one `Stopped`: if a pair touches in a substep and has separated by the
-    /// update, both events are delivered.
+    /// first, together with the events of removals, in the order in which they occurred for the
+    /// pair. Each `Started` still has one `Stopped`: if a pair touches in a substep and has
+    /// separated by the update, both events are delivered.
     ///
     /// Costs one query and two look-ups. A custom narrow phase must implement
     /// [`NarrowPhase::update_pair`](super::NarrowPhase::update_pair).

@@ -1,6 +1,6 @@
-//! Tests of the public interface in a single program, so that it is linked once and shared code is compiled once.
-//! `cargo test -p impinge --test it NAME` runs those whose path contains a name. Only `determinism` is a separate
-//! program, because it also runs optimised.
+//! Tests of the public interface, in a single program: it is linked once, and the code that the
+//! tests share is compiled once. `cargo test -p impinge --test it NAME` runs the tests whose path
+//! contains `NAME`. Only `determinism` is a separate program, because it also runs optimised.
 
 #[macro_use]
 mod support;

@@ -66,7 +66,7 @@ pub struct PointHit {
     pub entity: Entity,
     /// The nearest point of the collider, in the global frame.
     pub point: Vec2,
-    /// Whether the given point is inside the collider.
+    /// `true` if the query point is inside the collider.
     pub is_inside: bool,
 }
 

@@ -79,7 +79,8 @@ impl Collider {
         convex_shape(&points::<2>(vertices)).ok().map(Self::from_handle)
     }
 
-    /// Creates the convex polygon with these corners, which is their hull.
+    /// Creates the convex hull of the corners of a polygon; `None` if there are no corners, or if
+    /// one is not finite.
     #[must_use]
     pub fn convex_polyline(vertices: Vec<Vec2>) -> Option<Self> {
         Self::convex_hull(vertices)

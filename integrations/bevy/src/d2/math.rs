@@ -1,4 +1,4 @@
-//! Bevy's types of 2D.
+//! Conversions of Bevy's types in 2D.
 
 use bevy_math::{Isometry2d, Ray2d, Rot2, Vec2};
 use bevy_transform::components::{GlobalTransform, Transform};

@@ -1,4 +1,4 @@
-//! Colliders that exist in 2D only, and those of Bevy's primitives.
+//! Colliders that exist in 2D only, and conversions from Bevy's primitives.
 
 use bevy_math::Vec2;
 use bevy_math::primitives::{

@@ -1,4 +1,4 @@
-//! Bevy's types of 3D.
+//! Conversions of Bevy's types in 3D.
 
 use bevy_math::{Isometry3d, Mat3A, Quat, Ray3d, Vec3};
 use bevy_transform::components::{GlobalTransform, Transform};

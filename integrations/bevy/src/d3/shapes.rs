@@ -1,4 +1,4 @@
-//! Colliders that exist in 3D only, and those of Bevy's primitives.
+//! Colliders that exist in 3D only, and conversions from Bevy's primitives.
 
 use bevy_math::Vec3;
 use bevy_math::primitives::{
@@ -33,7 +33,8 @@ impl Collider {
         Self::made(Cylinder::try_new(height / 2.0, radius))
     }
 
-    /// Creates a cone along the y axis: its apex is half of `height` above the origin, its base as much below.
+    /// Creates a cone along the y axis: its apex is `height / 2` above the origin, its base `height
+    /// / 2` below.
     #[must_use]
     pub fn cone(radius: f32, height: f32) -> Self {
         Self::made(Cone::try_new(height / 2.0, radius))
@@ -64,9 +65,9 @@ impl Collider {
         Self::from_shape(convex_shape(&points::<3>(vertices)).map_err(Into::into))
     }
 
-    /// Creates a surface over `rows` times `columns` heights, given row by row, centred at the origin: rows follow one
-    /// another along z, columns along x. It is `scale.x` by `scale.z` wide, with the heights times `scale.y`. It is
-    /// two-sided.
+    /// Creates a surface over `rows` times `columns` heights, listed row by row, centred at the
+    /// origin. The row index grows along z, the column index along x. It is `scale.x` by `scale.z`
+    /// wide, with the heights times `scale.y`. It is two-sided.
     #[must_use]
     pub fn heightfield(rows: usize, columns: usize, heights: Vec<f32>, scale: Vec3) -> Self {
         let scale = Vector::new(scale.x, scale.y, scale.z);

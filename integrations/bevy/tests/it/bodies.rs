@@ -103,7 +103,7 @@ fn layers_change_at_run_time() {
     app.world_mut().entity_mut(b).insert(CollisionLayers::NONE);
     app.update();
     assert_eq!(told::<3>(&mut app), [(false, a, b)]);
-    // Without steps in between messages of removal would be dropped.
+    // Four frames without a step, after which messages of removal are dropped.
     app.world_mut().entity_mut(b).remove::<CollisionLayers>();
     for _ in 0..4 {
         app.world_mut().clear_trackers();

@@ -5,7 +5,7 @@ use bevy_ecs::prelude::*;
 use bevy_impinge::{Collider, CollisionEnded, CollisionStarted, Collisions, Glam, ImpingePlugin};
 use bevy_transform::prelude::*;
 
-/// An app whose world steps once per update.
+/// Returns an app whose world steps once per update.
 pub(crate) fn app<const D: usize>() -> App
 where
     f32: Glam<D>,
@@ -22,7 +22,7 @@ where
     app.world().resource::<Collisions<D>>()
 }
 
-/// A ball of radius 1, or a disk.
+/// Returns a ball of radius 1; in 2D a disk.
 pub(crate) fn ball<const D: usize>() -> Collider<D>
 where
     f32: Glam<D>,

@@ -1,4 +1,4 @@
-//! Contacts of surfaces.
+//! Pictures of contacts with surfaces: internal edges, and one-sided surfaces.
 
 use super::{AMBER, INK, WIDTH, check_svg, note, options};
 use impinge::debug_render::{DebugDrawing, DebugRender, Drawn, Style};
@@ -7,8 +7,9 @@ use impinge_view::SvgPicture;
 
 type FloorWorld = CollisionWorld<f64, ()>;
 
-/// A box that slides over a floor with a penetration of 0.06, up to the first contact that pushes it sideways, or
-/// up to `stop`.
+/// Slides a box over a floor with a penetration of 0.06, until a contact pushes it sideways, and
+/// returns that position. With `stop` the box is only placed there. The position is `None` if no
+/// contact pushes it sideways.
 fn slide(floor: Polyline<f64>, height: f64, stop: Option<f64>) -> (FloorWorld, Option<f64>) {
     let (everybody, contacts) = (CollisionGroups::new(), ContactQuery::default());
     let mut world = FloorWorld::new(0.02);
@@ -56,7 +57,7 @@ fn internal_edges() {
 fn two_sides_or_one() {
     let (everybody, contacts) = (CollisionGroups::new(), ContactQuery::default());
     let mut world = FloorWorld::new(0.02);
-    // From right to left: the front, the right side of each segment, is up.
+    // The vertices go from right to left: the front, the right side of each segment, faces up.
     let hills = [[2.4, 0.0], [1.2, 0.3], [0.0, -0.1], [-1.2, 0.2], [-2.4, 0.0]].map(Point::from);
     let both = Polyline::open(hills.to_vec());
     let ball = ShapeHandle::new(Ball::new(0.5));

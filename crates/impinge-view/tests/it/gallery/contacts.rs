@@ -1,12 +1,12 @@
-//! Contacts and manifolds.
+//! Pictures of contacts and manifolds.
 
 use super::{AMBER, CLAY, RED, SAND, SLATE, WIDTH, check_png, check_svg, options, turned2};
 use impinge::debug_render::{DebugDrawing, DebugRender, Drawn, Style};
 use impinge::{dim2, dim3};
 use impinge_view::{Camera, PngPicture, SvgPicture};
 
-/// Returns a ball that is deep in a box, and a tilted box with one corner in another box and one above
-/// it.
+/// Returns two pairs: a ball deep in a box, and a tilted box with one corner inside another box and
+/// one above it.
 fn touching_pairs() -> dim2::world::CollisionWorld<f64, ()> {
     use dim2::prelude::*;
     let mut world = CollisionWorld::new(0.02);
@@ -61,7 +61,7 @@ fn manifold_in_3d() {
     let table = ShapeHandle::new(Cuboid::new(Vector::new(1.5, 0.25, 1.1)));
     let brick = ShapeHandle::new(Cuboid::new(Vector::new(0.9, 0.4, 0.7)));
     world.add(Isometry::identity(), table, everybody, contacts, SAND);
-    // Rotated by about 0.55 about the vertical axis.
+    // A rotation by about 0.55 radians about the vertical axis.
     let turned = Rotation::from_quaternion(Quaternion::new(1.0, 0.0, 0.28, 0.0));
     let place = Isometry::from_parts(Vector::new(0.35, 0.6, 0.1).into(), turned);
     world.add(place, brick, everybody, contacts, SLATE.with_alpha(120));

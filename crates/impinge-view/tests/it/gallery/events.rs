@@ -1,11 +1,11 @@
-//! Events along a time line.
+//! A picture of events along a time line.
 
 use super::{CLAY, GOLD, GRAY, INK, RED, SLATE, VIOLET, WIDTH, check_svg, note, options};
 use impinge::debug_render::{Color, DebugDrawing, DebugRender, Drawn, Style};
 use impinge::dim2::prelude::*;
 use impinge_view::SvgPicture;
 
-/// The world of the guide's program: a ball that moves through a zone to a wall.
+/// The world of the guide's program: a ball moves through a sensor to a wall.
 struct Course {
     world: CollisionWorld<f64, Color>,
     ball: CollisionObjectHandle,
@@ -24,7 +24,7 @@ impl Course {
         Self { world, ball }
     }
 
-    /// Moves the ball and returns texts about the events of the update.
+    /// Moves the ball, updates, and returns a text and a colour for each event.
     fn step(&mut self, x: f64) -> Vec<(String, Color)> {
         self.world.set_position(self.ball, Isometry::translation(x, 0.0));
         self.world.update();
@@ -59,7 +59,7 @@ fn time_line() {
     let ball = course.world.collision_object(course.ball).expect("not removed").shape().clone();
     let mut log = Vec::new();
     for step in 0..=11_u8 {
-        // Into the wall and back out of it.
+        // The ball moves into the wall, and at the last step out of it.
         let x = if step == 11 { 3.0 } else { f64::from(step) - 5.0 };
         let mark = f64::from(step) - 5.0;
         let events = course.step(x);

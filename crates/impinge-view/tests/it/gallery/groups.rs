@@ -1,4 +1,4 @@
-//! Groups and filters.
+//! A picture of groups and filters.
 
 use super::{AMBER, CLAY, SAGE, SLATE, WIDTH, check_svg, note, options};
 use impinge::debug_render::{Color, DebugDrawing, Style};
@@ -14,7 +14,8 @@ enum Role {
 }
 
 impl Role {
-    /// Players are in group 0, ghosts in 1, walls in 2. Players and ghosts interact with walls; players with players.
+    /// Returns the groups: players are in group 0, ghosts in 1, walls in 2. Players and ghosts
+    /// interact with walls, players also with players.
     fn groups(self) -> CollisionGroups {
         let (own, others): (usize, &[usize]) = match self {
             Self::Player => (0, &[0, 2]),

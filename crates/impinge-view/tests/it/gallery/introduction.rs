@@ -1,4 +1,4 @@
-//! A pile of boxes with all of its contacts.
+//! A picture of a pile of boxes with all of its contacts.
 
 use super::{CLAY, GOLD, MAUVE, SAGE, SAND, SLATE, check_png, options};
 use impinge::debug_render::{Color, DebugDrawing};
@@ -7,8 +7,8 @@ use impinge_view::{Camera, PngPicture};
 
 const COLORS: [Color; 4] = [SLATE, SAGE, GOLD, MAUVE];
 
-/// Layers of boxes, each with a penetration of 0.01 and one row and column less than the one below, on a floor, and
-/// a ball on top.
+/// Returns a floor with four layers of boxes, each with a row and a column less than the layer
+/// below, and two balls. All touching objects penetrate by 0.01.
 fn pyramid() -> CollisionWorld<f64, Color> {
     let mut world = CollisionWorld::new(0.02);
     let (everybody, contacts) = (CollisionGroups::new(), ContactQuery::default());
@@ -35,7 +35,8 @@ fn pyramid() -> CollisionWorld<f64, Color> {
 #[test]
 fn pile() {
     let world = pyramid();
-    // Sixteen boxes lie on the floor, 4 (9 + 4 + 1) corners of those above on one box each, and two balls.
+    // 16 boxes touch the floor. Each of the 9 + 4 + 1 boxes above them touches four boxes, one with
+    // each corner. Each of the two balls touches one object.
     assert_eq!(world.contact_manifolds().count(), 16 + 56 + 2, "each pair that touches");
     let mut options = options::<f64>();
     options.contact_normal = None;

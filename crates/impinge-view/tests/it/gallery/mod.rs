@@ -1,4 +1,5 @@
-//! The pictures of README and guide: worlds as users make them, drawn from results of the library.
+//! The pictures of the README and the guide. Each shows a world as a user would create it, drawn
+//! from results of the library.
 
 mod composites;
 mod contacts;
@@ -32,7 +33,7 @@ const GREEN: Color = Color::rgb(76, 140, 84);
 const GRAY: Color = Color::rgb(140, 146, 156);
 const INK: Color = Color::rgb(62, 70, 82);
 
-/// The width of the guide's 2D pictures in pixels: about that of its text.
+/// The width of the 2D pictures of the guide in pixels, about that of its text.
 const WIDTH: u32 = 720;
 
 /// Returns the drawing options of all pictures. Boxes, manifolds and proximities are off.
@@ -70,8 +71,8 @@ fn draw_grid<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns a pose in 2D, rotated by an angle in radians with the library's own sine: the same on every
-/// machine.
+/// Returns a pose in 2D with a rotation by `angle` radians. It uses the sine of the library, whose
+/// result is the same on every machine.
 fn turned2(x: f64, y: f64, angle: f64) -> dim2::math::Isometry<f64> {
     let (sine, cosine) = angle.sine_cosine();
     let rotation = dim2::math::Rotation::new_unchecked(dim2::na::Complex::new(cosine, sine));
@@ -84,7 +85,8 @@ fn note(picture: &mut SvgPicture, at: [f64; 2], text: &str) {
     DebugRender::<f64, 2>::text(picture, &at, text, INK, Drawn::Object);
 }
 
-/// The largest number of bytes of a picture, since pages of the guide load at once.
+/// The maximum size of a picture in bytes, since a page of the guide loads all of its pictures at
+/// once.
 const MAX_BYTES: usize = 60_000;
 
 fn golden() -> Golden {
@@ -102,8 +104,8 @@ fn check_svg(name: &str, picture: &SvgPicture) {
     }
 }
 
-/// Returns the picture as the destination of a Markdown link, between angle brackets: pages of `rustdoc` have
-/// no files beside them.
+/// Returns the picture as the destination of a Markdown link in angle brackets. Pages of `rustdoc`
+/// cannot refer to separate files.
 fn data_uri(svg: &str) -> String {
     let mut uri = "data:image/svg+xml,".to_owned();
     for character in svg.chars() {

@@ -1,4 +1,4 @@
-//! A shape of a user: the lens of the guide.
+//! A picture of a user-defined shape: the lens of the guide.
 
 use super::{AMBER, CLAY, RED, SAND, WIDTH, check_svg, options, turned2};
 use impinge::debug_render::{DebugDrawing, DebugRender, Drawn, Style};
@@ -7,7 +7,7 @@ use impinge::dim2::prelude::*;
 use impinge::dim2::shape::{Geometry, SupportMap};
 use impinge_view::SvgPicture;
 
-/// The points common to two disks of one radius around `(0, -offset)` and `(0, offset)`.
+/// The intersection of two disks of equal radius around `(0, -offset)` and `(0, offset)`.
 #[derive(Debug)]
 struct Lens {
     radius: f64,
@@ -46,7 +46,7 @@ impl Shape<f64, 2> for Lens {
 fn lenses() {
     let mut world = CollisionWorld::<f64, _>::new(0.02);
     let (everybody, contacts) = (CollisionGroups::new(), ContactQuery::default());
-    // Eight wide, four high.
+    // This lens is eight wide and four high.
     let lens = ShapeHandle::new(Lens { radius: 5.0, offset: 3.0 });
     let box_shape = ShapeHandle::new(Cuboid::new(Vector::new(1.4, 1.0)));
     world.add(Isometry::identity(), lens.clone(), everybody, contacts, CLAY);

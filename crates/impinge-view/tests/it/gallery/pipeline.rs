@@ -1,18 +1,18 @@
-//! The boxes and trees of the broad phase.
+//! Pictures of the boxes and the tree of the broad phase.
 
 use super::{CLAY, GREEN, SLATE, VIOLET, WIDTH, check_svg, options, turned2};
 use impinge::debug_render::{Color, DebugDrawing, DebugOptions, DebugRender, Drawn, Style};
 use impinge::dim2::prelude::*;
 use impinge_view::SvgPicture;
 
-/// Returns points that fill a rectangle evenly: the sequence R2 (M. Roberts, 2018).
+/// Returns point `number` of a sequence that fills a rectangle evenly: R2 (M. Roberts, 2018).
 fn spread(number: u32, size: [f64; 2]) -> [f64; 2] {
     let n = f64::from(number) + 0.5;
     [(n * 0.569_840_3).fract() * size[0], (n * 0.754_877_7).fract() * size[1]]
 }
 
-/// Returns shapes of four kinds; those with even numbers have moved since the first update, within
-/// their fat AABBs.
+/// Returns a world with shapes of four kinds. Those with even numbers have moved since the first
+/// update, within their fat AABBs.
 fn moving_world() -> CollisionWorld<f64, ()> {
     let mut world = CollisionWorld::new(0.14);
     let (everybody, contacts) = (CollisionGroups::new(), ContactQuery::default());
@@ -75,7 +75,7 @@ fn nodes_of_the_tree() {
     let ball = ShapeHandle::new(Ball::new(0.07));
     for number in 0..240 {
         let [x, y] = spread(number, [12.0, 5.0]);
-        // Denser towards the left.
+        // The square makes the points denser towards the left.
         world.add(Isometry::translation(x * x / 12.0, y), ball.clone(), everybody, contacts, ());
     }
     world.update();
@@ -97,7 +97,7 @@ fn nodes_of_the_tree() {
     check_svg("tree", &picture);
 }
 
-/// Counts lines.
+/// A renderer that only counts the lines.
 struct Lines(usize);
 
 impl DebugRender<f64, 2> for Lines {

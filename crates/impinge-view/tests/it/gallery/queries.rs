@@ -1,4 +1,4 @@
-//! Rays, casts, and nearest objects.
+//! Pictures of rays, casts, and nearest objects.
 
 use super::{BLUE, INK, VIOLET, WIDTH, check_svg, options, turned2};
 use impinge::debug_render::{DebugDrawing, DebugRender, Drawn, Style, SweptShape};
@@ -7,7 +7,7 @@ use impinge_view::SvgPicture;
 
 type NamedWorld = CollisionWorld<f64, &'static str>;
 
-/// Solids of five kinds in a row, at different heights.
+/// Returns solids of five kinds in a row, at different heights.
 fn obstacles() -> NamedWorld {
     let mut world = NamedWorld::new(0.02);
     let (everybody, contacts) = (CollisionGroups::new(), ContactQuery::default());

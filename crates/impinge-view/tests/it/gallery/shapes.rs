@@ -1,4 +1,4 @@
-//! All shapes and their names.
+//! Pictures of all shapes with their names.
 
 use super::{CLAY, GOLD, MAUVE, SAGE, SLATE, WIDTH, check_png, check_svg, draw_grid};
 use impinge::debug_render::Color;
@@ -7,7 +7,7 @@ use impinge::shape::ShapeHandle;
 use impinge::{dim2, dim3};
 use impinge_view::{Camera, PngPicture, SvgPicture};
 
-/// Returns shapes with names and colours; a shape's colour follows from its index.
+/// Adds a colour to each shape, by its index.
 fn colored<N: impinge::math::Space<D>, const D: usize>(
     shapes: Vec<(&'static str, ShapeHandle<N, D>)>,
 ) -> Vec<(&'static str, ShapeHandle<N, D>, Color)> {
@@ -104,7 +104,7 @@ fn convex3() -> Vec<(&'static str, ShapeHandle<f64, 3>)> {
     ]
 }
 
-/// A torus of 20 by 10 cells around the second axis.
+/// Returns a torus of 20 by 10 cells around the second axis.
 fn torus() -> dim3::shape::TriMesh<f64> {
     use dim3::math::Point;
     let (around, across) = (20_u32, 10_u32);

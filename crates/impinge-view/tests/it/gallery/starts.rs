@@ -1,11 +1,11 @@
-//! The table of casts that begin apart, touching, or penetrating.
+//! A picture of the table of casts that begin apart, touching, or penetrating.
 
 use super::{BLUE, INK, RED, WIDTH, check_svg, note, options};
 use impinge::debug_render::{DebugDrawing, DebugRender, Drawn};
 use impinge::dim2::prelude::*;
 use impinge_view::SvgPicture;
 
-/// The distance from one cell of the table to the next, to the right and down.
+/// The horizontal and the vertical distance between cells of the table.
 const CELL: [f64; 2] = [4.6, 3.1];
 
 /// Draws a box over a floor with its velocity and the impact, and returns the time of impact.

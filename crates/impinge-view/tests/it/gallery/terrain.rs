@@ -1,4 +1,4 @@
-//! The picture of README: solids on hills.
+//! The picture of the README: solids on hills.
 
 use super::{CLAY, GOLD, MAUVE, SAGE, SAND, SLATE, check_png};
 use impinge::debug_render::{Color, DebugDrawing, DebugOptions};
@@ -15,7 +15,7 @@ type World = CollisionWorld<f64, Color>;
 
 const COLORS: [Color; 5] = [SLATE, CLAY, SAGE, GOLD, MAUVE];
 
-/// Hills of 12 by 8, in 24 by 36 cells.
+/// Returns a height field of size 12 by 8, with 24 by 36 cells.
 fn hills() -> HeightField<f64> {
     let (rows, columns) = (25_u32, 37_u32);
     let height = |row: u32, column: u32| {
@@ -26,7 +26,7 @@ fn hills() -> HeightField<f64> {
     HeightField::new(25, 37, heights.collect(), Vector::new(12.0, 1.0, 8.0))
 }
 
-/// A wave of period 4 made of parabolas: the same on every machine.
+/// Returns a wave of period 4, made of parabolas so that it is the same on every machine.
 fn wave(x: f64) -> f64 {
     let phase = x - 4.0 * (x / 4.0).floor();
     let half = if phase < 2.0 { phase } else { phase - 2.0 };
@@ -34,10 +34,10 @@ fn wave(x: f64) -> f64 {
     if phase < 2.0 { arch } else { -arch }
 }
 
-/// Drops a shape until it touches something, then lets it penetrate slightly; `turned` is the vector part of
-/// its rotation, relative to the real part.
+/// Drops a shape until it touches something, then lets it penetrate by 0.02. `turned` is the vector
+/// part of the quaternion of its rotation, divided by the real part.
 fn drop_shape(world: &mut World, shape: &ShapeHandle<f64>, at: [f64; 2], turned: Vector<f64>) {
-    // No sines of the platform: the picture is the same on every machine.
+    // No sines of the platform are used, so that the picture is the same on every machine.
     let rotation = Rotation::from_quaternion(Quaternion::new(1.0, turned.x, turned.y, turned.z));
     let start = Isometry::from_parts(Vector::new(at[0], 9.0, at[1]).into(), rotation);
     let (options, down) = (ImpactOptions::new(), -Vector::y());
@@ -49,7 +49,7 @@ fn drop_shape(world: &mut World, shape: &ShapeHandle<f64>, at: [f64; 2], turned:
     world.add(place, shape.clone(), CollisionGroups::new(), ContactQuery::default(), color);
 }
 
-/// Returns hills with solids of all kinds that fell on them, one after the other.
+/// Returns hills on which solids of all kinds have fallen, one after the other.
 fn terrain() -> World {
     let mut world = World::new(0.02);
     let (everybody, contacts) = (CollisionGroups::new(), ContactQuery::default());
@@ -64,7 +64,7 @@ fn terrain() -> World {
     ];
     for number in 0..34_u32 {
         let n = f64::from(number);
-        // Evenly distributed: the sequence R2 (M. Roberts, 2018).
+        // Evenly distributed points: the sequence R2 (M. Roberts, 2018).
         let at = [(n * 0.754_877_7).fract() * 10.0 - 5.0, (n * 0.569_840_3).fract() * 6.4 - 3.2];
         let turned = Vector::new(0.2 * wave(n), wave(0.7 * n), 0.2 * wave(1.3 * n));
         drop_shape(&mut world, &solids[number as usize % solids.len()], at, turned);

@@ -24,7 +24,7 @@ fn random_box<N: Real, const D: usize>(state: &mut u64, side: u32) -> Aabb<N, D>
 }
 
 /// Outcome of a scene: its events with their steps, the pairs in the order of the table, and the
-/// greatest number of still objects.
+/// maximum number of still objects.
 #[derive(Debug, PartialEq)]
 struct Outcome {
     events: Vec<(usize, u32, u32, bool)>,
@@ -189,8 +189,8 @@ fn respawned_objects_keep_the_tree_good() {
     compare_pairs(&finder, |_, _| true);
 }
 
-/// If 10 of 30 000 objects that were inserted at once move, the others come to rest, and no update
-/// moves more than 2500 objects between slots.
+/// If 10 of 30 000 objects move after a bulk insertion, the other objects come to rest, and no
+/// update from the third on moves 2500 objects or more between slots.
 #[test]
 fn no_update_handles_many_objects_at_rest() {
     let (count, movers, state) = (30_000, 10, &mut 5);

@@ -1,5 +1,5 @@
-//! Searches of two trees, each in its own frame: for near pairs of objects, near ones first
-//! ([`near_pairs`]), and for pairs that may touch, without an order ([`touching`]).
+//! Searches of two trees, each in its own frame: for near pairs of objects, roughly by ascending
+//! distance ([`near_pairs`]), and for pairs that may touch, in any order ([`touching`]).
 
 mod agenda;
 mod near_pairs;

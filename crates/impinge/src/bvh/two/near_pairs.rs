@@ -5,13 +5,13 @@
 //! straight to two objects, whose distance rejects other pairs. The lanes of both blocks are
 //! compared with each other, or only the lanes of the wider block if it is much wider. A box of one
 //! tree is transformed into the frame of the other, so that the axes of both frames separate
-//! blocks. Other directions between the trees do so too: along these, a block's extent is bounded
+//! blocks. Other directions separate further blocks: along these, the extent of a block is bounded
 //! by its box and its slab.
 //!
 //! ```text
 //!  queue: pairs (block1, block2) by distance
 //!    pop ──> beyond the limit along a direction?  drop
-//!        ──> another pair is nearer by now?       push again
+//!        ──> another pair is nearer now?          push again
 //!        ──> two leaf blocks?                     visit near objects
 //!        ──> else                                 push near pairs of children
 //! ```
@@ -50,8 +50,8 @@ pub(crate) trait TreePair<N: Real, const D: usize> {
     /// other.
     fn object_in_other(&self, which: usize, id: u32) -> Aabb<N, D>;
 
-    /// Returns the largest distance between boxes of pairs to visit; a negative one ends the
-    /// search. It must never grow.
+    /// Returns the largest distance between boxes of pairs to visit; a negative distance ends the
+    /// search. The distance must never grow.
     fn bound(&self) -> N;
 
     /// Returns the largest signed distance between objects of pairs to visit. It must never grow.
@@ -66,7 +66,7 @@ pub(crate) trait TreePair<N: Real, const D: usize> {
     fn best(&self) -> Option<Toward<N, D>>;
 
     /// Returns the direction for a unit vector in the frame of the first (0) or the second (1)
-    /// tree. `None` if gaps along it mean nothing, because the objects move.
+    /// tree. `None` if gaps along a direction are not valid bounds, because the objects move.
     fn toward(&self, which: usize, along: &Vector<N, D>) -> Option<Toward<N, D>>;
 
     /// Returns the direction from a point of the first tree to a point of the second, each in its
@@ -169,7 +169,7 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
     }
 
     /// Raises the lower bound of a pair, and returns the pair if it is still first. `None` if the
-    /// pair is beyond the limit, or if another one now comes first: then the pair is queued again.
+    /// pair is beyond the limit, or if another pair is now first: then the pair is queued again.
     fn first(&mut self, mut pair: BlockPair) -> Option<BlockPair> {
         let gap = if pair.is_rough { self.gap(&pair) } else { self.best_gap(&pair) };
         let is_beyond = gap > self.question.limit();

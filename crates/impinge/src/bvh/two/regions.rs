@@ -3,8 +3,8 @@
 //!
 //! ```text
 //!    own frame            the other tree's frame
-//!   +--------+               /\_               along the axes of both frames ([`RotatedBox::bounds`], `slabs`)
-//!   |  box   |  -- pose -->  \  \_   gap  [ ]  across the slab of what is in the box
+//!   +--------+               /\_               along the axes of both frames (`bounds`, `slabs`)
+//!   |  box   |  -- pose -->  \  \_   gap  [ ]  across the slab of the box's contents
 //!   +--------+                \__/ ------>[ ]  along the line to the centre of each box ([`Extent`])
 //! ```
 //!
@@ -19,7 +19,7 @@ use crate::math::lanes::{bits, with_lanes};
 use crate::math::simd::{Level, Simd};
 use crate::math::{Pose, Real, Vector, Wide, filled};
 
-/// Lanes that are tested at once.
+/// Number of lanes that are tested at once.
 const HALF: usize = LANES / 2;
 
 /// The pose of one tree in the frame of the other.
@@ -116,7 +116,7 @@ fn dot<const D: usize>(a: &[f32; D], b: &[f32; D]) -> f32 {
 }
 
 impl<const D: usize> RotatedBox<D> {
-    /// Returns the region of an object's box, and of the object's corners if given, all in the
+    /// Returns the region of an object's box, and of the object's corners if it has any, all in the
     /// frame of the blocks and widened by `margin`.
     pub(super) fn of_object<N: Real>(
         bounds: &Bounds<D>,
@@ -143,7 +143,7 @@ impl<const D: usize> RotatedBox<D> {
     }
 
     /// Tests 8 boxes in a block, from lane `first` on: writes their gaps and returns the mask of
-    /// those that may be touched. Empty lanes have an infinite gap.
+    /// the boxes that may be touched. Empty lanes have an infinite gap.
     #[inline(always)]
     fn held_half<S: Simd>(&self, simd: S, block: &Block<D>, first: usize, gaps: &mut [f32]) -> u8 {
         let (lanes, zero) = (first..first + HALF, S::F32x8::all(simd, 0.0));
@@ -164,7 +164,7 @@ impl<const D: usize> RotatedBox<D> {
                     let far = usize::from(across[axis] >= 0.0);
                     (lowest, highest) = (lowest + ends[1 - far], highest + ends[far]);
                 }
-                // NaN is not larger, so it changes nothing.
+                // A NaN is not larger, so it does not change `gap`.
                 gap = (lowest - S::F32x8::all(simd, *high)).larger(gap);
                 gap = (S::F32x8::all(simd, *low) - highest).larger(gap);
             }
@@ -180,7 +180,7 @@ impl<const D: usize> RotatedBox<D> {
 }
 
 impl<const D: usize> Extent<D> {
-    /// The convex hull of three corners, widened by `margin`.
+    /// Returns the extent of the convex hull of three corners, widened by `margin`.
     fn of_corners<N: Real>(corners: &[Vector<N, D>; 3], margin: f32) -> Self {
         let points: [[f32; D]; 3] = filled(|at: usize| filled(|axis| corners[at][axis].as_f32()));
         let middle = filled(|axis| points.iter().map(|corner| corner[axis] / 3.0).sum());

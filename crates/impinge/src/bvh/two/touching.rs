@@ -2,9 +2,10 @@
 //!
 //! The search is depth first over pairs of blocks. The box of one block is transformed once into
 //! the frame of the other tree, and compared with all boxes in the other block. It is compared
-//! along the axes of both frames, which separate most disjoint boxes (Gottschalk, Lin and Manocha,
-//! "`OBBTree`", 1996, also test the cross products of edges), and across its slab. The larger of
-//! two blocks is opened, and the child with the deepest overlap comes next, without a queue.
+//! along the axes of both frames and across its slab. The axes of both frames separate most
+//! disjoint boxes (Gottschalk, Lin and Manocha, "`OBBTree`", 1996, also test the cross products of
+//! edges). The larger of two blocks is opened, and the child with the deepest overlap comes next,
+//! without a queue.
 //!
 //! A search for the nearest pair is best first (Hjaltason and Samet, "Incremental distance join
 //! algorithms for spatial databases", 1998), after a descent straight to two objects. The direction
@@ -119,8 +120,8 @@ pub(crate) fn visit_touching<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
-    /// Opens pairs of blocks until the queue is empty or the question ends the search. Of two
-    /// blocks above the lowest layer, the one with the larger surface is opened.
+    /// Opens pairs of blocks until the queue is empty or `question` ends the search. Of two blocks
+    /// above the lowest layer, the one with the larger surface is opened.
     fn run(&mut self, whole: OpenPair, mut agenda: impl Agenda) {
         agenda.put(whole);
         while let Some(pair) = agenda.take() {
@@ -170,14 +171,14 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
         toward[0].dot(&self.question.pose(1).translation) - extents[0] - extents[1]
     }
 
-    /// Returns the maximum distance plus the rounding error; `None` to end the search.
+    /// Returns the maximum distance plus the bound of rounding errors; `None` ends the search.
     fn margin(&self) -> Option<f32> {
         self.question.max_distance().map(|max_distance| self.margin + max_distance.as_f32_above())
     }
 
-    /// Passes one object of each tree to the question, unless a descent finds none. Each is the end
-    /// of a descent toward the centre of the other object's leaf block; the first descent goes
-    /// toward the centre of the other tree.
+    /// Passes one object of each tree to [`TouchQuery::guess`], unless a descent finds none. Each
+    /// is the end of a descent toward the centre of the other object's leaf block; the first
+    /// descent goes toward the centre of the other tree.
     fn guess(&mut self, whole: OpenPair) {
         let (mut pair, mut found) = (whole, [NONE; 2]);
         for which in [0, 1, 0, 1] {

@@ -12,7 +12,8 @@ pub(super) enum Core<const D: usize> {
     Segment {
         start: [f32; D],
         axis: [f32; D],
-        /// One over the squared length of `axis`; zero if it has no length.
+        /// The reciprocal of the squared length of `axis`; zero if that square is not above the
+        /// smallest normal number.
         inverse_squared: f32,
     },
     Cuboid {
@@ -31,11 +32,11 @@ pub(super) enum Core<const D: usize> {
         normal: [f32; D],
         origin: [f32; D],
     },
-    /// A core without a bound: every point is treated as near.
+    /// An unknown core: the distance of every point is treated as zero.
     Unknown,
 }
 
-/// A core with its radius.
+/// A core with its rounding radius: the points within `radius` of `core`.
 #[derive(Clone, Debug)]
 pub(super) struct RoundedCore<const D: usize> {
     pub(super) core: Core<D>,
@@ -45,8 +46,8 @@ pub(super) struct RoundedCore<const D: usize> {
 }
 
 impl<const D: usize> RoundedCore<D> {
-    /// Returns the rounded core of a shape at a pose; the box of the shape if there is no closed
-    /// form.
+    /// Returns the rounded core of a shape at a pose. For a shape without a closed form the core is
+    /// its box, or unknown if the box is unbounded.
     pub(super) fn new<N: Real>(shape: &dyn Shape<N, D>, pose: &Pose<N, D>) -> Self {
         let exact = |core, radius: N| Self { core, radius: radius.as_f32(), is_exact: true };
         match shape.geometry().0 {
@@ -76,13 +77,13 @@ impl<const D: usize> RoundedCore<D> {
         }
     }
 
-    /// Returns a core without a bound.
+    /// Returns an unknown core.
     pub(super) const fn unknown() -> Self {
         Self { core: Core::Unknown, radius: 0.0, is_exact: false }
     }
 }
 
-/// Returns the box of a shape as a core.
+/// Returns the box of a shape as a core; an unknown core if the box is unbounded.
 fn boxed<N: Real, const D: usize>(shape: &dyn Shape<N, D>, pose: &Pose<N, D>) -> Core<D> {
     let aabb = shape.local_aabb();
     if !aabb.holds_finite_point() || !aabb.is_bounded() {
@@ -99,7 +100,7 @@ fn cuboid_at<N: Real, const D: usize>(
     Core::Cuboid { axes: columns(&pose.rotation), center: numbers(center), half: numbers(half) }
 }
 
-/// Returns a segment in the outer frame as a core.
+/// Returns the segment between two local points, in the outer frame, as a core.
 fn between<N: Real, const D: usize>(pose: &Pose<N, D>, ends: [&Point<N, D>; 2]) -> Core<D> {
     let [start, end] = ends.mapped(|end| pose.point(end).coords);
     let axis = (end - start).map(N::as_f32);

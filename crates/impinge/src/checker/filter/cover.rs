@@ -6,7 +6,8 @@ use crate::shape::{Kind, Shape};
 /// The maximum number of balls that cover a body.
 const MAX_BALLS: usize = 8;
 
-/// The number of steps towards the smallest bounding ball: after k steps the error is about 1 / √k.
+/// The number of steps towards the smallest bounding ball. After k steps the relative error of the
+/// radius is about 1 / √k at most.
 const STEPS: usize = 256;
 
 /// A ball in the frame of a node.
@@ -19,8 +20,8 @@ pub(super) struct CoverBall<N: Real, const D: usize> {
 /// Returns balls that cover a shape at a pose, and whether the shape equals the single ball
 /// returned.
 ///
-/// Balls in a row along the longest side cover the box of the shape; an infinite ball covers an
-/// unbounded shape.
+/// The balls are in a row along the longest side of the shape's box and cover the box. A ball of
+/// infinite radius covers an unbounded shape.
 pub(super) fn cover<N: Real, const D: usize>(
     shape: &dyn Shape<N, D>,
     pose: &Pose<N, D>,
@@ -54,7 +55,8 @@ fn small(count: usize) -> f64 {
     f64::from(u32::try_from(count).expect("a small number"))
 }
 
-/// Returns a bounding ball of at least one ball, close to the smallest bounding ball.
+/// Returns a bounding ball of the balls that is close to the smallest one. There must be at least
+/// one ball.
 ///
 /// M. Bădoiu and K. L. Clarkson, "Smaller core-sets for balls" (2003): each step moves the centre
 /// towards the farthest ball.
@@ -73,7 +75,7 @@ pub(super) fn around<N: Real, const D: usize>(balls: &[CoverBall<N, D>]) -> Cove
         });
         let away = farthest.center - center;
         let length = away.norm();
-        // Moves towards the farthest point of that ball.
+        // Moves the centre towards the farthest point of that ball.
         let shift = if length > N::ZERO {
             away * (radius_around(&center, farthest) / length)
         } else {

@@ -1,4 +1,4 @@
-//! The obstacles that the bodies of a robot may touch.
+//! The obstacles of a checker, prepared for the scan.
 
 use super::core::RoundedCore;
 use super::robot::{BallGroup, RobotFilter, path_to, shift_of};
@@ -11,34 +11,36 @@ use crate::math::{Pose, Real, Space, Vector};
 use crate::query::distance_between;
 use crate::shape::{Ball, Shape};
 
-/// Obstacles in the form of the scan.
+/// The obstacles in `f32`, and for each group of balls the obstacles to test it against.
 #[derive(Clone, Debug)]
 pub(in crate::checker) struct Surroundings<const D: usize> {
     pub(super) obstacles: Vec<LaneObstacle<D>>,
-    /// For each group, its obstacles in ascending order of their gap.
+    /// For each group, the obstacles to test it against, in ascending order of `gap`.
     pub(super) within: Vec<Vec<CloseObstacle>>,
     /// The pairs of a body and an obstacle that may touch, in ascending order.
     ignored: Vec<[u32; 2]>,
 }
 
-/// An obstacle in `f32`, with its rounding error.
+/// An obstacle in `f32`, relative to the first joint, and a bound of its rounding error.
 #[derive(Clone, Debug)]
 pub(super) struct LaneObstacle<const D: usize> {
     pub(super) outline: RoundedCore<D>,
     pub(super) margin: f32,
 }
 
-/// An obstacle near the region that a group can occupy.
+/// An obstacle that some body of a group must not touch.
 #[derive(Clone, Debug)]
 pub(super) struct CloseObstacle {
-    /// A lower bound of the distance between group and obstacle, if all slides are zero.
+    /// A lower bound of the distance between the group and the obstacle in all configurations whose
+    /// slides are zero.
     pub(super) gap: f32,
     pub(super) obstacle: usize,
     /// The index of the obstacle in the user's order.
     pub(super) number: u32,
-    /// The balls of the group whose bodies must not touch the obstacle, as a bit mask.
+    /// A bit mask of the balls of the group whose bodies must not touch the obstacle.
     pub(super) wanted: u8,
-    /// The sum of the radii of the group and of the obstacle, and of their margins.
+    /// The sum of the radius of the group's bounding ball, the rounding radius of the obstacle, and
+    /// both margins.
     pub(super) radius: f32,
 }
 
@@ -59,8 +61,7 @@ impl<const D: usize> Surroundings<D> {
         all
     }
 
-    /// Returns the obstacles of a group, sorted by their distance from the region that the group
-    /// can occupy.
+    /// Returns the obstacles that some body of a group must not touch, in ascending order of `gap`.
     fn close_obstacles<N: Space<D>>(
         &self,
         tree: &FrameTree<N, D>,
@@ -83,7 +84,8 @@ impl<const D: usize> Surroundings<D> {
             let gap =
                 distance_from(&path.anchor, obstacle).as_f64() - path.length - f64::from(margin);
             let gap = N::lit(gap).as_f32_below();
-            // A NaN gap, of an unbounded obstacle, is treated as near everything.
+            // The gap of an unbounded obstacle is NaN. It becomes minus infinity, so that the
+            // obstacle is always tested.
             let gap = if gap.is_nan() { -f32::INFINITY } else { gap };
             all.push(CloseObstacle { gap, obstacle: index, number, wanted, radius });
         }
@@ -92,7 +94,7 @@ impl<const D: usize> Surroundings<D> {
         all
     }
 
-    /// Returns, as a bit mask, the balls of a group whose bodies must not touch an obstacle.
+    /// Returns a bit mask of the balls of a group whose bodies must not touch an obstacle.
     fn wanted(&self, group: &BallGroup<D>, obstacle: u32) -> u8 {
         let may_touch = |body| self.ignored.binary_search(&[body, obstacle]).is_ok();
         let wanted = (0..group.count).filter(|&ball| !may_touch(group.bodies[ball]));
@@ -111,7 +113,8 @@ fn distance_from<N: Space<D>, const D: usize>(
     distance_between(&at, &there)
 }
 
-/// Converts an obstacle to `f32`, relative to the first joint.
+/// Converts an obstacle to `f32`, relative to the first joint. If a length is too large for `f32`,
+/// the core is unknown.
 fn in_f32<N: Space<D>, const D: usize>(
     tree: &FrameTree<N, D>,
     obstacle: &Obstacle<N, D>,
@@ -132,8 +135,8 @@ fn in_f32<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns the largest distance of the shape's box from the shape's origin; zero if the box is
-/// unbounded, as for a half-space.
+/// Returns the largest distance of a corner of the shape's box from the shape's origin; zero if the
+/// box is unbounded, as for a half-space.
 fn size_of_box<N: Real, const D: usize>(obstacle: &Obstacle<N, D>) -> f64 {
     let aabb = obstacle.shape.local_aabb();
     if !aabb.is_bounded() {

@@ -11,13 +11,13 @@ use crate::math::order::{order_of, sort_few};
 use crate::math::{Mapped, Matrix, Point, Pose, Real, Space, Vector};
 use crate::shape::Shape;
 
-/// A robot in the form that the scan uses.
+/// The bodies of a robot in `f32`, as groups of balls that the scan tests.
 #[derive(Clone, Debug)]
 pub(in crate::checker) struct RobotFilter<const D: usize> {
     pub(super) nodes: Vec<Node<f32, D>>,
     pub(super) groups: Vec<BallGroup<D>>,
     pub(super) crossings: Vec<GroupPair>,
-    /// The margin per unit of length of all slides.
+    /// The error margin per unit of length that the prismatic joints slide in total.
     slide_margin: f32,
 }
 
@@ -28,12 +28,13 @@ pub(super) struct BallGroup<const D: usize> {
     /// The bounding ball of all balls of the group, in the frame of the node.
     pub(super) center: [f32; D],
     pub(super) radius: f32,
-    /// The balls in lanes; lanes without a ball are masked out.
+    /// The centres of the balls, in the frame of the node, one lane per ball; lanes without a ball
+    /// are masked out.
     pub(super) centers: [LaneRow<f32>; D],
     pub(super) radii: LaneRow<f32>,
-    /// For each ball, the index, in the user's order, of the body that it covers.
+    /// The index of the body that each ball covers, in the user's order.
     pub(super) bodies: [u32; LANES],
-    /// The number of balls, and a bit mask of the balls that equal their body.
+    /// The number of balls in the group. `exact` is a bit mask of the balls that equal their body.
     pub(super) count: usize,
     pub(super) exact: u8,
     pub(super) margin: f32,
@@ -43,11 +44,13 @@ pub(super) struct BallGroup<const D: usize> {
 #[derive(Clone, Debug)]
 pub(super) struct GroupPair {
     pub(super) groups: [usize; 2],
-    /// A lower bound of the distance of the pairs in all configurations without slides.
+    /// A lower bound of the distance between the bodies of the pairs in all configurations whose
+    /// slides are zero.
     pub(super) gap: f32,
-    /// The number of groups of the two that slides may move.
+    /// The number of groups that slides may move relative to the other group: 0 if both groups are
+    /// on one node, else 2.
     pub(super) sliding: f32,
-    /// The sum of the radii of the bounding balls and of the margins.
+    /// The sum of the radii of both bounding balls and of both margins.
     pub(super) radius: f32,
     /// For each ball of the first group, a bit mask of the balls of the second group that must not
     /// touch it.
@@ -62,29 +65,31 @@ struct Covered<N: Real, const D: usize> {
     is_ball: bool,
 }
 
-/// The region that a group can occupy in all configurations.
+/// A bound of the region that a group can occupy in all configurations whose slides are zero: a
+/// ball around `anchor`.
 pub(super) struct NodePath<N: Real, const D: usize> {
-    /// The position of the first joint that rotates, or the center if none does, with all slides at
-    /// zero.
+    /// The position of the first revolute joint of the chain, or the centre of the group if there
+    /// is none, with all slides at zero.
     pub(super) anchor: Vector<N, D>,
     /// An upper bound of the distance from `anchor` to any point of the group's bounding ball,
     /// without slides.
     pub(super) length: f64,
-    /// The position of the first joint, or the centre if nothing moves, and the length of the chain
-    /// from there. Both determine the margins.
+    /// The position of the first joint of the chain, or the centre of the group on the world.
+    /// `from_first` is the length of the chain from there. Both determine the margins.
     first: Vector<N, D>,
     from_first: f64,
     joints: usize,
 }
 
-/// The state of building a filter.
+/// The state of the construction of a filter.
 struct Builder<'a, N: Real, const D: usize> {
     tree: &'a FrameTree<N, D>,
     shift: Vector<N, D>,
     filter: RobotFilter<D>,
-    /// For each group, the region that it can occupy: without slides, within `length` of `anchor`.
+    /// For each group, a bound of the region that it can occupy.
     paths: Vec<NodePath<N, D>>,
-    /// For each body, in the user's order, the index of its group and a bit mask of its balls.
+    /// For each body in the user's order, the index of its group and a bit mask of its balls in the
+    /// group.
     memberships: Vec<(usize, u8)>,
 }
 
@@ -117,14 +122,15 @@ impl<const D: usize> RobotFilter<D> {
     }
 }
 
-/// Returns the origin of `f32` coordinates: the first joint on the world.
+/// Returns the origin of the `f32` coordinates in the world frame: the position of the first joint
+/// on the world, or zero if there is none.
 pub(super) fn shift_of<N: Real, const D: usize>(tree: &FrameTree<N, D>) -> Vector<N, D> {
     let first = tree.nodes.iter().find(|node| node.parent == 0);
     first.map_or_else(Vector::<N, D>::zeros, |node| node.origin)
 }
 
-/// Returns the region of a ball on a node. If the node is the world, `center` is relative to
-/// [`shift_of`].
+/// Returns a bound of the region that a ball on a node can occupy. `center` is in the frame of the
+/// node; on the world it is relative to [`shift_of`].
 pub(super) fn path_to<N: Real, const D: usize>(
     tree: &FrameTree<N, D>,
     node: usize,
@@ -142,7 +148,7 @@ pub(super) fn path_to<N: Real, const D: usize>(
     let own = f64::from(radius) + if node == 0 { 0.0 } else { center.norm().as_f64() };
     let lengths = chain.iter().rev().skip(1).map(|node| node.origin.norm().as_f64());
     let from_first = own + lengths.sum::<f64>();
-    // Up to the first revolute joint, all rotations are constant.
+    // Before the first revolute joint of the chain, all rotations are constant.
     let mut pose = Pose::identity();
     let mut turning = chain.iter().rev().skip_while(|node| {
         let rotation = node.constant_rotation();
@@ -174,8 +180,8 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
         Self { tree, shift, filter, paths: Vec::new(), memberships: vec![(0, 0); bodies] }
     }
 
-    /// Groups the bodies of one node: into one group if they fit, else separately for the two
-    /// halves along the longest axis.
+    /// Divides the bodies of one node into groups: one group if all their balls fit, else the
+    /// groups of each half along the longest axis.
     fn divide(&mut self, mut bodies: Vec<&Covered<N, D>>) {
         let count: usize = bodies.iter().map(|body| body.balls.len()).sum();
         if bodies.len() < 2 || count <= LANES {
@@ -218,7 +224,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
         self.paths.push(path);
     }
 
-    /// Collects the pairs of bodies by the groups to which the bodies belong.
+    /// Collects the pairs of bodies by the pair of groups that contain the bodies.
     fn cross(&mut self, pairs: &[[u32; 2]]) {
         let mut by_groups = BTreeMap::<[usize; 2], [u8; LANES]>::new();
         for pair in pairs {
@@ -243,7 +249,8 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
         }
     }
 
-    /// Returns a lower bound of the distance between the regions that two groups can occupy.
+    /// Returns a lower bound of the distance between the regions that two groups can occupy;
+    /// negative if the bounds of the regions overlap.
     fn gap_between(&self, groups: [usize; 2]) -> f32 {
         let [one, other] = groups.mapped(|group| &self.paths[group]);
         let apart = (one.anchor - other.anchor).norm().as_f64();
@@ -251,7 +258,8 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
     }
 }
 
-/// Returns a lower bound of the distance between the balls of two groups on one node.
+/// Returns the smallest distance between balls of two groups on one node that must not touch;
+/// negative if they overlap.
 fn gap_on_node<const D: usize>([one, other]: [&BallGroup<D>; 2], wanted: &[u8; LANES]) -> f32 {
     let mut least = f32::INFINITY;
     for (ball1, others) in wanted.iter().enumerate() {
@@ -301,7 +309,7 @@ impl<const D: usize> BallGroup<D> {
     }
 }
 
-/// Returns the axis along which the centres are spread farthest.
+/// Returns the axis along which the centres of the bodies' first balls have the greatest spread.
 fn longest_axis<N: Real, const D: usize>(bodies: &[&Covered<N, D>]) -> usize {
     let spread = |axis: usize| {
         let coordinates = bodies.iter().map(|body| body.balls[0].center[axis].as_f64());
@@ -312,7 +320,8 @@ fn longest_axis<N: Real, const D: usize>(bodies: &[&Covered<N, D>]) -> usize {
     (1..D).fold(0, |best, axis| if spread(axis) > spread(best) { axis } else { best })
 }
 
-/// Returns the centre and the radius in `f32`; an infinite radius if their squares might overflow.
+/// Converts the centre and the radius of a ball to `f32`. The radius is infinite if squares of
+/// these numbers might overflow.
 fn in_f32<N: Real, const D: usize>(ball: &CoverBall<N, D>) -> ([f32; D], f32) {
     let (center, radius) = (numbers(&ball.center), ball.radius.as_f32_above());
     let is_usable = radius <= MAX_LENGTH && center.iter().all(|x: &f32| x.abs() <= MAX_LENGTH);

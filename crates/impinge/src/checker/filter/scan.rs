@@ -1,7 +1,7 @@
-//! The scan: tests 8 configurations against all pairs.
+//! The scan, which tests all pairs in 8 configurations.
 //!
 //! ```text
-//! group     [ c0 c1 c2 c3 c4 c5 c6 c7 ]   lane = configuration; a bit for each where it is near
+//! group     [ c0 c1 c2 c3 c4 c5 c6 c7 ]   lane = configuration; result: where the group is near
 //! its balls [ b0 b1 b2 b3 b4 b5 b6 b7 ]   lane = ball, once for each of these configurations
 //! ```
 
@@ -17,13 +17,13 @@ use crate::math::{Wide, filled};
 /// The positions of all groups in 8 configurations; reused between scans.
 #[derive(Debug)]
 pub(in crate::checker) struct ScanScratch<const D: usize> {
-    /// The joint values of each node.
+    /// For each node, the joint value in each configuration.
     pub(in crate::checker) numbers: Vec<LaneRow<f32>>,
     rows: Vec<PoseRows<f32, D>>,
-    /// The centre of each group; the lane is the configuration.
+    /// For each group, the centre of its bounding ball; the lane is the configuration.
     centers: Vec<[LaneRow<f32>; D]>,
-    /// For each group and configuration the centres of its balls, computed on first use; the lane
-    /// is the ball.
+    /// For each group and configuration, the centres of the group's balls, computed on first use;
+    /// the lane is the ball.
     balls: Vec<[[LaneRow<f32>; D]; LANES]>,
     /// For each group, a bit mask of the configurations in which its balls are computed.
     placed: Vec<u8>,
@@ -42,14 +42,14 @@ impl<const D: usize> ScanScratch<D> {
     }
 }
 
-/// The input of a scan.
+/// The constant input of a scan.
 #[derive(Clone, Copy)]
 struct Scan<'a, const D: usize> {
     robot: &'a RobotFilter<D>,
     around: &'a Surroundings<D>,
 }
 
-/// Finds the candidate pairs of 8 configurations from the joint values in `scratch`.
+/// Finds the candidate pairs of 8 configurations, whose joint values are in `scratch.numbers`.
 pub(in crate::checker) fn scan_at<const D: usize>(
     level: Level,
     robot: &RobotFilter<D>,
@@ -62,7 +62,7 @@ pub(in crate::checker) fn scan_at<const D: usize>(
     search.tidy();
 }
 
-/// Runs [`Scan::run`] with vectors of 8 lanes.
+/// Runs [`Scan::run`] with the vectors of eight `f32` of an instruction set.
 #[inline(always)]
 fn run<S: Simd, const D: usize>(
     simd: S,
@@ -118,8 +118,8 @@ impl<const D: usize> Scan<'_, D> {
         centers
     }
 
-    /// Tests each group against its obstacles in ascending order of their gap, until the gap
-    /// exceeds all limits.
+    /// Tests each group against its obstacles in ascending order of `gap`, until the gap exceeds
+    /// the limits of all lanes.
     #[inline(always)]
     fn meet_obstacles<S: Simd, V: Wide<S, Scalar = f32>>(
         self,
@@ -127,7 +127,8 @@ impl<const D: usize> Scan<'_, D> {
         scratch: &mut ScanScratch<D>,
         search: &mut CollisionSearch,
     ) {
-        // Groups at the ends of chains move farthest and hit most often.
+        // The last groups come first, since groups at the ends of chains move farthest and touch
+        // obstacles most often.
         for (index, group) in self.robot.groups.iter().enumerate().rev() {
             let center: [V; D] = load(simd, &scratch.centers[index]);
             for within in &self.around.within[index] {
@@ -147,7 +148,7 @@ impl<const D: usize> Scan<'_, D> {
         }
     }
 
-    /// Tests the balls of a group against an obstacle in a configuration.
+    /// Tests the balls of a group against an obstacle in the configuration of lane `lane`.
     #[inline(always)]
     fn meet_obstacle<S: Simd, V: Wide<S, Scalar = f32>>(
         self,
@@ -173,7 +174,8 @@ impl<const D: usize> Scan<'_, D> {
         );
     }
 
-    /// Tests the pairs of groups against each other, first by their bounding balls.
+    /// Tests the pairs of groups against each other: first their bounding balls in all
+    /// configurations, then their balls where these are near.
     #[inline(always)]
     fn meet_itself<S: Simd, V: Wide<S, Scalar = f32>>(
         self,
@@ -200,7 +202,7 @@ impl<const D: usize> Scan<'_, D> {
         }
     }
 
-    /// Tests the balls of two groups against each other in a configuration.
+    /// Tests the balls of two groups against each other in the configuration of lane `lane`.
     #[inline(always)]
     fn cross<S: Simd, V: Wide<S, Scalar = f32>>(
         self,
@@ -264,7 +266,7 @@ fn spread<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(simd: S, v: &[f32; 
     )
 }
 
-/// Copies one lane to all lanes.
+/// Broadcasts lane `lane` of a vector to all lanes.
 #[inline(always)]
 fn spread_lane<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(
     simd: S,

@@ -1,4 +1,4 @@
-//! The state of a scan: its mode, its limits, and the candidate pairs.
+//! The state of a scan: the mode, the limits of each lane, and the candidate pairs found so far.
 
 use crate::checker::chain::{LANES, LaneRow};
 use crate::math::lanes::bits;
@@ -9,22 +9,24 @@ use crate::math::{Wide, max, min};
 /// The kind of query for 8 configurations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::checker) enum SearchMode {
-    /// Whether any pair is within the limit: a lane ends at its first certain pair.
+    /// Whether any pair is within the limit. The search in a lane ends at the first pair that is
+    /// certainly within it.
     Any,
-    /// Every pair within the limit.
+    /// All pairs within the limit.
     All,
     /// The pairs that may be the nearest pair of a lane.
     Nearest,
 }
 
-/// A pair that is not certainly farther apart than the limit in a configuration.
+/// A pair that, in the configuration of a lane, is not certainly farther apart than the limit.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::checker) struct CandidatePair {
     pub(in crate::checker) lane: usize,
     pub(in crate::checker) pair: (u32, Other),
-    /// Whether the pair certainly is within the limit.
+    /// Whether the pair is certainly within the limit.
     pub(in crate::checker) is_certain: bool,
-    /// A lower bound of the pair's distance, in the mode [`SearchMode::Nearest`].
+    /// A lower bound of the pair's distance in the mode [`SearchMode::Nearest`]; zero in other
+    /// modes.
     pub(in crate::checker) lower: f32,
 }
 
@@ -40,7 +42,7 @@ impl CandidatePair {
         (self.lane as u128) << 96 | u128::from(body) << 64 | is_obstacle << 32 | u128::from(number)
     }
 
-    /// Merges the result of other balls of the same pair into this candidate.
+    /// Merges a candidate from other balls of the same pair into this candidate.
     #[inline]
     fn merge(&mut self, other: &Self) {
         self.is_certain |= other.is_certain;
@@ -48,31 +50,33 @@ impl CandidatePair {
     }
 }
 
-/// The second of a pair; the first is a body, with a lower index if the second is a body too.
+/// The second member of a pair. The first member is a body; if both are bodies, the first has the
+/// lower index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(in crate::checker) enum Other {
     Body(u32),
     Obstacle(u32),
 }
 
-/// A search in 8 configurations.
+/// A search for pairs in 8 configurations, one per lane.
 #[derive(Debug)]
 pub(in crate::checker) struct CollisionSearch {
     mode: SearchMode,
     /// A bit mask of the lanes that are not decided yet.
     live: u8,
-    /// A bit mask of the lanes in which numbers are too large for `f32`.
+    /// A bit mask of the lanes that the scan cannot evaluate, since numbers are too large for `f32`
+    /// or not finite.
     pub(in crate::checker) blind: u8,
     /// A bit mask of the lanes in which a pair is certainly within the limit, in the mode
     /// [`SearchMode::Any`].
     pub(in crate::checker) hits: u8,
-    /// A pair farther apart than `outer`, beyond all margins, exceeds the limit; a pair nearer than
-    /// `inner` is within it.
+    /// A pair exceeds the limit of its lane if its distance minus its margin is above `outer`. It
+    /// is within the limit if its distance plus its margin is below `inner`.
     outer: LaneRow<f32>,
     inner: LaneRow<f32>,
-    /// The margin for slides, in each lane.
+    /// The error margin for slides in each lane, which `outer` and `inner` include.
     slack: LaneRow<f32>,
-    /// The largest value of `outer`, and the largest slide.
+    /// The greatest value of `outer`. `slide` is the greatest total slide of a lane.
     pub(super) farthest: f32,
     pub(super) slide: f32,
     /// The candidate pairs, sorted by lane and pair after [`Self::tidy`].
@@ -82,13 +86,14 @@ pub(in crate::checker) struct CollisionSearch {
 /// The distances of up to 8 balls of a group from one ball or obstacle.
 #[derive(Clone, Copy)]
 pub(super) struct Distances<V> {
-    /// The squared distances of the balls' centres from the centre of the ball, or from the
-    /// obstacle's core.
+    /// The squared distances of the balls' centres from the centre of the other ball, or from the
+    /// core of the obstacle.
     pub(super) squared: V,
-    /// The sums of the radii, and the margin.
+    /// The sums of the two radii of each pair. `margin` is the error margin of the pairs.
     pub(super) radius: V,
     pub(super) margin: f32,
-    /// Bit masks of the balls to be tested, and of those whose distance is exact.
+    /// A bit mask of the balls to test. `exact` is a bit mask of the balls for which the computed
+    /// distance is that of the bodies.
     pub(super) wanted: u8,
     pub(super) exact: u8,
 }
@@ -110,8 +115,8 @@ impl CollisionSearch {
         }
     }
 
-    /// Starts a search in new configurations. `lanes` is their bit mask; `slides` is the total
-    /// slide of each lane, and `margin` the margin per unit of slide.
+    /// Starts a search in the configurations of the lanes in the bit mask `lanes`. `slides` has the
+    /// total slide of each lane, and `margin` is the error margin per unit of slide.
     pub(in crate::checker) fn begin(
         &mut self,
         lanes: u8,
@@ -120,8 +125,8 @@ impl CollisionSearch {
     ) {
         (self.live, self.blind, self.hits) = (lanes, 0, 0);
         self.slide = 0.0;
-        // The rounding error of the limit itself. If the limit is infinite, `outer` is infinite and
-        // `inner` NaN.
+        // A bound of the rounding error of the limit. If the limit is infinite, `outer` is infinite
+        // and `inner` is NaN.
         let rounding = limit * (2.0 * f32::EPSILON);
         for (lane, &slide) in slides.iter().enumerate() {
             self.slack[lane] = slide * margin;
@@ -132,7 +137,8 @@ impl CollisionSearch {
         self.candidates.clear();
     }
 
-    /// Excludes the lanes outside `usable`, whose numbers are too large, and resets their limits.
+    /// Marks the lanes outside the bit mask `usable` as blind, and sets their `outer` limit to
+    /// zero.
     pub(super) fn leave_out(&mut self, usable: u8) {
         self.blind = self.live & !usable;
         self.live &= usable;
@@ -143,20 +149,21 @@ impl CollisionSearch {
         }
     }
 
-    /// Whether a lane is not decided yet.
+    /// Returns whether a lane is not decided yet.
     #[inline(always)]
     pub(super) const fn is_live(&self, lane: usize) -> bool {
         self.live >> lane & 1 == 1
     }
 
-    /// Whether all lanes are decided.
+    /// Returns whether all lanes are decided.
     #[inline(always)]
     pub(super) const fn is_done(&self) -> bool {
         self.live == 0
     }
 
-    /// Returns the live lanes in which two balls or cores are not certainly farther apart than the
-    /// limit. NaN distances are included.
+    /// Returns a bit mask of the live lanes in which a bounding ball is not certainly beyond the
+    /// limit. `squared` has the squared distances of its centre from a centre or core; `radius`
+    /// includes the margins. NaN counts as near.
     #[inline(always)]
     pub(super) fn candidate_lanes<S: Simd, V: Wide<S, Scalar = f32>>(
         &self,
@@ -168,8 +175,9 @@ impl CollisionSearch {
         !bits(squared.simd_gt(max_distance * max_distance)) & self.live
     }
 
-    /// Returns a bit mask of the balls that are not certainly beyond the limit in a configuration;
-    /// `radius` includes the margin.
+    /// Returns a bit mask of the balls that are not certainly beyond the limit of lane `lane`. The
+    /// radius of each pair is `radii` plus `radius`, which includes the margins. NaN counts as
+    /// near.
     #[inline(always)]
     pub(super) fn candidate_balls<S: Simd, V: Wide<S, Scalar = f32>>(
         &self,
@@ -182,7 +190,8 @@ impl CollisionSearch {
         !bits(squared.simd_gt(max_distance * max_distance))
     }
 
-    /// Records the candidate balls of a configuration; `pair_of(ball)` returns the pair of a ball.
+    /// Records the pairs of the balls that are not certainly beyond the limit of lane `lane`.
+    /// `pair_of` converts the index of a ball to its pair.
     #[inline(always)]
     pub(super) fn record<S: Simd, V: Wide<S, Scalar = f32>>(
         &mut self,
@@ -211,8 +220,8 @@ impl CollisionSearch {
             balls &= balls - 1;
             let (is_certain, lower) = (certain >> ball & 1 == 1, lower[ball]);
             let found = CandidatePair { lane, pair: pair_of(ball), is_certain, lower };
-            // Balls of one body mostly follow each other, so it suffices to compare with the last
-            // candidate.
+            // The balls of one body are usually consecutive, so only the last candidate is
+            // compared. `tidy` merges the others.
             match self.candidates.last_mut() {
                 Some(last) if last.key() == found.key() => last.merge(&found),
                 _ => self.candidates.push(found),
@@ -220,8 +229,9 @@ impl CollisionSearch {
         }
     }
 
-    /// Returns lower bounds of the distances. Also lowers `outer` to the smallest upper bound: no
-    /// pair beyond it can be the nearest.
+    /// Returns lower bounds of the distances; zeros unless the mode is [`SearchMode::Nearest`].
+    /// Also lowers `outer` to the smallest upper bound of an exact distance, since no pair beyond
+    /// it can be the nearest pair.
     #[inline(always)]
     fn bounds<S: Simd, V: Wide<S, Scalar = f32>>(
         &mut self,
@@ -240,14 +250,16 @@ impl CollisionSearch {
         lower.store(&mut bounds);
         let exact = (0..LANES).filter(|ball| (mask & distances.exact) >> ball & 1 == 1);
         let upper = exact.fold(f32::INFINITY, |upper, ball| min(bounds[ball], upper));
-        // Twice the margin above the lower bound, and once for slides; no distance is negative.
+        // The upper bound is the lower bound plus twice the error margin, or zero if that is
+        // negative. The last term is the margin for slides, which `outer` includes.
         let upper = max(upper + 2.0 * (distances.margin + slack), 0.0) + slack;
         self.outer[lane] = min(upper, self.outer[lane]);
         self.farthest = self.outer.iter().fold(0.0, |most, &outer| max(outer, most));
         bounds
     }
 
-    /// Sorts the candidates, merges duplicates, and drops those beyond the final limit.
+    /// Drops the candidates beyond the final limit, sorts the others by lane and pair, and merges
+    /// candidates of the same pair.
     pub(in crate::checker) fn tidy(&mut self) {
         if self.mode == SearchMode::Nearest {
             let outer = self.outer;

@@ -1,6 +1,6 @@
-//! Ball against ball: `collide/separation/balls/ball_ball.rs` in lanes.
+//! Ball against ball for several pairs at a time; see `collide/separation/balls/ball_ball.rs`.
 //!
-//! Fields of [`Inputs`] read: both `translations` and both `radii`.
+//! Reads these fields of [`Inputs`]: both `translations` and both `radii`.
 
 use super::closed_form::{Form, LaneContacts};
 use super::gather::Inputs;

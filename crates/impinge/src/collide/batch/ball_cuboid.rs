@@ -1,7 +1,7 @@
-//! Ball against box: `collide/separation/balls/ball_cuboid.rs` in lanes.
+//! Ball against box for several pairs at a time; see `collide/separation/balls/ball_cuboid.rs`.
 //!
-//! Fields of [`Inputs`] read: both `translations`, the box's rotation, the ball's `radii[0]`, and
-//! the half extents in `ends[1][0]`.
+//! Reads these fields of [`Inputs`]: both `translations`, the box's rotation, the ball's
+//! `radii[0]`, and the half extents in `ends[1][0]`.
 
 use super::closed_form::{Form, LaneContacts};
 use super::gather::Inputs;
@@ -37,8 +37,8 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
         let (pose12, half) = (inputs.beside_ball::<S, V>(simd), inputs.end(simd, 1, 0));
         let radius = inputs.radius(simd, 0);
         let center = pose12.inverse_origin(simd);
-        // Nearest point of the box to the centre. A centre inside coincides with it, so it falls
-        // back.
+        // Nearest point of the box to the centre. For a centre inside the box both coincide, and
+        // the pair falls back.
         let clamped = filled(
             #[inline(always)]
             |axis| center[axis].smaller(half[axis]).larger(-half[axis]),
@@ -48,7 +48,8 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
         let point1 = times(&normal, radius);
         let (reach, is_box) = length_of(simd, &half);
         let rounding_error = rounding_of::<S, N, V>(simd, radius + reach + pose12.apart());
-        // Through the frame of the ball and back, for the bits of the builder for one pair.
+        // Transforms to the ball's frame and back, so that rounding equals that of the builder for
+        // one pair.
         let touched = pose12.inverse_point(&pose12.point(&clamped));
         radius.smaller(reach).store(&mut found.size);
         let is_thick = found.put_part(simd, [&touched, &half], rounding_error);
@@ -63,9 +64,10 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
 }
 
 impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
-    /// Computes the part of each box that a point lies on, as `Cuboid::part_at` does: masks of the
-    /// axes along which the part extends, then of the signs. Returns the lanes that have such a
-    /// part.
+    /// Stores the features of the boxes that contain `point`, as `Cuboid::part_at` does: a mask for
+    /// each axis of the lanes where the feature extends along the axis, then a mask for each axis
+    /// of the lanes where the coordinate is not negative. Returns the lanes where the box is thick
+    /// enough and the point is not inside.
     #[inline(always)]
     fn put_part<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,

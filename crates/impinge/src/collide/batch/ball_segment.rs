@@ -1,7 +1,8 @@
-//! Ball against segment or capsule: `collide/separation/balls/ball_segment.rs` in lanes.
+//! Ball against segment or capsule for several pairs at a time; see
+//! `collide/separation/balls/ball_segment.rs`.
 //!
-//! Fields of [`Inputs`] read: both `translations`, the segment's rotation, both `radii`, and the
-//! ends of the core in `ends[1]`.
+//! Reads these fields of [`Inputs`]: both `translations`, the segment's rotation, both `radii`, and
+//! the ends of the core in `ends[1]`.
 
 use super::closed_form::{Form, LaneContacts};
 use super::gather::Inputs;
@@ -70,8 +71,9 @@ impl<N: Real, const D: usize> Form<N, D> for BallSegment {
     }
 }
 
-/// Computes `made_perpendicular` of a vector with known direction; the mask has the lanes where the
-/// result is certain.
+/// Makes a unit vector `v` perpendicular to the unit vector `d`, as the scalar `made_perpendicular`
+/// does. `is_off` are the lanes where `v` is known; the returned mask has the lanes where the
+/// result is accurate.
 #[inline(always)]
 fn made_perpendicular<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,

@@ -3,11 +3,11 @@
 //! to two.
 //!
 //! ```text
-//!   row of `LaneContacts::parts`    ball, box     ball, segment   segments
-//!     0, 1                          D free axes   at first end,   1: at first end, at last end
+//!   row of `LaneContacts::parts`   ball, box      ball, segment   segments
+//!     0, 1                         D free axes    at first end,   solid 1: at first, last end
 //!                                                 at last end
-//!     2, 3                          then D signs                  2: likewise
-//!     4 .. 8                                                      second contact: likewise
+//!     2, 3                         then D signs                   solid 2: at first, last end
+//!     4 .. 8                                                      second contact: as rows 0 .. 4
 //!
 //!   `per_pair`: row r, bit lane  -->  byte lane, bit r, which `Form::features` decodes
 //! ```
@@ -113,7 +113,7 @@ pub(super) struct LaneContacts<N: Real, const D: usize, const L: usize> {
 }
 
 impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
-    /// Returns contacts without a found or apart lane.
+    /// Returns contacts with all masks empty.
     const fn new() -> Self {
         let row = [N::ZERO; L];
         Self {
@@ -130,8 +130,8 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
         }
     }
 
-    /// Stores the distances, normals and points on the first solid, and sets the masks. The inputs
-    /// hold only in the lanes of `is_certain`; the others fall back.
+    /// Stores the distances, normals and points on the first solid, and sets the masks. The
+    /// arguments are valid only in the lanes of `is_certain`; the other lanes fall back.
     #[inline(always)]
     pub(super) fn put<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
@@ -163,7 +163,7 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
             return is_apart;
         }
         let (features, point1) = (F::features(self.parts[lane]), vector(&self.points1[0], lane));
-        // A lone point on unchanged features keeps its id and is updated in place.
+        // A single point on unchanged features keeps its id and is updated in place.
         let is_same = |old: &RawPoint<N, D>| {
             [old.feature1, old.feature2] == features
                 && is_same_point(features, &(point1 - old.point1.coords), || self.size[lane])

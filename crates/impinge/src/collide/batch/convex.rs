@@ -4,11 +4,12 @@
 //! ```text
 //!   pairs in 3D, sorted by kinds   [bb bb bb | cc cc ... cc cc | ss ...]
 //!   packets of 8, of the same kinds           [0 .. 7] [8 .. ]
-//!   out[slot]                                 `slot` is kept with each pair, so order is free
+//!   out[slot]                                 `slot` is stored with each pair, so order is free
 //! ```
 //!
 //! A packet at least half full runs in a kernel: segments here, faceted solids in
-//! `collide/separation/apart/`. All other pairs are computed one by one, with identical bits.
+//! `collide/separation/apart/`. All other pairs are computed one by one. Both ways give
+//! bit-identical results.
 
 use super::LANES;
 use super::gather::put;
@@ -27,11 +28,11 @@ use crate::math::simd::{Level, Simd, Vectors};
 use crate::math::{Point, Real, Wide};
 use crate::shape::{Geometry, Kind, ShapeKind};
 
-/// A pair of convex solids in canonical order, and where to write its answer.
+/// A pair of convex solids in canonical order, and the index of its result.
 pub(crate) struct ConvexPair<'a, N: Real, const D: usize> {
-    /// Index of the answer in the output slice.
+    /// Index of the result in the output slice.
     pub(crate) slot: usize,
-    /// Whether the canonical order is the reverse of the order given by the caller.
+    /// Whether the canonical order is the reverse of the caller's order.
     pub(crate) swapped: bool,
     pub(crate) pair: Pair<'a, N, D>,
 }
@@ -42,8 +43,8 @@ impl<N: Real, const D: usize> ConvexPair<'_, N, D> {
     }
 }
 
-/// Writes the distances of all pairs in 2D, each with the bits of a lone pair: zero or negative for
-/// overlaps, `None` beyond `limit`, which is zero or more.
+/// Writes the distances of all pairs in 2D, bit-identical to those of single pairs: zero or
+/// negative for overlaps, `None` beyond `limit`, which is zero or more.
 pub(crate) fn distances2<N: Real>(
     pairs: &mut [ConvexPair<'_, N, 2>],
     limit: N,
@@ -54,7 +55,7 @@ pub(crate) fn distances2<N: Real>(
     }
 }
 
-/// Writes the separations of all pairs in 2D, each with the bits of a lone pair: `None` beyond
+/// Writes the separations of all pairs in 2D, bit-identical to those of single pairs: `None` beyond
 /// `limit`.
 pub(crate) fn separations2<N: Real>(
     pairs: &mut [ConvexPair<'_, N, 2>],
@@ -66,8 +67,8 @@ pub(crate) fn separations2<N: Real>(
     }
 }
 
-/// Writes distances of all pairs in 3D with the contract of [`distances2`]; sorts the pairs by
-/// kinds.
+/// Writes the distances of all pairs in 3D, with the values that [`distances2`] writes in 2D. Sorts
+/// the pairs by kinds.
 pub(crate) fn distances3<N: Real>(
     pairs: &mut [ConvexPair<'_, N, 3>],
     limit: N,
@@ -85,8 +86,8 @@ pub(crate) fn distances3<N: Real>(
     });
 }
 
-/// Writes separations of all pairs in 3D with the contract of [`separations2`]; sorts the pairs by
-/// kinds.
+/// Writes the separations of all pairs in 3D, with the values that [`separations2`] writes in 2D.
+/// Sorts the pairs by kinds.
 pub(crate) fn separations3<N: Real>(
     pairs: &mut [ConvexPair<'_, N, 3>],
     limit: N,
@@ -117,9 +118,9 @@ fn each_packet<'a, N: Real>(
     }
 }
 
-/// Returns the vectors to compute a packet with; `None` without vectors, if a solid is not of the
-/// wanted kinds, or if the packet is less than half full. A packet costs as much as three or four
-/// lone pairs.
+/// Returns the SIMD vectors for a packet. `None` if the machine has none, if a solid is not of the
+/// wanted kinds, or if the packet is less than half full: a packet costs as much as three or four
+/// single pairs.
 fn lanes_for<N: Real>(
     packet: &[ConvexPair<'_, N, 3>],
     is_one: fn(&Kind<'_, N, 3>) -> bool,
@@ -133,7 +134,7 @@ const fn is_segment<N: Real>(kind: &Kind<'_, N, 3>) -> bool {
     matches!(kind, Kind::Segment(_) | Kind::Capsule(_))
 }
 
-/// Writes the answers of a packet. Lanes whose `found` is `None` are computed by `lone`.
+/// Writes the results of a packet. Lanes whose `found` is `None` are computed by `lone`.
 #[inline]
 fn fill<'a, N: Real, T>(
     packet: &[ConvexPair<'a, N, 3>],
@@ -209,7 +210,8 @@ impl<N: Real> SegmentPacket<N> {
         self.is_known = bits(has_scale & is_square_in_range(simd, squared));
     }
 
-    /// Applies `answer` to each lane with known nearest points; `None` for the other lanes.
+    /// Applies `answer` to each lane with known nearest points; the result of other lanes is
+    /// `None`.
     #[inline]
     fn each<T: Copy>(
         &self,
@@ -222,8 +224,8 @@ impl<N: Real> SegmentPacket<N> {
         answers
     }
 
-    /// Returns the distances with the bits of `segment_segment::distance`; an inner `None` is
-    /// beyond `limit`, an outer one an unknown lane.
+    /// Returns the distances, bit-identical to `segment_segment::distance`. An inner `None` is a
+    /// pair beyond `limit`; an outer `None` is a lane without known nearest points.
     fn distances(&self, limit: N) -> [Option<Option<N>>; LANES] {
         self.each(|packet, lane| {
             let [radius1, radius2] = packet.radii[lane];
@@ -231,8 +233,8 @@ impl<N: Real> SegmentPacket<N> {
         })
     }
 
-    /// Returns the separations with the bits of `segment_segment::separation`; an inner `None` is
-    /// beyond `limit`, an outer one an unknown lane.
+    /// Returns the separations, bit-identical to `segment_segment::separation`. An inner `None` is
+    /// a pair beyond `limit`; an outer `None` is a lane without known nearest points.
     fn separations(&self, limit: N) -> [Option<Option<Separation<N, 3>>>; LANES] {
         self.each(|packet, lane| {
             let point = |[x, y, z]: &[[N; LANES]; 3]| Point::<N, 3>::new(x[lane], y[lane], z[lane]);

@@ -4,8 +4,8 @@
 //!                  lane 0   lane 1   ...        a row for each number, a column for each pair
 //!   translation x  pair i   pair i+1 ...        i = `first`; `count` lanes are filled
 //!   translation y  pair i   pair i+1 ...
-//!   ...                                         lanes beyond `count` keep old numbers, and
-//!   radius         pair i   pair i+1 ...        `is_usable` has no bit of theirs
+//!   ...                                         lanes beyond `count` keep old numbers, and their
+//!   radius         pair i   pair i+1 ...        bits of `is_usable` are 0
 //! ```
 
 use super::vectors::{minus, rotated_into};
@@ -30,13 +30,13 @@ pub(super) struct Inputs<N: Real, const D: usize, const L: usize> {
     radii: [[N; L]; 2],
     /// Largest distance of a contact point, from each pair's request.
     prediction: [N; L],
-    /// Sine of the angle by which the solids may turn, from each pair's request.
+    /// Sine of the angle by which the solids may rotate, from each pair's request.
     sine: [N; L],
     /// Largest number of points, from each pair's request.
     pub(super) max_points: [usize; L],
     /// Index of the first pair of the batch.
     pub(super) first: usize,
-    /// How many lanes are filled.
+    /// Number of filled lanes.
     pub(super) count: usize,
     /// Bits of the lanes whose pair the algorithm supports.
     pub(super) is_usable: u8,
@@ -60,8 +60,8 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         }
     }
 
-    /// Gathers up to `L` pairs from index `first` and begins each. Lanes beyond them keep their old
-    /// values.
+    /// Begins up to `L` pairs from index `first` and gathers their inputs. Lanes beyond them keep
+    /// their old values.
     #[inline(always)]
     pub(super) fn gather<B: Batch<N, D>, P: KeptPairs<N, D>>(
         &mut self,
@@ -75,7 +75,8 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         }
     }
 
-    /// Copies the inputs of a pair into a lane; clears nothing.
+    /// Copies the inputs of a pair into a lane; fields that its kernel does not use keep their old
+    /// values.
     #[inline(always)]
     pub(super) fn put<B: Batch<N, D>>(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) {
         self.is_usable |= u8::from(B::gather(self, lane, pair)) << lane;
@@ -111,7 +112,7 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         self.radii[which][lane & (L - 1)] = radius;
     }
 
-    /// Copies the sine of the angle by which the solids may turn into a lane.
+    /// Copies the sine of the angle by which the solids may rotate into a lane.
     #[inline(always)]
     pub(super) const fn put_sine(&mut self, lane: usize, sine: N) {
         self.sine[lane & (L - 1)] = sine;
@@ -149,8 +150,8 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         load(simd, &self.ends[solid][number])
     }
 
-    /// Returns the translation from the first solid to the second, in world axes, which are also
-    /// those of a ball's frame.
+    /// Returns the translation from the first solid to the second, in world axes. A ball's frame
+    /// has the same axes.
     #[inline(always)]
     pub(super) fn away<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> [V; D] {
         minus(&load(simd, &self.translations[1]), &load(simd, &self.translations[0]))
@@ -162,7 +163,7 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         LanePose { rotation: load_all(simd, &self.rotations[1]), translation: self.away(simd) }
     }
 
-    /// Returns the pose of the second solid in the frame of the first, with the bits of
+    /// Returns the pose of the second solid in the frame of the first, bit-identical to
     /// `Pose::relative`.
     #[inline(always)]
     pub(super) fn pose12<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> LanePose<V, D> {

@@ -1,7 +1,7 @@
-//! Pairs of boxes, balls, segments and capsules, 8 at a time; a lone pair is a batch of one.
+//! Pairs of boxes, balls, segments and capsules, 8 at a time; a single pair is a batch of one.
 //!
 //! ```text
-//!   kept pairs i .. i + L      gather      find (kernel)      settle, lane by lane
+//!   kept pairs i .. i + L      gather      find (kernel)      write_manifold, lane by lane
 //!    [q][q][q][q]...  ------>  Inputs  ------->  Found  ---+--> raw manifold of pair i + lane
 //!                             rows of L         rows,   |
 //!                                               masks   +--> unsupported: `fall_back`, one pair
@@ -14,13 +14,13 @@
 //!   box, box                             `Boxes2`       `Boxes3`
 //! ```
 //!
-//! Each lane of a vector is another pair and never depends on its neighbours, so the bits of a pair
-//! do not depend on the batch. The numbers of `L` pairs are gathered ([`gather`]), a kernel
-//! computes all that needs no branches ([`Batch`]), then manifold after manifold is replaced. `L`
-//! is 8 where the machine has vectors wide enough to pay off, else 1, computed by [`OneLane`]. A
-//! query of a single pair is a batch of one lane on every machine. Degenerate pairs fall back to
-//! the builder for one pair: a centre inside a box, cores that cross, sizes whose squares underflow
-//! or overflow, NaN.
+//! Each lane of a vector holds one pair and never depends on other lanes, so the result of a pair
+//! is bit-identical in any batch. [`gather`] copies the numbers of `L` pairs into rows, a kernel
+//! ([`Batch`]) computes everything that needs no branches, then the manifolds are replaced one by
+//! one. `L` is 8 if the machine has SIMD vectors wide enough to pay off, else 1, computed by
+//! [`OneLane`]. A query of a single pair is a batch of one lane on every machine. Degenerate pairs
+//! fall back to the builder for one pair: a centre inside a box, cores that cross, sizes whose
+//! squares underflow or overflow, NaN.
 //!
 //! Each mask is a byte whose bit `lane` belongs to the pair in that lane. [`masks`] transposes 8
 //! masks into one byte per pair. `boxes/` defines the slots of box pairs and the codes of their
@@ -63,7 +63,7 @@ use crate::math::{Mapped, Pose, Real, Space, Wide};
 use crate::shape::Geometry;
 use crate::tables::ByDimension;
 
-/// Pairs in one batch where the machine has vectors; also the number of bits in a mask.
+/// Number of pairs in one batch if the machine has SIMD vectors; also the number of bits in a mask.
 const LANES: usize = 8;
 
 /// A pair of solids in canonical order and the request for its manifold.
@@ -89,17 +89,17 @@ impl<N: Space<D>, const D: usize> PairQuestion<'_, N, D> {
 /// For each index in order, [`update`] calls `begin` while it gathers, then `raw`, then `parts` if
 /// the pair falls back, and last `end`. The next batch begins before the pairs of this batch end.
 pub(crate) trait KeptPairs<N: Real, const D: usize> {
-    /// Returns how many pairs there are.
+    /// Returns the number of pairs.
     fn len(&self) -> usize;
 
-    /// Begins the update of the pair at `index` and returns its question. Called once per pair.
+    /// Begins the update of the pair at `index` and returns its inputs. Called once for each pair.
     fn begin(&mut self, index: usize) -> PairQuestion<'_, N, D>;
 
-    /// Returns the question of a begun pair again, and the manifold of its last update, to be
+    /// Returns the inputs of a begun pair again, and the manifold of its last update, which is
     /// replaced.
     fn parts(&mut self, index: usize) -> (PairQuestion<'_, N, D>, &mut RawManifold<N, D>);
 
-    /// Returns the manifold of the pair's last update, to be replaced.
+    /// Returns the manifold of the pair's last update, which is replaced.
     fn raw(&mut self, index: usize) -> &mut RawManifold<N, D>;
 
     /// Ends the update of the pair at `index`: its manifold is complete.
@@ -111,7 +111,7 @@ trait Batch<N: Real, const D: usize> {
     /// Results of the kernel, from which [`Self::write_manifold`] builds each manifold.
     type Found<const L: usize>;
 
-    /// Returns results to start with: no lane has a manifold.
+    /// Returns initial results, in which no lane has a manifold.
     fn blank<const L: usize>() -> Self::Found<L>;
 
     /// Copies the inputs of a pair into a lane; returns whether this algorithm supports the pair.
@@ -259,7 +259,7 @@ impl<N: Space<D>, P: KeptPairs<N, D>, const D: usize> Task<N, D> for Many<'_, P>
     }
 }
 
-/// Instruction set that computes `L` lanes.
+/// Way to compute `L` lanes: SIMD vectors or scalar arithmetic.
 trait BatchLanes<const L: usize>: Copy {
     /// Runs [`Batch::find`]; compiled once for all implementations of [`KeptPairs`].
     fn find<B: Batch<N, D>, N: Real, const D: usize>(
@@ -269,7 +269,7 @@ trait BatchLanes<const L: usize>: Copy {
     );
 }
 
-/// Eight lanes in vectors.
+/// Eight lanes, computed with SIMD vectors.
 #[derive(Clone, Copy)]
 struct VectorLanes(Vectors);
 
@@ -285,7 +285,7 @@ impl BatchLanes<LANES> for VectorLanes {
     }
 }
 
-/// One lane.
+/// One lane, computed without SIMD vectors.
 #[derive(Clone, Copy)]
 struct LonePair;
 

@@ -1,4 +1,4 @@
-//! Segments in lanes: gathering the cores, and the features of their parts.
+//! Copies the cores of segments into lanes, and names the features of their ends and sides.
 
 use super::gather::Inputs;
 use super::vectors::{length_of, lit, minus, norm};

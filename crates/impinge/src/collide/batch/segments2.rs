@@ -1,9 +1,9 @@
 //! Segments and capsules in 2D: the overlap interval of their cores along the tangent, as
-//! `interval.rs` computes it for all flat-sided solids, in lanes.
+//! `interval.rs` computes it for all flat-sided solids, for several pairs at a time.
 //!
 //! ```text
 //!      normal
-//!         ^        a-----*=======*        second: ends in the order of their places
+//!         ^        a-----*=======*        second: ends ordered along the tangent
 //!         |              :       :
 //!    ---- o ------------ from -- to --->  tangent; origin: `point1`, nearest point of the first
 //!                        :       :
@@ -11,7 +11,7 @@
 //! ```
 //!
 //! `from` is the larger of the lower coordinates, `to` the smaller of the upper ones. Each gives a
-//! contact. Fields of [`Inputs`] read: both poses, both `radii`, the ends of both cores,
+//! contact. Reads these fields of [`Inputs`]: both poses, both `radii`, the ends of both cores,
 //! `prediction` and `sine`. Lanes whose contacts depend on rounding, and requests for a single
 //! point, fall back.
 
@@ -92,12 +92,11 @@ impl<N: Real> Form<N, 2> for Segments2 {
 /// A point or vector in 2D, in each lane.
 type PlaneLanes<V> = [V; 2];
 
-/// The tangent line through the nearest point of the first solid, and the request: a
-/// Unit vector from the first core to the second, in the frame of the first solid.
+/// The tangent line through the nearest point of the first solid, and the limits of the request.
 struct ContactLine<V> {
     /// Unit vector from the first core to the second, in the frame of the first solid.
     normal: PlaneLanes<V>,
-    /// `normal` turned clockwise by a right angle.
+    /// `normal` rotated clockwise by a right angle.
     tangent: PlaneLanes<V>,
     /// Nearest point of the first solid, on its rounded surface: the origin of the tangent.
     point1: PlaneLanes<V>,
@@ -120,8 +119,8 @@ impl<V> ContactLine<V> {
     }
 
     /// Returns the distance of a pair of points at the coordinate `flat`, raised to the pair's
-    /// distance. The mask has the lanes where it is within the prediction, or turning brings it
-    /// within.
+    /// distance. The mask has the lanes where it is within the prediction, or where a rotation
+    /// about the nearest point brings it within.
     #[inline(always)]
     fn admit<S: Simd>(&self, distance: V, flat: V) -> (V, V::Mask)
     where
@@ -150,8 +149,8 @@ struct LaneSide<V, M> {
     radius: V,
     /// Cosine of the angle between the segment and the tangent.
     cosine: V,
-    /// Depth, below the solid's nearest point along the normal, of the core's end nearest to the
-    /// other solid, and the coordinate of that end.
+    /// Depth below the solid's nearest point, along the normal, of the core's end nearest to the
+    /// other solid; then the coordinate of that end along the tangent.
     top: (V, V),
     /// Lanes where the segment is tilted so far that only its nearest end is used.
     is_point: M,
@@ -185,7 +184,8 @@ impl<V, M> LaneSide<V, M> {
         let heights = [dot(&line.normal, first), dot(&line.normal, last)];
         let is_higher = heights[1].simd_gt(heights[0]);
         let is_last_near = if is_first { is_higher } else { heights[1].simd_lt(heights[0]) };
-        // An end is at the witness within twice the tolerance; if both are, the first counts.
+        // An end is at the witness if it is within twice the tolerance; if both ends are, the first
+        // counts.
         let near = lit::<S, N, V>(simd, 2.0) * line.tolerance;
         let is_at = [flats[0].abs().simd_le(near), flats[1].abs().simd_le(near)];
         let mut side = Self {
@@ -239,7 +239,8 @@ impl<V, M> LaneSide<V, M> {
         let depth = self.below_witness(core, line);
         let away = line.flat(core) - self.top.1;
         let (away_squared, radius) = (away * away, self.radius);
-        // Up to this squared distance along the tangent, the ball around the nearest end is higher.
+        // Up to this squared distance along the tangent, the surface is the ball around the nearest
+        // end.
         let turns_squared = radius * radius * (one - self.cosine * self.cosine);
         let round = depth - self.top.0 + (radius * radius - away_squared).sqrt();
         let is_round = away_squared.simd_lt(turns_squared);
@@ -248,8 +249,8 @@ impl<V, M> LaneSide<V, M> {
         radius.simd_le(zero).select(zero, lift)
     }
 
-    /// Returns the lanes where the end of this index, in tangent order, is the segment's first end,
-    /// and those where it is its last.
+    /// Returns the lanes where end `end`, in tangent order, is the segment's first end, and the
+    /// lanes where it is the last end.
     #[inline(always)]
     fn end_masks<S: Simd>(&self, end: usize) -> [M; 2]
     where
@@ -348,8 +349,8 @@ impl<V, M> SegmentContacts<V, M> {
     /// Computes the contacts: the admitted ends of the overlap interval, or the nearest points if
     /// neither end is admitted.
     ///
-    /// Lanes that depend on rounding are not known, nor are lanes that need the nearest points
-    /// besides an end.
+    /// A lane is not known if its result depends on rounding, or if it needs the nearest points in
+    /// addition to an end.
     #[inline(always)]
     fn of<S: Simd, N: Real>(simd: S, line: &ContactLine<V>, sides: &[LaneSide<V, M>; 2]) -> Self
     where
@@ -359,7 +360,8 @@ impl<V, M> SegmentContacts<V, M> {
         let [first, second] = sides;
         let from = first.coordinates[0].larger(second.coordinates[0]);
         let to = first.coordinates[1].smaller(second.coordinates[1]);
-        // Overlaps and gaps of up to 4 tolerances depend on rounding; such lanes are not known.
+        // Overlaps and gaps of up to 4 tolerances depend on rounding; lanes with such an interval
+        // fall back.
         let few = lit::<S, N, V>(simd, 4.0) * line.tolerance;
         let is_side = !first.is_point & !second.is_point;
         let is_shared = (to - from).simd_gt(few) & is_side;
@@ -370,7 +372,8 @@ impl<V, M> SegmentContacts<V, M> {
         high.is_admitted &= is_shared;
         let is_two = low.is_admitted & high.is_admitted;
         let is_any = low.is_admitted | high.is_admitted;
-        // If neither end is as near as the pair, the nearest points are needed as well: not known.
+        // If neither end is as near as the pair, the nearest points are needed as well, and the
+        // lane falls back.
         let level = line.distance + line.tolerance;
         let is_level = (low.is_admitted & low.distance.simd_le(level))
             | (high.is_admitted & high.distance.simd_le(level));

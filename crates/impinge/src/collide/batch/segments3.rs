@@ -1,8 +1,10 @@
-//! Segments and capsules in 3D: `collide/separation/segments/segment_segment.rs` in lanes.
+//! Segments and capsules in 3D for several pairs at a time; see
+//! `collide/separation/segments/segment_segment.rs`.
 //!
-//! Fields of [`Inputs`] read: both poses, both `radii`, the ends of both cores, and `sine`. Lanes
-//! for which that file takes another branch fall back: if the normal is not the direction between
-//! the nearest points, if the cores are nearly parallel, or if lengths are outside 2⁻¹⁶ to 2¹⁶.
+//! Reads these fields of [`Inputs`]: both poses, both `radii`, the ends of both cores, and `sine`.
+//! Lanes in which the code for one pair takes another branch fall back: if the normal is not the
+//! direction between the nearest points, if the cores are nearly parallel, or if lengths are
+//! outside 2⁻¹⁶ to 2¹⁶.
 
 use super::PairQuestion;
 use super::closed_form::{Form, LaneContacts};
@@ -18,7 +20,7 @@ use crate::shape::FeatureId;
 /// normal.
 pub(super) struct Segments3;
 
-/// The ends of a segment in each lane.
+/// Ends of a segment in each lane.
 type SegmentEnds<V> = [[V; 3]; 2];
 
 impl<N: Real> Form<N, 3> for Segments3 {
@@ -54,7 +56,8 @@ impl<N: Real> Form<N, 3> for Segments3 {
         let sizes = [half_length(simd, &ends1) + radii[0], half_length(simd, &local2) + radii[1]];
         sizes[0].smaller(sizes[1]).store(&mut found.size);
         let rounding_error = lit::<S, N, V>(simd, 2.0) * rounding_of::<S, N, V>(simd, size);
-        // From the surface back to the core, for the bits of the builder for one pair.
+        // Moves the points from the surface back to the cores, with the rounding of the builder for
+        // one pair.
         let core1 = minus(&rounded[0], &times(&normal, radii[0]));
         let core2 = plus(&rounded[1], &times(&normal, radii[1]));
         // Nearly parallel segments may touch in two points, so they fall back.
@@ -111,7 +114,8 @@ impl<V> SegmentPoints<V> {
     }
 }
 
-/// Computes `nearest_of_segments`; the mask has the lanes whose lengths are in range.
+/// Computes the nearest points of two segments, as the scalar `nearest_of_segments` does. The mask
+/// has the lanes whose lengths are in range.
 #[inline(always)]
 pub(super) fn nearest_of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -160,8 +164,9 @@ fn scaled<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, v: &[V; 3]) -> ([V;
     (times(v, inverse), inverse, has_scale)
 }
 
-/// Computes the ends of `common_perpendicular`. The masks have the lanes where it meets both
-/// segments, and the lanes whose lengths are in range.
+/// Computes the ends of the common perpendicular of two lines, as the scalar `common_perpendicular`
+/// does. The masks have the lanes where these ends lie on both segments, and the lanes whose
+/// lengths are in range.
 #[inline(always)]
 fn common_perpendicular<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -188,8 +193,8 @@ fn common_perpendicular<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     (points, is_inside & squared.simd_gt(least), has_scale1 & has_scale2)
 }
 
-/// Computes `best_normal` and the distance of the points; the mask has the lanes where the normal
-/// is the direction between the points.
+/// Computes the unit vector and the distance between the nearest points. The mask has the lanes
+/// where the scalar `best_normal` chooses this direction.
 #[inline(always)]
 fn best_normal<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -232,8 +237,8 @@ fn flat<S: Simd, V: Wide<S>>(along: &[V; 3], normal: &[V; 3]) -> V {
 }
 
 impl<N: Real, const L: usize> LaneContacts<N, 3, L> {
-    /// Stores the part of a segment that a point lies on, as `part_at` does, as two masks: at the
-    /// first end, at the last. Returns the lanes where the point is not at both ends.
+    /// Stores the part of a segment that a point lies on, as `part_at` does, as two masks: lanes at
+    /// the first end, lanes at the last end. Returns the lanes where the point is not at both ends.
     #[inline(always)]
     fn put_end_or_side<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,

@@ -44,7 +44,7 @@ impl<N: Real, const D: usize> Solid<N, D> {
         matches!(self, Self::Segment(_) | Self::Capsule(_))
     }
 
-    /// Returns the solid in the form that queries take, without copying it.
+    /// Returns the solid as a [`Kind`], without copying it.
     #[inline]
     pub(crate) const fn kind(&self) -> Kind<'_, N, D> {
         match self {

@@ -28,16 +28,15 @@ impl<N: Real, const D: usize> Case<N, D> {
     }
 }
 
-/// Pairs with their manifolds, for [`KeptPairs`], and counts of calls. A pair that had points may
-/// be asked for again to match them, so only pairs without points are counted as begun or fallen
-/// back.
+/// Pairs with their manifolds, for [`KeptPairs`], and counts of its calls. Only pairs without
+/// points are counted as begun or fallen back.
 struct Kept<'a, N: Real, const D: usize> {
     cases: &'a [Case<N, D>],
     /// Indices of the cases to update.
     pending: Vec<usize>,
     /// Manifolds of all cases.
     raws: &'a mut [RawManifold<N, D>],
-    /// How many pairs without points began, how many of these fell back, and how many pairs ended.
+    /// Numbers of pairs: begun without points, fallen back without points, and ended.
     counts: [usize; 3],
 }
 
@@ -100,9 +99,9 @@ fn are_same<N: Real, const D: usize>(one: &RawManifold<N, D>, other: &RawManifol
     one.normal == other.normal && one.points == other.points || facts(one) == facts(other)
 }
 
-/// Computes the manifold of a case twice. First as a batch of one. Then by the general builder,
-/// which has the bits of the kernels except for boxes and for segments in 2D; for these as a batch
-/// of one again, from the pair in its own frame.
+/// Computes the manifold of a case twice: as a batch of one, and by the builder for one pair, which
+/// is bit-identical to the kernels except for boxes and for segments in 2D. These pairs are
+/// computed as a batch of one again, in the frame of the first solid.
 fn compute_alone<N: Space<D>, const D: usize>(
     case: &Case<N, D>,
     [lone, other]: [&mut RawManifold<N, D>; 2],
@@ -122,7 +121,8 @@ fn compute_alone<N: Space<D>, const D: usize>(
 }
 
 /// Updates the same pairs in several steps, so that points inherit ids, in batches and alone, and
-/// asserts that the bits agree. Returns how many points, unsupported pairs and pairs there were.
+/// asserts that the bits agree. Returns the numbers of points, of pairs that fell back, and of
+/// pairs.
 fn compare<F: Batch<N, D>, N: Space<D>, const D: usize>(
     steps: &[Vec<Case<N, D>>],
     what: &str,
@@ -154,7 +154,8 @@ fn compare<F: Batch<N, D>, N: Space<D>, const D: usize>(
     sums
 }
 
-/// Updates the pending cases; returns how many pairs without points began, and how many fell back.
+/// Updates the pending cases. Returns the numbers of pairs without points that began and that fell
+/// back.
 fn in_lanes<F: Batch<N, D>, N: Space<D>, const D: usize>(
     level: Level,
     cases: &[Case<N, D>],
@@ -177,7 +178,7 @@ enum Sort {
     Cuboid,
 }
 
-/// Two random solids near each other, in 64 bits.
+/// Two random solids near each other, in double precision.
 #[derive(Clone)]
 struct Draw<const D: usize> {
     sorts: [Sort; 2],
@@ -233,7 +234,8 @@ impl<const D: usize> Draw<D> {
     }
 }
 
-/// Draws 203 pairs of the given kinds, in four steps; the last one is unrelated to the others.
+/// Draws 203 pairs of the given kinds in four steps: two small motions, then one of up to 0.4.
+/// Every third pair starts on a grid, and one pair in eleven is not updated in a step.
 fn drawn<N: Scene<D>, const D: usize>(
     (seed, unit): (u64, f64),
     sorts: [Sort; 2],
@@ -258,15 +260,17 @@ fn request<N: Real>(prediction: f64, sine: f64) -> ManifoldRequest<N> {
     ManifoldRequest { prediction: N::lit(prediction), sine: N::lit(sine), max_points: 4 }
 }
 
-/// Spoils a case: makes a pose not finite, equal to the other or far away, a solid empty, or
-/// changes the prediction; `number` selects which.
+/// Makes a case degenerate or invalid; `number` selects how. One pose gets a number that is not
+/// finite or extreme or equals the other pose, a solid gets an extreme length, or the request
+/// changes.
 fn spoiled<N: Real, const D: usize>(case: &mut Case<N, D>, number: usize) {
     let strange = [N::lit(f64::NAN), N::INFINITY, -N::INFINITY, N::MAX, N::ZERO, N::MIN_POSITIVE];
     let value = strange[number / 7 % strange.len()];
     let (which, axis) = (number % 2, number / 2 % D);
     match number % 7 {
         0 => case.poses[which].translation[axis] = value,
-        // A finite matrix that is no rotation may give another feature.
+        // A finite matrix that is no rotation may give another feature, so only NaN and infinity
+        // are used.
         1 | 2 => {
             let strange = if value.is_finite_number() { N::lit(f64::NAN) } else { value };
             case.poses[which].rotation[(axis, number / 6 % D)] = strange;

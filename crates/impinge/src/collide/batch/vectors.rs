@@ -9,15 +9,15 @@ pub(super) use crate::math::lanes::{
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 
-/// Returns the length up to which differences are rounding error for a pair of this size;
-/// `rounding` of `frame.rs` in lanes.
+/// Returns the length up to which differences are rounding error for a pair of size `size`, as
+/// `rounding` of `frame.rs` does.
 #[inline(always)]
 pub(super) fn rounding_of<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, size: V) -> V {
     V::all(simd, N::lit(ROUNDING_ERRORS) * N::EPSILON) * size
 }
 
-/// Returns direction and length of a vector, by the formula of `unit`. The mask has the lanes whose
-/// squared length is far from underflow and overflow; elsewhere both may be wrong.
+/// Returns direction and length of a vector, as the scalar `unit` does. The mask has the lanes
+/// whose squared length is far from underflow and overflow; elsewhere both may be wrong.
 #[inline(always)]
 pub(super) fn unit<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,

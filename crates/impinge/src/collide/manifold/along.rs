@@ -1,8 +1,8 @@
 //! Manifold of two solids along a given normal: contacts with a face of a surface, for which the
 //! edges of that face are not separate features.
 //!
-//! The supporting features along the normal are clipped as usual, but no witness has to be among
-//! the points. If the features do not overlap in projection, there is no point.
+//! The supporting features along the normal are clipped as for a separation, but no point has to be
+//! the witness. If the features do not overlap in projection, there is no point.
 
 use super::clip;
 use super::frame::{Candidates, ContactFrame};
@@ -13,7 +13,7 @@ use crate::math::{Real, Space, Vector, max, min};
 use crate::shape::{Geometry, Kind};
 use crate::tables::ByDimension;
 
-/// Request for a manifold along a given normal.
+/// Request for a manifold along a normal.
 #[derive(Clone, Copy)]
 pub(crate) struct Along<N, const D: usize>
 where
@@ -82,7 +82,8 @@ pub(crate) fn build_between<N: Space<D>, const D: usize>(
 }
 
 /// Computes the contacts of two solids in 2D along a normal. Returns `false` if `nearest` is known,
-/// because the nearest points then give the contacts.
+/// because [`build_between`] then gives the contacts. Also `false` with a half-space, and if a
+/// supporting feature is neither a side nor a corner.
 pub(crate) fn on_face2<N: Real>(
     pair: &Pair<'_, N, 2>,
     query: &OnFace<N, 2>,
@@ -99,9 +100,9 @@ pub(crate) fn on_face2<N: Real>(
     sides.along(&along, |point| out.points.push(point)).is_some()
 }
 
-/// Computes the contacts of two solids along the normal of a face of one of them. If `nearest` is
-/// known and no contact has that distance, or the nearest points of the solids are known anyway,
-/// returns `false`.
+/// Computes the contacts of two solids in 3D along the normal of a face of one of them. Returns
+/// `false` if `nearest` is known and no contact is that near, or the kinds are not those of
+/// `is_served`: then [`build_between`] gives the contacts. Also `false` with a half-space.
 pub(crate) fn on_face3<N: Real>(
     pair: &Pair<'_, N, 3>,
     query: &OnFace<N, 3>,
@@ -122,7 +123,7 @@ pub(crate) fn on_face3<N: Real>(
     let frame = ContactFrame::known(&planes, tangents3(&normal), tolerance, prediction);
     let (mut candidates, mut lowest) = (Candidates::new(), N::INFINITY);
     clip::candidates(pair, &frame, &mut candidates);
-    // Candidates below the surface of the face and beside it are dropped.
+    // Candidates nearer than `least` lie below the face's surface and beside the face.
     candidates.retain(|candidate| candidate.distance >= least - tolerance);
     for candidate in &mut candidates {
         candidate.distance = max(candidate.distance, least);
@@ -142,8 +143,9 @@ pub(crate) fn on_face3<N: Real>(
     true
 }
 
-/// Returns the supporting planes of both solids along a normal, as a separation. Its points are the
-/// extreme points of each solid and need not face each other. `None` with a half-space.
+/// Returns the supporting planes of both solids along a normal, as a separation. `point1` is an
+/// extreme point of the first solid, and `point2` is opposite to it on the plane of the second; it
+/// need not be on the second solid. `None` with a half-space.
 pub(in crate::collide) fn extremes<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     normal: &Vector<N, D>,

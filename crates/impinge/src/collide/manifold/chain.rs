@@ -1,6 +1,6 @@
 //! Contacts of a segment of a chain and a 2D solid, without intermediate lists.
 //!
-//! The results have the bits of [`build_between`](super::build_between) and
+//! The results are equal, bit for bit, to those of [`build_between`](super::build_between) and
 //! [`build_along`](super::build_along), which define them. The separations come from
 //! `collide/separation/chain/`.
 
@@ -40,8 +40,8 @@ impl<N: Real> SegmentPair<'_, N> {
         Some(own.at_witness(&frame))
     }
 
-    /// Visits the contacts of a separation; `None` for solids whose supporting feature is neither a
-    /// corner nor a side.
+    /// Visits the contacts of the two solids, whose separation is `witness`. `None` for solids
+    /// whose supporting feature is neither a corner nor a side.
     pub(crate) fn between(
         &self,
         witness: &Separation<N, 2>,
@@ -73,8 +73,8 @@ impl<N: Real> SegmentPair<'_, N> {
         Some(())
     }
 
-    /// Visits the contacts along a normal; `None` for solids whose supporting feature is neither a
-    /// corner nor a side.
+    /// Visits the contacts along the normal of `along`. `None` for solids whose supporting feature
+    /// is neither a corner nor a side.
     pub(crate) fn along(
         &self,
         along: &Along<N, 2>,

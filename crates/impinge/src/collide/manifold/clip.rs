@@ -14,16 +14,18 @@
 //! Both features are [rings](super::ring) projected along the normal. Both solids are treated
 //! alike: there is no reference face that could flip, and the ids of a point do not depend on which
 //! solid is first. A point within the tolerance of a side lies on the side, which keeps ids stable
-//! where sides or corners coincide. A segment has one side, and a corner must lie on its line. A
-//! point, and two segments that are not parallel, have a contact at the nearest points only.
+//! where sides or corners coincide. A segment has one side; a corner counts as inside it only on
+//! its line. A point, and two segments that are not parallel, have a contact at the nearest points
+//! only.
 //!
 //! The clip of Sutherland and Hodgman ("Reentrant polygon clipping", 1974) clips one polygon
 //! against the sides of the other, which makes one solid the reference; it is not used here.
 //!
-//! Every pair in 3D with flat features is clipped here, alone or as parts of a composite, along its
-//! own normal or along that of a face. Only boxes, segments and capsules also have kernels of their
-//! own (`collide/batch/`). The sine of the angle by which solids may turn enters the admission
-//! test.
+//! This module clips all pairs in 3D with flat features, alone or as parts of a composite, along
+//! the pair's own normal or the normal of a face. Boxes, segments and capsules also have SIMD
+//! kernels (`collide/batch/`), and so have boxes and hulls against triangles
+//! ([`face_lanes`](super::face_lanes)). Rotation of the solids enters through the sine in
+//! [`ContactFrame::admit`].
 
 use smallvec::SmallVec;
 
@@ -70,8 +72,8 @@ pub(super) fn part_at_witness<N: Real>(
     ring_part(ring, insides.row(0), &Vector::<N, 2>::zeros(), frame.tolerance).unwrap_or(ring.id)
 }
 
-/// Adds the corners of the overlap area along the normal of a frame whose witness need not be the
-/// nearest points; none if the supporting features do not overlap in projection.
+/// Adds the corners of the overlap area, projected along the normal of `frame`, whose witness need
+/// not be the nearest points. Adds none if the supporting features do not overlap in projection.
 pub(super) fn candidates<N: Real>(
     pair: &Pair<'_, N, 3>,
     frame: &ContactFrame<N, 3>,
@@ -82,8 +84,8 @@ pub(super) fn candidates<N: Real>(
     clip.candidates(out);
 }
 
-/// Runs [`project_in_lanes`] with the vectors of an instruction set; the results do not depend on
-/// it.
+/// Runs [`project_in_lanes`] with the instruction set of `level`; the results do not depend on the
+/// level.
 fn project_rings<N: Real>(
     level: Level,
     rings: &mut [SupportRing<'_, N>],
@@ -116,16 +118,16 @@ fn project_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 struct SideRow<N: Real> {
     /// Signed distance from each side, positive inside.
     inside: [N; LANES],
-    /// Bits of the sides whose line the point is inside of by more than the tolerance.
+    /// Bits of the sides with `inside` above the tolerance.
     within: u8,
-    /// Bits of the sides whose line the point is outside of by more than the tolerance.
+    /// Bits of the sides with `inside` below minus the tolerance.
     beyond: u8,
-    /// Bits of the sides whose line the point is within the tolerance of.
+    /// Bits of the sides with `inside` between minus and plus the tolerance, or NaN.
     touched: u8,
 }
 
-/// Positions of the corners of the other ring, and last of the nearest point, relative to the sides
-/// of one ring.
+/// Positions relative to the sides of one ring: of the corners of the other ring, and last of the
+/// nearest point.
 struct Insides<N: Real> {
     /// Number of rows for each point: one for each block of 8 sides.
     width: usize,
@@ -188,8 +190,8 @@ const fn first_bits(count: usize) -> u8 {
     if count < LANES { (1 << count) - 1 } else { u8::MAX }
 }
 
-/// Returns the smallest part of a ring that contains a point with these rows: a corner, a side or
-/// the whole; `None` for a point outside. A segment has no inside.
+/// Returns the smallest part of a ring that contains the point with these rows: a corner, a side or
+/// the whole ring. `None` if the point is outside; a segment contains only points on its line.
 fn ring_part<N: Real>(
     ring: &SupportRing<'_, N>,
     rows: &[SideRow<N>],
@@ -213,13 +215,14 @@ fn ring_part<N: Real>(
     if is_segment { found } else { Some(found.unwrap_or(ring.id)) }
 }
 
-/// Returns the sides whose lines separate two points by more than the tolerance on both sides.
+/// Returns the sides whose lines separate two points, both farther from the line than the
+/// tolerance.
 const fn parted<N: Real>(from: &SideRow<N>, to: &SideRow<N>) -> u8 {
     from.within & to.beyond | from.beyond & to.within
 }
 
-/// Returns the parameter, from 0 at `from` to 1 at `to`, at which a line is crossed, given the
-/// signed heights of both ends above it.
+/// Returns the parameter, from 0 at `from` to 1 at `to`, at which a segment crosses a line; `from`
+/// and `to` are the signed distances of its ends from the line.
 fn share<N: Real>(from: N, to: N) -> N {
     from / (from - to)
 }
@@ -228,7 +231,7 @@ fn share<N: Real>(from: N, to: N) -> N {
 struct RingClip<'a, N: Real> {
     frame: &'a ContactFrame<N, 3>,
     rings: [SupportRing<'a, N>; 2],
-    /// For each ring, the positions of the other's corners.
+    /// For each ring, the positions of the other ring's corners relative to its sides.
     insides: [Insides<N>; 2],
 }
 
@@ -259,7 +262,8 @@ impl<'a, N: Real> RingClip<'a, N> {
     }
 
     /// Adds the corners of the overlap area that the request admits. If one feature is a point
-    /// inside the other, adds that point.
+    /// inside the other, adds that point. Two points overlap if they project to within twice the
+    /// tolerance of each other.
     fn candidates(&self, out: &mut Candidates<N, 3>) {
         let [first, second] = &self.rings;
         if first.is_segment() && second.is_segment() && self.are_parallel() {
@@ -301,8 +305,8 @@ impl<'a, N: Real> RingClip<'a, N> {
         }
     }
 
-    /// Adds a corner of one ring and the point `under` of the other, which faces it along the
-    /// normal.
+    /// Adds a contact of a corner of one ring (0 or 1) and the point `under` of the other ring,
+    /// opposite along the normal and on the part `on`.
     fn push_corner(
         &self,
         which: usize,
@@ -351,17 +355,18 @@ impl<'a, N: Real> RingClip<'a, N> {
         }
     }
 
-    /// Returns whether two segments are parallel up to rounding, or turning by the angle of the
-    /// request would make them so.
+    /// Returns whether the two segments are parallel up to rounding, or up to the angle by which
+    /// the solids may rotate.
     fn are_parallel(&self) -> bool {
         let [a, b] = [self.rings[0].side(0), self.rings[1].side(0)];
         let least = N::lit(16.0) * N::EPSILON;
         cross2(&a, &b).abs() <= max(self.frame.sine, least) * a.norm() * b.norm()
     }
 
-    /// Adds the ends of the overlap interval of two nearly parallel segments. Each is an end of one
-    /// segment and the point beside it on the other, both moved halfway, where they meet after the
-    /// turn. They are off their segments by at most half the lever arm times the sine.
+    /// Adds the ends of the overlap interval of two nearly parallel segments. Each contact is an
+    /// end of one segment and the point beside it on the other segment. Both are moved halfway
+    /// towards each other, perpendicular to the normal: they meet there if the solids rotate. The
+    /// moved points are off their segments by at most half the lever arm times the sine.
     fn common_interval(&self, out: &mut Candidates<N, 3>) {
         for (which, ring) in self.rings.iter().enumerate() {
             let other = &self.rings[1 - which];
@@ -376,8 +381,8 @@ impl<'a, N: Real> RingClip<'a, N> {
         }
     }
 
-    /// Returns the part of a segment beside a point: an end within twice the tolerance or the
-    /// segment; `None` beyond the ends.
+    /// Returns the part of a segment beside a point: an end, if it is within twice the tolerance
+    /// along the segment, else the segment; `None` beyond the ends.
     fn beside(&self, flat: &Vector<N, 2>, segment: &SupportRing<'_, N>) -> Option<FeatureId> {
         let (side, tolerance) = (segment.side(0), N::TWO * self.frame.tolerance);
         let length = side.norm();
@@ -387,8 +392,8 @@ impl<'a, N: Real> RingClip<'a, N> {
     }
 
     /// Adds the surface points over two points of the cores, unless they are a duplicate: corners
-    /// that coincide in both rings are found from both. Different points on round rims may share
-    /// their ids.
+    /// that coincide are found from both rings. Different points on round rims may have the same
+    /// ids.
     fn push(
         &self,
         [core1, core2]: [Point<N, 3>; 2],

@@ -16,7 +16,7 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, max, max_component, min};
 use crate::shape::{FeatureId, Geometry, Kind, SupportMap};
 
-/// Differences up to this many epsilons of the pair's size count as rounding.
+/// Rounding tolerance of lengths, in units of epsilon times the size of the pair.
 pub(in crate::collide) const ROUNDING_ERRORS: f64 = 16.0;
 
 /// Cosine of 60°. A feature tilted against the contact plane by a larger angle is reduced to its
@@ -46,8 +46,8 @@ impl Which {
         }
     }
 
-    /// Returns the depth of a point below the solid's supporting plane, which contains the witness
-    /// point of that solid.
+    /// Returns the depth of a point below the solid's supporting plane: the plane perpendicular to
+    /// the normal through the solid's witness point.
     #[inline]
     pub(in crate::collide) fn below_witness<N: Real, const D: usize>(
         self,
@@ -69,8 +69,8 @@ impl Which {
 /// of the feature's nearest corner below the supporting plane; `away_squared` is the squared
 /// distance of the two perpendicular to the normal. Above the flat part the height is `radius /
 /// cosine`; above the corner it is the height of the ball around the corner; nothing rises above
-/// the supporting plane. Exact for capsules, and where the surface is parallel to the feature; in
-/// between, a rounded polygon may be slightly lower.
+/// the supporting plane. Exact for capsules, and where the surface is parallel to the feature;
+/// elsewhere a rounded polygon may be slightly lower.
 #[inline]
 pub(in crate::collide) fn lifted<N: Real>(
     radius: N,
@@ -102,7 +102,8 @@ pub(in crate::collide) struct ContactFrame<N: Real, const D: usize> {
     pub(in crate::collide) tolerance: N,
     /// Largest distance of a contact point.
     prediction: N,
-    /// Sine of the angle by which the solids may turn.
+    /// Sine of the largest angle by which the solids may rotate; zero if rotation is not
+    /// considered.
     pub(in crate::collide) sine: N,
 }
 
@@ -157,7 +158,7 @@ impl<N: Real, const D: usize> ContactFrame<N, D> {
         }
     }
 
-    /// Creates a frame for a request that admits no turning, with a known tolerance.
+    /// Creates a frame with a known tolerance, for a request without rotation.
     #[inline]
     pub(in crate::collide) fn known(
         witness: &Separation<N, D>,
@@ -195,9 +196,10 @@ impl<N: Real, const D: usize> ContactFrame<N, D> {
     /// Returns the distance to store for a pair of points with the tangent coordinates `flat`;
     /// `None` if the request excludes the pair.
     ///
-    /// The witness has the smallest distance, so a smaller one is a rounding error and is raised;
-    /// one that exceeds the prediction by no more than the tolerance is lowered to it. A point
-    /// beyond the prediction is admitted if turning about the witness brings it within.
+    /// The witness has the smallest distance, so a smaller one is a rounding error and is raised; a
+    /// distance that exceeds the prediction by no more than the tolerance is lowered to the
+    /// prediction. A point beyond the prediction is admitted if a rotation about the witness brings
+    /// it within the prediction.
     #[inline]
     pub(in crate::collide) fn admit(&self, distance: N, flat: &Vector<N, 2>) -> Option<N> {
         let distance = max(distance, self.witness.distance);
@@ -210,7 +212,8 @@ impl<N: Real, const D: usize> ContactFrame<N, D> {
         (distance <= self.prediction + self.sine * flat.norm()).then_some(distance)
     }
 
-    /// Returns an upper bound of the distances that [`Self::admit`] admits.
+    /// Returns an upper bound of the distances that [`Self::admit`] admits; infinite if the solids
+    /// may rotate.
     #[inline]
     pub(in crate::collide) fn most(&self) -> N {
         if self.sine > N::ZERO { N::INFINITY } else { self.prediction + self.tolerance }

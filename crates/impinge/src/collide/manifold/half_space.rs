@@ -33,14 +33,14 @@ pub(super) fn build<N: Real, const D: usize>(
     choose_in_frame(pair, frame, &mut candidates, limit, out);
 }
 
-/// The solid's side of the pair: adds its corners above the boundary as candidates.
+/// Adds the corners of the first solid above the boundary as candidates.
 struct Above<'a, N: Real, const D: usize> {
     frame: &'a ContactFrame<N, D>,
 }
 
 impl<N: Real, const D: usize> Above<'_, N, D> {
-    /// Adds the corners that the request admits. Returns the feature of the nearest point, for the
-    /// case that there are none.
+    /// Adds the corners that the request admits. Returns the feature of the nearest point, for use
+    /// if none is admitted.
     fn corners(&self, kind: Kind<'_, N, D>, out: &mut Candidates<N, D>) -> FeatureId {
         match kind {
             Kind::Cuboid(cuboid) => self.vertices_of_box(cuboid, out),
@@ -118,7 +118,8 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
     }
 
     /// Adds the corners of the core's supporting feature, on the rounded surface. Adds none for a
-    /// point, and for a feature tilted too far. Returns the feature of the lowest corner.
+    /// point, and for a feature tilted too far. Returns the id of the lowest corner if the feature
+    /// is tilted too far, else the id of the feature.
     fn feature_corners(&self, map: &dyn SupportMap<N, D>, out: &mut Candidates<N, D>) -> FeatureId {
         let (frame, radius, mut feature) = (self.frame, map.rounding(), Feature::default());
         let extra = contact_feature(map, &frame.normal(), &mut feature);

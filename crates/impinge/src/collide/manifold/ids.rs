@@ -11,11 +11,12 @@
 //!
 //! The distance of a match is the smaller of two: how far the point moved on the first solid, in
 //! that solid's frame, and how far it moved on the second, in the second's frame. It is zero for a
-//! point on a vertex of either. If the normal turned by more than 45°, it is infinite, because a
-//! solid that fell on another side begins new contacts. The same features with a vertex among them
-//! are exempt: they always are one point. The kernels of `batch` keep no old pose, so they compare
-//! positions on the first solid only. A corner that slides over a floor thus counts as unmoved, and
-//! so does a point of the floor that a solid slides over.
+//! point that stays on a vertex of either solid. If the normal turned by more than 45°, it is
+//! infinite, because a solid that fell on another side begins new contacts. Pairs of the same
+//! features with a vertex among them are exempt, because they have only one point. The kernels of
+//! `batch` keep no old pose, so they compare positions on the first solid only. A corner that
+//! slides over a floor thus counts as unmoved, and so does a point of the floor that a solid slides
+//! over.
 //!
 //! ```text
 //!           ┌─────────┐            ┌─────────┐
@@ -44,8 +45,8 @@ use crate::shape::FeatureId;
 pub(super) const SHARE: f64 = 1.0 / 16.0;
 
 /// Largest distance, along each axis and as a fraction of the pair's size, between crossings of the
-/// same two edges that are one point. Edges that nearly coincide cross anywhere, at either end in
-/// turn.
+/// same two edges that are one point. The crossing of edges that nearly coincide may jump from one
+/// end to the other.
 pub(super) const REACH: f64 = 1.0 / 2.0;
 
 /// Returns whether both features are edges.
@@ -54,7 +55,7 @@ pub(super) fn are_edges(features: [FeatureId; 2]) -> bool {
 }
 
 /// Returns whether a point with these features that moved by `moved` on the first solid is still
-/// the same; `size` computes the size of the pair.
+/// the same contact; `size` computes the size of the pair.
 #[inline(always)]
 pub(in crate::collide) fn is_same_point<N: Real, const D: usize>(
     features: [FeatureId; 2],
@@ -177,8 +178,8 @@ pub(in crate::collide) fn is_one_point(features: [FeatureId; 2]) -> bool {
     features.iter().any(|id| matches!(id, FeatureId::Vertex(_)))
 }
 
-/// Gives candidates the ids of old points with the same features, if exactly one old point and one
-/// candidate have these features.
+/// Gives a candidate the id of the old point with the same features, if one of these is a vertex
+/// and no other candidate has them.
 pub(in crate::collide) fn inherit_by_features<N: Real, const D: usize>(
     old: &RawManifold<N, D>,
     candidates: &mut [Candidate<N, D>],
@@ -196,9 +197,9 @@ pub(in crate::collide) fn inherit_by_features<N: Real, const D: usize>(
     }
 }
 
-/// Matches the candidates `some` that have no id with the old points whose ids no candidate has, by
-/// [`each_match`], and passes on the ids. `pose` is the new pose; `size` computes the size of the
-/// pair.
+/// Matches the candidates with indices `some` that have no id with the old points whose ids no
+/// candidate has, by [`each_match`], and passes on the ids. `pose` is the new pose; `size` computes
+/// the size of the pair.
 pub(in crate::collide) fn inherit_by_position<N: Real, const D: usize>(
     old: &RawManifold<N, D>,
     pose: &PairPose<'_, N, D>,
@@ -237,9 +238,9 @@ impl<N: Real, const D: usize> RawManifold<N, D> {
 }
 
 /// Moves the points of a manifold to the candidates, if these have the same features in the same
-/// order, each pair of features occurs once, and no point jumped. Returns whether it did; otherwise
-/// nothing changes. The nearest point gets `distance`, the one of the separation. `size` computes
-/// the size of the pair.
+/// order, each pair of features occurs once, and no crossing of edges jumped ([`is_same_point`]).
+/// Returns whether it did; otherwise nothing changes. The nearest point gets exactly `distance`,
+/// that of the separation. `size` computes the size of the pair.
 pub(in crate::collide) fn renew<N: Real, const D: usize>(
     candidates: &[Candidate<N, D>],
     distance: N,
@@ -277,14 +278,14 @@ pub(in crate::collide) fn renew<N: Real, const D: usize>(
 /// Returns new points in the order in which they get ids: their coordinates along an [`askew`]
 /// direction, ascending, and their indices. Input: their indices and positions on the first solid.
 ///
-/// The direction is fixed in the frame of the first solid. Of the four corners of a rectangle, the
-/// last is opposite to the first. In a solver that visits contacts in this order, as most do, a
-/// stack sways a quarter as much as with corners in circular order.
+/// The direction is fixed in the frame of the first solid. If the points are the four corners of a
+/// rectangle, the last is opposite to the first. In a solver that visits contacts in this order, as
+/// most do, a stack sways a quarter as much as with corners in circular order.
 #[inline(always)]
 pub(in crate::collide) fn in_order<N: Real, const D: usize>(
     points: impl Iterator<Item = (usize, Point<N, D>)>,
 ) -> SmallVec<[(N, usize); 8]> {
-    // There are nearly always at most four, and mostly none.
+    // An insertion sort: there are nearly always at most four new points, and mostly none.
     let mut order = SmallVec::<[(N, usize); 8]>::new();
     for (number, point) in points {
         let coordinate = askew(&point.coords);

@@ -1,9 +1,9 @@
 //! Two flat-sided 2D solids: the overlap interval of their supporting sides.
 //!
-//! This computes the contacts of segments, capsules, triangles, boxes, polygons, rounded solids,
-//! and support maps whose supporting feature is a side or a corner, with a radius around it. Boxes,
-//! segments and capsules also have kernels of their own (`collide/batch/`). A position along the
-//! tangent is one coordinate:
+//! This module computes the contacts of segments, capsules, triangles, boxes, polygons, rounded
+//! solids, and support maps whose supporting feature is a side or a corner, with a radius around
+//! it. Boxes, segments and capsules also have kernels of their own (`collide/batch/`). A position
+//! along the tangent is one coordinate:
 //!
 //! ```text
 //!          from ─────────────── to          the second solid's side
@@ -130,7 +130,7 @@ impl<N: Real> FeatureInterval<N> {
     }
 
     /// Reduces a side to a corner if needed: a side without length to its first corner, with the
-    /// side's id; one that is tilted too far, or lies along the normal, to its nearest corner.
+    /// side's id; a side that is tilted too far, or lies along the normal, to its nearest corner.
     #[inline(always)]
     fn simplify(&mut self, outward: &Vector<N, 2>, tolerance: N) {
         let [from, to] = &self.corners;
@@ -217,7 +217,8 @@ impl<N: Real> FeatureInterval<N> {
     }
 }
 
-/// Computes [`Pose::point`] written out, because products of small matrices are not inlined.
+/// Transforms a point as [`Pose::point`] does, written out because products of small matrices are
+/// not inlined.
 #[inline(always)]
 fn placed<N: Real>(pose: &Pose<N, 2>, local: &Point<N, 2>) -> Point<N, 2> {
     let (turn, shift) = (&pose.rotation, &pose.translation);
@@ -261,7 +262,7 @@ impl<N: Real> Shared<'_, N> {
         }
     }
 
-    /// Adds a pair of points unless it is a duplicate. Each point first moves by half their offset
+    /// Adds a pair of points unless it is a duplicate. First moves each point by half their offset
     /// along the tangent.
     fn push(
         &self,

@@ -6,10 +6,10 @@
 //!         class   bits of `moved` as an `f64`, less the last two    smallest keys match first
 //! ```
 //!
-//! A few points are bits of a `u32`, and all pairs are compared. Of many points, the pairs that may
-//! be near on either solid are found in lists sorted by the first coordinate. The kernels of
-//! `batch` give only positions on the first solid, and the vertices that points lie on for the
-//! second.
+//! Up to 32 old and 32 new points are bits of a `u32`, and all pairs are compared. For more points,
+//! lists sorted by the first coordinate give the pairs that may be near on either solid. The
+//! kernels of `batch` have no positions on the second solid; [`each_near`] compares positions on
+//! the first, and the vertices of the second that points lie on.
 
 use super::ids::{Anchors, REACH, SHARE, are_edges, moved, near_scale};
 use crate::math::ones::Ones;
@@ -26,8 +26,8 @@ const FAR: u64 = 2;
 /// Position of the class in a key.
 const CLASS_AT: u32 = 62;
 
-/// Largest squared distance of a crossing of two edges in the class `FAR`, in units of the near
-/// length.
+/// Largest squared distance of a crossing of two edges in the class `FAR`, in units of the squared
+/// near length.
 const FARTHEST: f64 = (REACH / SHARE) * (REACH / SHARE);
 
 /// Key of pairs that do not match.
@@ -36,8 +36,8 @@ const NEVER: u64 = u64::MAX;
 /// Up to this number of old and of new points, all pairs are compared.
 const FEW: usize = u32::BITS as usize;
 
-/// Calls `visit` for each match with the index of the old point, that of the new point, and whether
-/// the new point is near the old one. `size` is the size of the pair
+/// Calls `visit` for each match with the index of the old point, the index of the new point, and
+/// whether the two are near each other. `size` is the size of the pair
 /// ([`smaller_size`](crate::collide::size::smaller_size)).
 ///
 /// Cost: O(n log n) for n points that lie apart.
@@ -89,8 +89,8 @@ fn least<K: PartialOrd>(among: u32, never: K, key: impl Fn(usize) -> K) -> (K, u
 }
 
 /// Visits pairs of old and new points, given by masks, in the order of their keys, smallest first;
-/// each point occurs once. Ties go to the old point that comes first, then to the new one. Keys not
-/// below `never` make no pair.
+/// each point occurs at most once. Ties go to the old point with the lower index, then to the new
+/// point with the lower index. Pairs with a key not below `never` are skipped.
 ///
 /// `nearest` returns the [`least`] key of an old point among the new points in a mask.
 #[inline(always)]
@@ -109,10 +109,11 @@ fn nearest_first<K: PartialOrd + Copy>(
             // A point without a match now has none later either.
             old &= !(u32::from(!has_one) << at);
         }
-        // New points that are the nearest of some old one.
+        // New points that are nearest to at least one old point.
         let taken = Ones::<FEW>(old).fold(0_u32, |bits, at| bits | 1 << others[at]);
         if taken.count_ones() == old.count_ones() {
-            // In most cases each old point has a nearest point of its own.
+            // In most cases the nearest new points of all old points differ, and the matching is
+            // complete.
             return Ones::<FEW>(old).for_each(|at| visit(at, others[at], keys[at]));
         }
         let (key, first) = least(old, never, |at| keys[at]);
@@ -150,12 +151,12 @@ fn match_many<N: Real, const D: usize>(
     }
 }
 
-/// Visits matches by position alone. Precondition: no new point has the features of an old one. Old
-/// and new points are masks.
+/// Visits matches by position alone. Precondition: no new point has the features of an old one.
+/// `old` and `new` are masks of points.
 ///
 /// `moved` returns the squared distance of an old and a new point in units of the near length.
-/// `same_vertex` returns, of a mask of new points, those on the same vertex of the second solid as
-/// an old point; these have not moved.
+/// `same_vertex` returns, for an old point and a mask of new points, the new points on the same
+/// vertex of the second solid; they count as not moved.
 #[inline(always)]
 pub(in crate::collide) fn each_near<N: Real>(
     [old, new]: [u32; 2],
@@ -251,7 +252,8 @@ impl<N: Real, const D: usize> Anchors<N, D> {
             FeatureId::Face(number) => 3 * u64::from(number) + 2,
         });
         let all = [u64::from(part1), u64::from(part2), feature1, feature2];
-        // Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014.
+        // The multiplier is from Steele, Lea and Flood, "Fast splittable pseudorandom number
+        // generators", 2014.
         all.iter()
             .fold(0, |sum: u64, &n| (sum.rotate_left(21) ^ n).wrapping_mul(0x9e37_79b9_7f4a_7c15))
     }

@@ -13,8 +13,8 @@
 //! intersection is an interval ([`interval`]); over a [`half_space`] every corner is a candidate.
 //! [`reduce`] chooses a few candidates, and [`ids`] gives them ids.
 //!
-//! The witness is always represented, so the smallest distance of a manifold is exactly the
-//! distance of the separation. If a solid is a ball, the witness is the only point.
+//! The manifold always contains a point with the distance of the witness, so its smallest distance
+//! is exactly that of the separation. If a solid is a ball, the witness is the only point.
 
 mod along;
 mod chain;
@@ -52,9 +52,9 @@ use crate::tables::ByDimension;
 
 /// Builds the manifold of two solids in 2D: at most two points.
 ///
-/// `out` holds the previous manifold of the pair, whose points pass on their ids. On return it is
-/// empty if and only if the solids are farther apart than the prediction, the separation is NaN, or
-/// the overlap is infinitely deep.
+/// `out` holds the previous manifold of the pair, from which the new points inherit their ids. On
+/// return `out` is empty if and only if the solids are farther apart than the prediction, the
+/// separation is NaN, or the overlap is infinitely deep.
 pub(crate) fn build2<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
@@ -64,8 +64,8 @@ pub(crate) fn build2<N: Real>(
     build_2d(pair, separation, request, request.max_points.min(2), out);
 }
 
-/// Builds the manifold of two solids in 2D with up to `request.max_points` points; `out` is used as
-/// by [`build2`].
+/// Builds the manifold of two solids in 2D with up to `request.max_points` points; `out` follows
+/// the contract of [`build2`].
 pub(crate) fn between2<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
@@ -168,7 +168,7 @@ pub(crate) fn tangents2<N: Real>(normal: &Vector<N, 2>) -> [Vector<N, 2>; 2] {
     [-perp(normal), Vector::<N, 2>::zeros()]
 }
 
-/// Computes separation and manifold of a pair in 3D.
+/// Computes the separation and the manifold of a pair in 3D.
 pub(crate) fn contacts_of_separation3<N: Real>(
     pair: &Pair<'_, N, 3>,
     request: &ManifoldRequest<N>,
@@ -180,7 +180,7 @@ pub(crate) fn contacts_of_separation3<N: Real>(
     }
 }
 
-/// Computes separation and manifold of a pair in 2D.
+/// Computes the separation and the manifold of a pair in 2D.
 pub(crate) fn contacts_of_separation2<N: Real>(
     pair: &Pair<'_, N, 2>,
     request: &ManifoldRequest<N>,
@@ -198,18 +198,18 @@ pub(crate) fn contacts_of_separation2<N: Real>(
 /// distance of the pair; it is off the surfaces by at most that length.
 const SLACK: f64 = 1.0 / 512.0;
 
-/// Up to this many candidates are all kept, if the limit allows. Among more, some may coincide up
-/// to rounding, as where corners of equal boxes meet.
+/// Number of candidates up to which all are kept, if the limit allows. Among more candidates, some
+/// may coincide up to rounding, such as corners of two equal boxes.
 pub(in crate::collide) const ALL: usize = 4;
 
 /// Inputs for the choice of points.
 pub(in crate::collide) struct PointChoice<'a, N: Real, const D: usize> {
     /// Current poses of the solids, and the normal from the first to the second.
     pub(in crate::collide) pose: PairPose<'a, N, D>,
-    /// Computes the size of the pair (`collide/size.rs`); called only if some point is not an old
-    /// one.
+    /// Computes the size of the pair (`collide/size.rs`); called only when a length is compared
+    /// with it.
     pub(in crate::collide) size: &'a dyn Fn() -> N,
-    /// Signed distance of the pair, which one of the deepest points gets.
+    /// Signed distance of the pair; one of the deepest points gets exactly this distance.
     pub(in crate::collide) distance: N,
     /// Lengths below this are rounding errors.
     pub(in crate::collide) tolerance: N,
@@ -217,8 +217,9 @@ pub(in crate::collide) struct PointChoice<'a, N: Real, const D: usize> {
     pub(in crate::collide) limit: usize,
 }
 
-/// Returns the distance up to which an old point may stand for the deepest one; `distance` and
-/// `size` are those of the pair.
+/// Returns the distance up to which an old point may stand for the deepest one: `distance` plus
+/// `SLACK` times `size`, or plus `tolerance` if that is larger. `distance` and `size` are those of
+/// the pair.
 pub(in crate::collide) fn slack_level<N: Real>(distance: N, size: N, tolerance: N) -> N {
     distance + max(size * N::lit(SLACK), tolerance)
 }
@@ -244,8 +245,9 @@ fn choose_in_frame<N: Real, const D: usize>(
     out.pose12 = Some(*pose12).filter(|_| keeps_pose(pair));
 }
 
-/// Returns whether the manifold keeps the pose, so that positions on the second solid are compared.
-/// The kernels of `batch` keep no pose, so `false` for pairs that they may serve.
+/// Returns whether the manifold stores the pose, so that points are also matched by their positions
+/// on the second solid. `false` for pairs that the kernels of `batch` may compute, because these
+/// store no pose.
 fn keeps_pose<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
     let has_lanes = |kind: &Kind<'_, N, D>| {
         matches!(kind, Kind::Ball(_) | Kind::Cuboid(_) | Kind::Segment(_) | Kind::Capsule(_))
@@ -253,9 +255,9 @@ fn keeps_pose<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
     !(has_lanes(&pair.first) && has_lanes(&pair.second))
 }
 
-/// Replaces the points of a manifold and its normal by at most `limit` candidates, and at least
-/// one. One of the deepest gets the distance of the pair, from which its own differs by rounding or
-/// up to `SLACK`.
+/// Replaces the points of a manifold by at least one and at most `limit` candidates, and sets its
+/// normal. One of the deepest points gets the distance of the pair; its own distance differs from
+/// that by rounding, or by up to `SLACK` times the size.
 pub(in crate::collide) fn choose<N: Real, const D: usize>(
     candidates: &mut [Candidate<N, D>],
     choice: &PointChoice<'_, N, D>,
@@ -274,7 +276,7 @@ pub(in crate::collide) fn choose<N: Real, const D: usize>(
         let levels = [distance + tolerance, slack_level(distance, size, tolerance)];
         let chosen = chosen(candidates, levels, tolerance, limit);
         if is_over {
-            // Ids of candidates that are not chosen pass to chosen ones near them.
+            // Passes the ids of candidates that were not chosen to chosen candidates near them.
             ids::inherit_by_position(out, &choice.pose, choice.size, candidates, &chosen);
         }
         let deepest = deepest_of(chosen.len(), levels[0], |at| {
@@ -287,8 +289,9 @@ pub(in crate::collide) fn choose<N: Real, const D: usize>(
     out.normal = *choice.pose.normal;
 }
 
-/// Returns the indices of at most `limit` candidates. At least one of them is deepest: it has a
-/// distance up to `levels[0]`, or is an old point with a distance up to `levels[1]`.
+/// Returns the indices of at most `limit` candidates. At least one of them is deepest: its distance
+/// is the smallest or at most `levels[0]`, or it is an old point with a distance of at most
+/// `levels[1]`.
 #[inline]
 fn chosen<N: Real, const D: usize>(
     candidates: &[Candidate<N, D>],
@@ -303,8 +306,8 @@ fn chosen<N: Real, const D: usize>(
     reduce::chosen(&mut reduce::projected(flattened, levels), limit, tolerance)
 }
 
-/// Adds the nearest points. They replace the candidate with the same features if there is exactly
-/// one; round rims and pairs of faces may have several.
+/// Adds the nearest points as a candidate. It replaces the only candidate with the same features.
+/// If there are several, as on round rims, or both features are faces, all of them stay.
 fn add_witness<N: Real, const D: usize>(
     witness: &Separation<N, D>,
     features: [FeatureId; 2],

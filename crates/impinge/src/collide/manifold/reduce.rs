@@ -35,8 +35,8 @@ const KEPT: f64 = 1.0 / 256.0;
 /// Fraction of the best area, or length of points in a row, that old points must span to be kept.
 const ENOUGH: f64 = 0.9;
 
-/// Points in a strip whose width is below this fraction of its length are a row. Its ends bound it;
-/// points between them come and go by rounding.
+/// Points in a strip narrower than this fraction of its length count as a row: their lengths are
+/// compared, not their areas, which small offsets change much.
 const THIN: f64 = 1.0 / 4096.0;
 
 /// A candidate projected along the normal.
@@ -45,7 +45,7 @@ pub(in crate::collide) struct Projected<N: Real> {
     pub(in crate::collide) at: Vector<N, 2>,
     /// Index of the candidate.
     pub(in crate::collide) index: usize,
-    /// Whether it is as deep as the manifold, up to rounding or the slack of an old point.
+    /// Whether its distance is the smallest, up to rounding or the slack of an old point.
     pub(in crate::collide) is_deepest: bool,
     /// Whether the previous manifold had the candidate.
     pub(in crate::collide) is_kept: bool,
@@ -57,9 +57,9 @@ pub(in crate::collide) type Projections<N> = SmallVec<[Projected<N>; FEW]>;
 /// Indices of chosen candidates.
 pub(in crate::collide) type Indices = SmallVec<[usize; 8]>;
 
-/// Projects the candidates, given as coordinates, distance, and whether the previous manifold had
-/// them. A candidate is deepest if its distance is at most `level` or is the smallest. If no old
-/// candidate is among these, old candidates with a distance up to `slack` also are.
+/// Lists candidates from (tangent coordinates, distance, whether the previous manifold had it). A
+/// candidate is deepest if its distance is at most `level` or is the smallest. If none of these is
+/// old, old candidates with a distance up to `slack` count as deepest too.
 #[inline]
 pub(in crate::collide) fn projected<N: Real>(
     candidates: impl Iterator<Item = (Vector<N, 2>, N, bool)> + Clone,
@@ -96,8 +96,8 @@ pub(in crate::collide) fn chosen<N: Real>(
     old_or(best, points, limit, tolerance)
 }
 
-/// Returns the old points if they are at most `limit`, include a deepest one, and span enough of
-/// what `best` spans; else `best`.
+/// Returns the old points if they are at most `limit`, include a deepest one, and span [`ENOUGH`]
+/// of the area or length that `best` spans; else `best`.
 fn old_or<N: Real>(best: Indices, points: &[Projected<N>], limit: usize, tolerance: N) -> Indices {
     let old: Projections<N> = points.iter().filter(|point| point.is_kept).copied().collect();
     if old.len() > limit || !old.iter().any(|point| point.is_deepest) {
@@ -118,7 +118,7 @@ fn old_or<N: Real>(best: Indices, points: &[Projected<N>], limit: usize, toleran
     if is_enough { sorted(old.iter().map(|point| point.index).collect()) } else { best }
 }
 
-/// Returns twice the area of the convex hull of a few points, and the largest distance in it.
+/// Returns twice the area of the convex hull of a few points, and the length of its longest chord.
 fn span<N: Real>(points: &Projections<N>) -> [N; 2] {
     let ring = hull(&mut points.clone(), N::ZERO);
     let (mut area, mut longest) = (N::ZERO, N::ZERO);
@@ -156,7 +156,7 @@ fn best_spanning<N: Real>(points: &mut Projections<N>, limit: usize, tolerance: 
     }
     ring.extend(inner);
     if ring.is_empty() {
-        // Areas are NaN.
+        // Only if areas are NaN.
         ring.push(points[a_deepest(points)]);
     }
     if ring.len() > limit {
@@ -165,7 +165,7 @@ fn best_spanning<N: Real>(points: &mut Projections<N>, limit: usize, tolerance: 
     sorted(ring.iter().map(|corner| corner.index).collect())
 }
 
-/// Compares two numbers in a total order; most calls take one comparison.
+/// Compares two numbers by value; zeros and NaN are ordered as by [`f64::total_cmp`].
 #[inline]
 pub(in crate::collide) fn ordering<N: Real>(a: N, b: N) -> Ordering {
     if a < b {
@@ -182,7 +182,7 @@ fn sorted(mut indices: Indices) -> Indices {
     indices
 }
 
-/// Returns the position of a deepest candidate, of an old one if there is one; else 0.
+/// Returns the position of a deepest candidate, an old one if possible; 0 if none is deepest.
 pub(in crate::collide) fn a_deepest<N: Real>(points: &[Projected<N>]) -> usize {
     let is_old = |point: &Projected<N>| point.is_deepest && point.is_kept;
     let old = points.iter().position(is_old);
@@ -210,8 +210,8 @@ fn best_four<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> In
     chosen
 }
 
-/// Returns the positions of a deepest point, of the farthest from it and, in a row, of its other
-/// end.
+/// Returns the positions of a deepest point, of the point farthest from it and, if the deepest
+/// point is inside a row, of the other end of the row.
 fn farthest<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> Indices {
     let mut chosen = Indices::from_slice(&[a_deepest(points)]);
     let mut most = tolerance;
@@ -244,13 +244,13 @@ fn farthest_from<N: Real>(points: &[Projected<N>], from: usize) -> (usize, N) {
     (best, most)
 }
 
-/// Returns the weight of a point in areas and distances.
+/// Returns the factor of a point in areas and distances: 1 for an old point, else [`NEW`].
 #[inline]
 fn weight<N: Real>(point: &Projected<N>) -> N {
     if point.is_kept { N::ONE } else { N::lit(NEW) }
 }
 
-/// Coordinates and weights of a few points, in rows for vectors.
+/// Coordinates and weights of up to [`FEW`] points, in rows of [`LANES`] for SIMD.
 struct CoordinateRows<N: Real> {
     x: [[N; LANES]; FEW / LANES],
     y: [[N; LANES]; FEW / LANES],
@@ -259,7 +259,7 @@ struct CoordinateRows<N: Real> {
     len: usize,
 }
 
-/// Points in one row.
+/// Number of points in one row.
 const LANES: usize = 4;
 
 impl<N: Real> CoordinateRows<N> {
@@ -275,7 +275,7 @@ impl<N: Real> CoordinateRows<N> {
         rows
     }
 
-    /// Returns twice the weighted areas of a diagonal with the farthest points on its two sides.
+    /// Returns twice the largest weighted areas of triangles to the left and right of a diagonal.
     #[inline]
     fn sides(&self, start: &Projected<N>, end: &Projected<N>) -> [N; 2] {
         let edge = end.at - start.at;
@@ -408,7 +408,7 @@ fn is_between<N: Real>(own: &Projected<N>, ends: [&Projected<N>; 2], tolerance: 
     is_in_row && along >= -slack && along <= length * length + slack
 }
 
-/// Reduces a hull to at most `count` corners: old ones, a deepest one, and the ones that add most.
+/// Reduces a hull to at most `count` corners: a deepest one, old ones, and others that add most.
 fn coarsen<N: Real>(ring: &mut Projections<N>, count: usize) {
     if ring.len() <= count {
         return;
@@ -465,9 +465,9 @@ fn largest_polygon<N: Real>(mut ring: Projections<N>, count: usize) -> Projectio
     best
 }
 
-/// Returns twice the largest area, with bonuses, of a polygon of `count` corners that contains the
-/// first one, and that polygon. Dynamic programming: the best paths to each corner over `number`
-/// others give the best ones over `number + 1`.
+/// Returns twice the largest area, with bonuses, of a polygon of `count` corners that has corner 0,
+/// and that polygon. Dynamic programming: the best paths to each corner over `number` others give
+/// the best ones over `number + 1`.
 fn largest_with_first<N: Real>(
     ring: &[Projected<N>],
     count: usize,

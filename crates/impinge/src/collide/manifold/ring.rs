@@ -96,7 +96,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
     }
 
     /// Fills a blank ring with the supporting feature of a solid; the caller then
-    /// [projects](Self::project) it. The ring is filled in place because it has some hundred bytes.
+    /// [projects](Self::project) it. Filling it in place avoids a copy of several hundred bytes.
     pub(super) fn fill(&mut self, kind: Kind<'_, N, 3>, frame: &ContactFrame<N, 3>) {
         let outward = self.which.outward(frame);
         let direction = self.pose.map_or(outward, |pose| pose.inverse_vector(&outward));
@@ -270,7 +270,8 @@ impl<'a, N: Real> SupportRing<'a, N> {
     /// Simplifies a feature that has no extent in projection, or is tilted too far.
     fn simplify(&mut self, frame: &ContactFrame<N, 3>) {
         let (outward, tolerance) = (self.which.outward(frame), frame.tolerance);
-        // Corners that coincide hide an extent: once merged, the face may have one.
+        // Coinciding corners make the extent unknown; once they are merged, the face may have an
+        // extent.
         let mut extent = if self.is_point() { None } else { self.extent(tolerance) };
         if extent.is_none() && self.is_segment() {
             self.end_on(&outward, tolerance);
@@ -403,8 +404,9 @@ impl<'a, N: Real> SupportRing<'a, N> {
     }
 }
 
-/// Returns the end of a segment that a point lies at, else the segment; `None` if the point is at
-/// both ends.
+/// Returns the end of a segment that is within `tolerance` of a point, measured along the segment,
+/// else the segment. A point beyond an end counts as at that end. `None` if the point is at both
+/// ends.
 pub(super) fn part_of<N: Real, const D: usize>(
     segment: &Segment<N, D>,
     point: &Point<N, D>,

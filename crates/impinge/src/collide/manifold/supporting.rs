@@ -131,11 +131,11 @@ fn fill_round<N: Real>(part: Option<RoundPart<N>>, face: &mut FaceRing<N>) -> bo
 }
 
 /// Fills `out` with the part of a core that faces a direction, in the form used for contacts. May
-/// return one more corner, to be placed before the first.
+/// return one more corner, which precedes the first.
 ///
 /// The corners of a round cap are fixed on the solid: they are the corners for the cap's own
-/// normal. So a solid that vibrates on its cap touches with the same points at any tilt. If the
-/// lowest point of the rim lies between two of these corners, it is returned as the additional
+/// normal. So a solid that vibrates on its cap touches with the same points at any small tilt. If
+/// the lowest point of the rim lies between two of these corners, it is returned as the additional
 /// corner. If the tilt is so large that no old corner may stand for the lowest point (`SLACK`), the
 /// corners are placed around the lowest point: the cap rolls on its rim.
 pub(super) fn contact_feature<N: Real, const D: usize>(
@@ -150,7 +150,7 @@ pub(super) fn contact_feature<N: Real, const D: usize>(
     let lowest = map.core_support(direction);
     let height = |point: &Point<N, D>| point.coords.dot(direction);
     let top = out.vertices.iter().map(height).fold(-N::INFINITY, max);
-    // Height of the rim's lowest point along the direction, above the lowest of the corners.
+    // How far the rim's lowest point extends beyond the lowest corner, along the direction.
     let (lower, reach) = (height(&lowest) - top, map.reach());
     if lower > N::lit(SLACK) * reach {
         map.core_feature(direction, out);
@@ -192,7 +192,7 @@ fn fill_feature<N: Real>(
         let side = feature.side_ids.get(at).copied();
         [id, side.unwrap_or(feature.id)]
     });
-    // All corners of a rim have the same ids.
+    // All corners of a rim have the same ids, so `extra` gets those of the first corner.
     let first = ids.clone().take(extra.iter().count());
     let corners = extra.iter().chain(&feature.vertices);
     for (at, (vertex, ids)) in corners.zip(first.chain(ids)).enumerate() {

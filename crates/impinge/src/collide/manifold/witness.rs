@@ -25,7 +25,7 @@ pub(crate) fn features3<N: Real>(
 }
 
 /// Returns the feature of one solid in 2D that its point of the separation lies on; of the second
-/// solid if `is_second`. It equals that entry of [`features2`].
+/// solid if `is_second`. The result equals the entry of that solid in [`features2`].
 pub(crate) fn feature2<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
@@ -36,7 +36,7 @@ pub(crate) fn feature2<N: Real>(
 }
 
 /// Returns the feature of one solid in 3D that its point of the separation lies on; of the second
-/// solid if `is_second`. It equals that entry of [`features3`].
+/// solid if `is_second`. The result equals the entry of that solid in [`features3`].
 pub(crate) fn feature3<N: Real>(
     pair: &Pair<'_, N, 3>,
     separation: &Separation<N, 3>,
@@ -61,7 +61,7 @@ fn frame<N: Real, const D: usize>(
     ContactFrame::new(pair, separation, &request, tangents)
 }
 
-/// Returns both features: by the position of the point if it decides, else by the supporting
+/// Returns both features: from the position of the point if that decides, else from the supporting
 /// feature.
 fn features<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -85,8 +85,8 @@ fn features<N: Real, const D: usize>(
 }
 
 /// Returns the part of a solid that contains a surface point with the outward normal `outward`,
-/// from the position alone, without the supporting feature. It supports flat-faced solids,
-/// segments, capsules and rounded solids; `None` for other kinds, and in close cases.
+/// from the position alone, without the supporting feature. Flat-faced solids, half-spaces,
+/// segments, capsules and rounded solids are supported; `None` for other kinds and in close cases.
 fn by_position<N: Real, const D: usize>(
     kind: Kind<'_, N, D>,
     point: &Point<N, D>,
@@ -111,7 +111,8 @@ fn by_position<N: Real, const D: usize>(
     }
 }
 
-/// Returns one feature: for balls and triangles by position, for others by the supporting feature.
+/// Returns one feature: from the position of the point if a ball or a triangle allows it, else from
+/// the supporting feature.
 fn feature<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -151,8 +152,8 @@ fn on_seam<N: Real, const D: usize>(
     part.filter(|part| !matches!(part, FeatureId::Face(_)))
 }
 
-/// Returns the features of a pair whose first solid is a ball, if the kind of the second gives its
-/// feature directly; `None` for other pairs.
+/// Returns the feature of the second solid if the first is a ball and the kind of the second gives
+/// the feature directly; else `None`.
 fn of_ball<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -163,9 +164,9 @@ fn of_ball<N: Real, const D: usize>(
     }
 }
 
-/// Returns the feature of the second solid that a ball, the first, touches, if the second's kind
-/// gives it directly; else `None`. It equals the part that the supporting feature gives, except
-/// within rounding of another part.
+/// Returns the feature of the second solid that a ball, the first solid, touches; `None` if the
+/// second solid's kind does not give it directly. The result equals the part that the supporting
+/// feature gives, except within rounding of another part.
 #[inline]
 pub(in crate::collide) fn beside_ball<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,

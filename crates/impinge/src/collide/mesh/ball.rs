@@ -26,8 +26,8 @@ use crate::shape::{Ball, CompositeShape, FeatureId, Kind, SupportMap, SurfaceAcc
 
 /// Rounding error of lengths, in units of epsilon times the sum of all sizes.
 const ROUNDING: f64 = 16.0;
-/// Parts that the cache may hold with its large margin: a part outside the ball's box costs only a
-/// test of boxes.
+/// Number of parts that the cache may hold with its large margin. It is large because a part
+/// outside the ball's box costs only a box test.
 const MAX_ROOMY: usize = 5 * LANES;
 
 /// Updates the contacts of a ball and a surface. Returns `false`, with nothing changed but the part
@@ -92,9 +92,9 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         Some(Self { between, request, ball, parts, surface, turn, center, from: center })
     }
 
-    /// Returns the box around everything within the prediction of the ball, once the cache holds
-    /// all its parts; `None` if the box is unbounded or a cached part is not a triangle with
-    /// corners.
+    /// Fills the cache with all parts near the ball, and returns a box around all points within the
+    /// prediction of the ball. `None` if the box is unbounded or a cached part is not a triangle
+    /// with corners.
     fn box_within(&self, around: &mut PartCache<N, 3>) -> Option<Aabb<N, 3>> {
         let half_extents = Vector::<N, 3>::repeat(self.ball.radius() + self.request.prediction);
         let aabb = enclosing(&Aabb::around(self.center, half_extents), &self.between.pose21);
@@ -103,8 +103,8 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     }
 
     /// Finds the contacts of the triangles that are not hidden, and updates the reference point
-    /// `from`. Returns the rounding error of the hidden triangles, or `None` if the generic path
-    /// has to consider these.
+    /// `from`. Returns the rounding error of the hidden triangles; `None` if the pair needs the
+    /// generic path.
     fn find(
         &mut self,
         contacts: &mut CompositeContacts<N, 3>,

@@ -18,7 +18,7 @@ const ROUNDS: usize = 400;
 /// Number of vertices along each side of a terrain.
 const POINTS: u32 = 9;
 
-/// Returns heights over a grid: rough (0), gentle (1), or flat with steps.
+/// Returns heights over a grid: rough if `kind` is 0, gentle if it is 1, else flat with steps.
 fn heights<N: Real>(random: &mut Random, kind: usize) -> Vec<N> {
     let mut next = |_| {
         let change = random.vector::<N>().x;
@@ -32,8 +32,8 @@ fn heights<N: Real>(random: &mut Random, kind: usize) -> Vec<N> {
     (0..POINTS * POINTS).map(&mut next).collect()
 }
 
-/// Returns a mesh over a grid. Corners are shared or not, some triangles are left out or have no
-/// area, and some vertices are moved, also to the position of others.
+/// Returns a mesh over a grid. Its triangles may share corners or not. Some triangles are left out
+/// or have no area, and some vertices are moved, one of them to the position of another.
 fn mesh_of<N: Space<3>>(random: &mut Random, heights: &[N]) -> TriMesh<N, 3> {
     let vertex_at = |at: u32| {
         let [x, z] = [at % POINTS, at / POINTS].map(|n| N::lit(f64::from(n) * 0.5 - 2.0));
@@ -65,7 +65,7 @@ fn mesh_of<N: Space<3>>(random: &mut Random, heights: &[N]) -> TriMesh<N, 3> {
     if random.pick(6) == 0 { mesh.with_internal_edges_kept() } else { mesh }
 }
 
-/// Returns a terrain around the origin, a mesh or a height field, with one side or two.
+/// Returns a terrain around the origin: a mesh or a height field, one-sided or two-sided.
 fn ground_of<N: Space<3>>(random: &mut Random, round: usize) -> Box<dyn Shape<N, 3>> {
     let heights = heights::<N>(random, round % 3);
     let is_one_sided = random.pick(3) == 0;
@@ -114,8 +114,8 @@ fn flat_of<N: Space<3>>(random: &mut Random) -> Solid<N> {
     (Box::new(ConvexHull::from_points(&corners)), height)
 }
 
-/// Moves one solid and asserts that both paths agree. Returns the number of updates by the quick
-/// path, and of contact points.
+/// Moves one solid and asserts that both paths have the same contacts. Returns the number of
+/// updates by the quick path, and the number of contact points.
 fn follow<N: Space<3>>(
     (solid, height): Solid<N>,
     random: &mut Random,

@@ -29,8 +29,8 @@ use crate::shape::{
 
 /// Rounding error of lengths, in units of epsilon times the sum of all sizes.
 const ROUNDING: f64 = 16.0;
-/// Number of packets that are searched for the segments at a point; with more packets, the surface
-/// of the chain is called instead.
+/// Largest number of cached packets that are searched for the segments at a point; for more
+/// packets, the surface of the chain is called instead.
 const MAX_SEARCHED: usize = 8;
 
 /// Updates the contacts of a convex solid and a chain. Returns `false`, with nothing changed but
@@ -72,8 +72,8 @@ struct Chain<'b, 'a, N: Real> {
     sidedness: Option<Sidedness>,
     /// Rotation from the frame of the chain to the frame of the solid; its translation is zero.
     turn: Pose<N, 2>,
-    /// Relative pose of a segment and the solid, in the order of kinds: of the second in the frame
-    /// of the first.
+    /// Relative pose of a segment and the solid, in the order of kinds: the pose of the second in
+    /// the frame of the first.
     pose12: Pose<N, 2>,
     /// Whether the solid comes before a segment of the chain in the order of kinds. True for balls,
     /// and for segments, because the solid is the first shape.
@@ -88,7 +88,7 @@ struct Chain<'b, 'a, N: Real> {
     size: N,
 }
 
-/// Cached segments: all segments that overlap the box `within`.
+/// The cached segments: all segments of the chain that overlap the box `within`.
 struct KeptLinks<'t, N: Real> {
     tiles: &'t [PartPacket<N, 2>],
     parts: &'t [u32],
@@ -179,9 +179,9 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         })
     }
 
-    /// Returns the box around everything within the prediction of the solid, once the cache holds
-    /// all its parts; `None` if the box is unbounded or a cached part is not a segment with
-    /// corners.
+    /// Fills the cache with all parts near the solid, and returns a box around all points within
+    /// the prediction of the solid. `None` if the box is unbounded or a cached part is not a
+    /// segment with corners.
     fn box_within(&self, around: &mut PartCache<N, 2>) -> Option<Aabb<N, 2>> {
         let max_distance = self.size + self.request.prediction;
         let whole = Aabb::around(self.origin, Vector::<N, 2>::repeat(max_distance));

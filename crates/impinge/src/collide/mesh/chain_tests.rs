@@ -20,7 +20,7 @@ use crate::shape::{
 /// Number of updates of each solid.
 const STEPS: usize = 6;
 
-/// Returns heights along a line: rough (0), gentle (1), or flat with steps.
+/// Returns heights along a line: rough if `kind` is 0, gentle if it is 1, else flat with steps.
 fn heights<N: Real>(random: &mut Random, kind: usize) -> Vec<N> {
     let mut height = N::ZERO;
     let mut next = |_| {
@@ -37,7 +37,7 @@ fn heights<N: Real>(random: &mut Random, kind: usize) -> Vec<N> {
     (0..13).map(&mut next).collect()
 }
 
-/// Returns a terrain around the origin, mirrored or not, with one side or two.
+/// Returns a terrain around the origin: mirrored or not, one-sided or two-sided.
 fn ground_of<N: Space<2>>(random: &mut Random, round: usize) -> Box<dyn Shape<N, 2>> {
     let heights = heights::<N>(random, round % 3);
     let is_one_sided = random.pick(3) == 0;
@@ -88,7 +88,7 @@ fn pose_of<N: Real>(position: Vector<N, 2>, angle: N) -> Pose<N, 2> {
     Pose { rotation: Matrix::<N, 2>::new(cosine, -sine, sine, cosine), translation: position }
 }
 
-/// Asserts that both paths agree in all bits, ids included.
+/// Asserts that the contacts of both paths are equal bit for bit, ids included.
 pub(super) fn assert_same<N: Real, const D: usize>(
     quick: &CompositeContacts<N, D>,
     slow: &CompositeContacts<N, D>,
@@ -105,8 +105,8 @@ pub(super) fn assert_same<N: Real, const D: usize>(
     }
 }
 
-/// Asserts that the contact within a limit depends neither on whether the nearest part was searched
-/// first, nor on the path.
+/// Asserts that the contact within `limit` depends neither on the path nor on whether the nearest
+/// part is searched first.
 pub(super) fn assert_one_contact<N: Space<D>, const D: usize>(
     [placed1, placed2]: [&Placed<'_, N, D>; 2],
     limit: N,
@@ -131,8 +131,8 @@ pub(super) fn assert_one_contact<N: Space<D>, const D: usize>(
     }
 }
 
-/// Moves one solid and asserts that both paths agree. Returns the number of updates by the quick
-/// path, and of contact points.
+/// Moves one solid and asserts that both paths have the same contacts. Returns the number of
+/// updates by the quick path, and the number of contact points.
 fn follow<N: Space<2>>(random: &mut Random, round: usize) -> (usize, usize) {
     let (solid, terrain) = (solid_of::<N>(random), ground_of::<N>(random, round));
     let far = N::lit([0.0, 40.0][random.pick(2)]);

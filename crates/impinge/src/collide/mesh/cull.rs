@@ -1,9 +1,9 @@
 //! Lower bounds of the distances from a convex solid to 8 parts of a surface at a time.
 //!
 //! Most parts whose boxes are near the solid are themselves farther than the limit. A plane
-//! perpendicular to the shortest segment from the part to the solid's centre rejects such parts for
-//! a few products. Any plane gives a valid lower bound of the distance, so only rounding needs
-//! care. The core of the solid enters as a box, by its extents along its own axes.
+//! perpendicular to the shortest segment from the part to the solid's centre rejects such parts at
+//! the cost of a few products. Any plane gives a valid lower bound of the distance, so only
+//! rounding needs care. The core of the solid enters as a box, by its extents along its own axes.
 //!
 //! ```text
 //!   part                          solid
@@ -35,7 +35,7 @@ pub(super) fn relative_slack<N: Real>() -> N {
     max(N::lit(ROUNDING) * N::EPSILON, N::lit(CURVED))
 }
 
-/// Returns the length below which underflow has cost digits.
+/// Returns the magnitude below which underflow may have made a product inexact.
 #[inline]
 fn least_length<N: Real>() -> N {
     N::MIN_POSITIVE / N::EPSILON
@@ -65,8 +65,8 @@ pub(super) struct LowerBoundQuery<N: Real, const D: usize> {
 pub(super) struct LowerBounds<N> {
     /// Bits of the parts that may be within `max_distance`.
     pub(super) mask: u8,
-    /// Lower bound of the distance from the solid's centre to those of the 8 parts that overlap the
-    /// box; zero if unknown.
+    /// Lower bound of the distance from the solid's centre to the nearest of the 8 parts whose
+    /// boxes overlap the query's box; zero if unknown.
     pub(super) from_middle: N,
 }
 
@@ -254,7 +254,7 @@ mod tests {
 
     type P3 = Point<f64, 3>;
 
-    /// Pseudo-random numbers from -1 to 1.
+    /// Returns the next pseudo-random number from -1 to 1.
     fn pseudo_random(state: &mut u64) -> f64 {
         *state ^= *state << 13;
         *state ^= *state >> 7;
@@ -262,7 +262,8 @@ mod tests {
         (*state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
-    /// The least distance from a point to samples of a triangle: never below the true one.
+    /// Returns the least distance from a point to samples of a triangle; never less than the true
+    /// distance.
     fn sampled([a, b, c]: &[P3; 3], p: &P3) -> f64 {
         const STEPS: u32 = 48;
         let shares = (0..=STEPS).flat_map(|v| (0..=STEPS - v).map(move |w| (v, w)));
@@ -273,8 +274,8 @@ mod tests {
         shares.map(distance).fold(f64::INFINITY, f64::min)
     }
 
-    /// The bounds of a solid at the origin and a mesh of one triangle: that of the distance from
-    /// the centre, and whether the triangle is out of reach.
+    /// Returns a lower bound of the distance from the centre of a solid at the origin to a
+    /// triangle, and whether the triangle is rejected as beyond `max_distance` from the solid.
     fn bound(solid: &dyn Shape<f64, 3>, corners: [P3; 3], max_distance: f64) -> (f64, bool) {
         let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]);
         let geometries = (solid.geometry(), mesh.geometry());

@@ -78,6 +78,7 @@ struct FaceConfiguration<'a, N: Real> {
     origin: Vector<N, 3>,
     /// Reference point of the solid, which decides sides, in the frame of the surface.
     from: Point<N, 3>,
+    /// Bounding radius of the solid's core around its origin.
     reach: N,
     /// Index in the cache of each near triangle, by its index in the results of `gaps3`.
     cache_indices: SmallVec<[usize; 24]>,
@@ -98,7 +99,7 @@ struct FaceContact<N: Real> {
     normal: Vector<N, 3>,
     status: PartStatus,
     /// Normal of the face in contact; `None` for a contact with a side or corner, and for a dropped
-    /// one.
+    /// contact.
     face: Option<Vector<N, 3>>,
 }
 
@@ -106,7 +107,7 @@ struct FaceContact<N: Real> {
 enum SurfaceAnswer<N: Real> {
     Nothing,
     Contact(FaceContact<N>),
-    /// The filter needs the touched feature, which the gap does not give.
+    /// The filter needs the touched feature of the triangle, which the gap does not provide.
     Unclear,
 }
 
@@ -292,7 +293,8 @@ impl<N: Real> FaceContacts<'_, '_, N> {
         self.arena.are_fronts &= face.is_none_or(is_front);
     }
 
-    /// Clips the waiting triangles. The generic path computes those that the lanes leave undecided.
+    /// Clips the waiting triangles. The generic path computes the contacts that the lanes leave
+    /// undecided.
     fn clip(&mut self) {
         let (PendingClips { triangles, requests, contacts }, configuration) =
             (core::mem::take(&mut self.pending), self.configuration);

@@ -123,15 +123,15 @@ pub(super) fn candidates<N: Space<D>, const D: usize>(
             let aabb = search_box(between, max_distance);
             parts2.search().overlapping(&aabb, &mut |part2| found.push([0, part2]));
         }
-        // In the order of kinds a composite comes second, so the first shape is not a lone
-        // composite.
+        // In the order of kinds a composite comes second: if the second shape is not a composite,
+        // neither is the first.
         [_, None] => {}
     }
     found.sort_unstable();
     found
 }
 
-/// Collects all pairs, with a constant limit.
+/// Visitor that collects all pairs, with the constant limit `max_distance`.
 struct FoundPairs<'a, N> {
     max_distance: N,
     found: &'a mut PartPairs,
@@ -144,9 +144,10 @@ impl<N: Real, const D: usize> TouchingVisitor<N, D> for FoundPairs<'_, N> {
     }
 }
 
-/// Finds the parts of two composites that may be within `max_distance`, by descending both trees,
-/// which also test the parts. Without trees, each part of the composite with fewer parts that is
-/// near the other composite is searched in the other.
+/// Finds the parts of two composites that may be within `max_distance`. If both composites have
+/// trees, a simultaneous descent of the trees finds them and also tests the parts. Otherwise, each
+/// part of the composite with fewer parts that is near the other composite is searched in the
+/// other.
 fn of_two<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     parts1: &dyn CompositeShape<N, D>,

@@ -1,7 +1,7 @@
 //! Drops contacts with faces that lie behind a neighbouring face, as seen from the solid.
 //!
 //! Each face of a two-sided surface is touched from the side that the centre of the solid is on.
-//! Near an edge that is wrong for one of two faces:
+//! Near an edge this rule fails for one of the two faces:
 //!
 //! ```text
 //!      ┌───────────┐
@@ -23,12 +23,12 @@ use super::scene::Scene;
 use crate::math::order::{order_of, sort_keyed};
 use crate::math::{Mapped, Point, Real, Space, Vector, max, min};
 
-/// Faces whose normals have a larger cosine do not hide each other.
+/// Faces do not hide each other if the cosine of the angle between their normals is larger.
 const ALIKE: f64 = 0.99;
-/// Rounding error of heights, in units of epsilon times the lengths of both parts.
+/// Bound of the rounding errors of heights, in units of epsilon times the lengths of both parts.
 const ROUNDING: f64 = 16.0;
-/// Faces around a corner that can hide others: the nearest ones. Around most corners of surfaces
-/// there are six faces, but around the centre of a fan there are all.
+/// Number of faces around a corner that can hide others; the nearest are used. Around most corners
+/// of surfaces there are six faces, but around the centre of a fan there are all its faces.
 const MAX_HIDING: usize = 16;
 
 /// The side of a plane that a face lies on.
@@ -119,8 +119,8 @@ pub(super) fn are_alike<N: Real, const D: usize>(a: &Vector<N, D>, b: &Vector<N,
     a.dot(b) > N::lit(ALIKE)
 }
 
-/// Returns the index of the contact that is hidden: its face is behind the plane of the other, and
-/// the other is not behind its plane. `None` if neither hides the other.
+/// Returns the index of the hidden contact: its face lies behind the plane of the other face, and
+/// the other face lies in front of its plane. `None` if neither face hides the other.
 fn hidden_of<N: Real, const D: usize>(
     a: &TouchedFace<N, D>,
     b: &TouchedFace<N, D>,
@@ -133,7 +133,7 @@ fn hidden_of<N: Real, const D: usize>(
         (PlaneSide::Front, PlaneSide::Back) => (b, a),
         _ => return None,
     };
-    // A farther face hides nothing, so that the prediction never changes an overlap.
+    // A farther face hides nothing, so a larger prediction never removes the contact of an overlap.
     (front.distance <= max(back.distance, N::ZERO)).then_some(back.contact)
 }
 

@@ -9,8 +9,8 @@ use crate::math::{Space, Unit};
 use crate::shape::Plane;
 
 impl<N: Space<D>, const D: usize> Query<'_, N, D> {
-    /// Returns the pieces that are inside of bodies, and removes from `contacts` those of their
-    /// parts with the boundary: from inside, the boundary is not a surface to touch.
+    /// Returns the pieces that are inside of bodies, and removes the contacts of their parts with
+    /// the boundary from `contacts`: from inside, the boundary is not a surface to touch.
     ///
     /// A piece with a part that overlaps the boundary is not inside: its own contacts push it out.
     pub(super) fn take_inside(&self, contacts: &mut PartContacts<N, D>) -> InsidePieces<N, D> {

@@ -3,7 +3,8 @@
 //! 1. [`gather`] finds the parts within the prediction: the parts in [`part_cache`], as long as the
 //!    cached box suffices, without the parts that a lower bound culls ([`cull`]).
 //! 2. [`part_contact`] computes the contact of each pair of parts. [`normal_filter`] rejects
-//!    normals that a surface does not admit: at such a seam only contacts with the face count.
+//!    normals that a surface does not admit at a seam; there, only contacts along the normal of the
+//!    face count.
 //! 3. [`hidden`] drops contacts with faces that a neighbour hides; [`resolve`] drops contacts that
 //!    another contact explains. Solids that overlap always keep a contact.
 //! 4. [`inside`] adds the contacts of pieces that lie wholly inside a body and touch no part.
@@ -16,7 +17,7 @@
 //! their neighbours.
 //!
 //! A query for the contact with a composite returns the deepest of the contacts that a world would
-//! have; for a half-space and a composite, the contact of the nearest part.
+//! have. For a half-space and a composite it returns the contact of the nearest part.
 
 mod ball;
 #[cfg(test)]
@@ -88,12 +89,13 @@ pub(crate) struct CompositeContacts<N: Real, const D: usize> {
     patches: Vec<Patch<N, D>>,
     ids: PairIds,
     /// Centre of the first shape, in the frame of the second, at the last update in which it had
-    /// not crossed the surface. It decides sides: a solid that was pushed halfway through a
-    /// two-sided surface, or jumped across it, still counts as being on its old side. `None` if
-    /// there is no such update, or the first shape is not convex.
+    /// not crossed the surface. The side of this point counts: a solid that was pushed halfway
+    /// through a two-sided surface, or jumped across it, still counts as being on its old side.
+    /// `None` if there is no such update, or the first shape is not convex.
     reference: Reference<N, D>,
     /// Pose of the second shape in the frame of the first at the last update.
     pose12: Pose<N, D>,
+    /// Cached parts of the second shape.
     around: PartCache<N, D>,
 }
 
@@ -190,7 +192,7 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         let around = &mut self.around;
         let culled = gather::culled(between, is_self, of_parts.prediction, around);
         let center = middle_of_first(between);
-        // A body has its own inside, so no reference point is kept for it.
+        // A composite with bodies has an inside, so the old reference point is not used.
         let old = self.reference.filter(|_| !between.has_bodies());
         let travelled = Travelled { old, clearance: culled.clearance };
         let reference = center.map(|center| advanced(between, &travelled, center));
@@ -310,7 +312,7 @@ const POINTS_AT_A_PART: usize = 4;
 
 impl<N: Space<D>, const D: usize> Query<'_, N, D> {
     /// Computes the contacts of nearby pairs of parts, and decides which of them hold. `prediction`
-    /// is the one of the whole shapes; `self.request` may have a larger one for the parts.
+    /// is that of the whole shapes; `self.request` may have a larger one for the parts.
     fn part_contacts(
         &self,
         prediction: N,
@@ -415,7 +417,8 @@ fn is_within_solid<N: Space<D>, const D: usize>(between: &Between<'_, N, D>, lim
     limit >= N::ZERO && map.is_some_and(|map| limit <= size(map) * N::lit(SMALL))
 }
 
-/// Returns whether most pairs like this one take a specialised path: balls on surfaces, and chains.
+/// Returns whether a specialised path computes most pairs of these kinds: a ball with a composite,
+/// or any solid with a chain. `false` for composites with bodies or ghosts.
 fn has_own_path<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> bool {
     let [None, Some(parts)] = between.composites() else { return false };
     if parts.has_bodies() || parts.has_ghosts() {

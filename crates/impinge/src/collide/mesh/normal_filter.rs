@@ -4,10 +4,10 @@
 use crate::math::{Point, Real, Space, Vector, unit};
 use crate::shape::{FeatureId, SurfaceAccess};
 
-/// Number of rounding units within which a normal counts as the face's own.
+/// Length of the difference, in units of epsilon, within which a normal counts as the face's own.
 const ROUNDING: f64 = 4096.0;
-/// A contact on the inside of a face has the face's normal; a normal that differs by less than this
-/// counts as the face's normal.
+/// Largest length of the difference at which the normal of a contact inside a face counts as the
+/// face's normal.
 const ON_FACE: f64 = 1.0 / 64.0;
 /// A normal whose component along the face's normal is below this belongs to the back of the face.
 pub(super) const BEHIND: f64 = -0.5;
@@ -24,8 +24,8 @@ pub(super) enum FilteredNormal<N: Real, const D: usize> {
     Nothing,
     /// The surface admits the contact's normal at the feature.
     Admitted,
-    /// The contact's normal is the face's normal, up to rounding; the face's exact normal is given
-    /// here.
+    /// The contact's normal is the face's normal, up to rounding or, inside a face, up to
+    /// `ON_FACE`. The exact normal of the face is given here.
     Face(Vector<N, D>),
     /// The seam does not admit the contact's normal. A contact with the face itself has the normal
     /// given here.

@@ -21,8 +21,8 @@ pub(crate) fn over2<N: Real>(_: &Triangle<N, 2>, _: &Point<N, 2>, _: N) -> Optio
 }
 
 /// Returns the feature of a triangle in 3D nearest to the centre of a ball, with the id that
-/// supporting features have; for a face, the id of the one on the centre's side. `None` if the
-/// triangle is thin, or the centre is within `CERTAIN · tolerance` of a border.
+/// supporting features have: for the face, 0 if the centre is in front, 1 if it is behind. `None`
+/// if the triangle is thin, or the centre is within `CERTAIN · tolerance` of a border.
 pub(crate) fn over3<N: Real>(
     triangle: &Triangle<N, 3>,
     center: &Point<N, 3>,
@@ -69,7 +69,8 @@ struct Border<N: Real> {
 /// of a region.
 fn beside<N: Real>(border: &Border<N>) -> Option<FeatureId> {
     let Border { sides, arms, lengths, insides, margin } = border;
-    // Where two sides meet at a small angle, the nearest point may be on the other side.
+    // Where two sides meet at a small angle, the point nearest to the centre may be on the adjacent
+    // side.
     let aside = N::lit(CERTAIN) * *margin;
     for at in 0..3 {
         let along = sides[at].dot(&arms[at]) / lengths[at];

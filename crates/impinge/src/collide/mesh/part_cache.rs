@@ -20,10 +20,11 @@ use crate::shape::{CompositeShape, FaceSeams, Part, PartSolid, Segment, SupportM
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) enum CacheMargin {
-    /// The first margin, used until it holds more parts than `most`.
+    /// The initial margin, used until the box with it holds too many parts: more than `most` in
+    /// [`PartCache::covers_with`].
     #[default]
     Large,
-    /// The large margin held too many parts.
+    /// The margin after the large one held too many parts.
     Small,
     /// No margin, for a single update.
     None,
@@ -50,8 +51,8 @@ enum KeptSeams<N: Real> {
     Known(FaceSeams<N>),
 }
 
-/// Parts around a convex solid, found for a larger box than the solid needs. They stay valid as
-/// long as the solid stays in that box.
+/// Parts around a convex solid, found for a larger box than the solid needs. The cache stays valid
+/// as long as the solid stays in that box.
 ///
 /// Corners of triangles and segments, in the frame of the composite, are copied into packets of 8
 /// parts, in one block of memory; in the composite they are scattered. With `f32` the copy takes 36
@@ -76,7 +77,7 @@ pub(super) struct PartCache<N: Real, const D: usize> {
 
 #[cfg(feature = "serde")]
 impl<N: Real, const D: usize> PartCache<N, D> {
-    /// The box whose parts are cached, and the margin of the next search.
+    /// Returns the box whose parts are cached, and the margin of the next search.
     pub(super) const fn room(&self) -> (Option<&Aabb<N, D>>, CacheMargin) {
         (self.within.as_ref(), self.margin)
     }
@@ -95,7 +96,8 @@ impl<N: Real, const D: usize> PartCache<N, D> {
 }
 
 impl<N: Real, const D: usize> PartCache<N, D> {
-    /// Reads the first packet, to load its cache line; the returned value is meaningless.
+    /// Reads a number of the first packet, to load its cache line; the returned value is
+    /// meaningless.
     #[inline]
     pub(super) fn prefetch(&self) -> N {
         self.tiles.first().map_or(N::ZERO, |tiles| tiles.corners[0][0][0])
@@ -103,8 +105,8 @@ impl<N: Real, const D: usize> PartCache<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> PartCache<N, D> {
-    /// Makes sure that the cache holds all parts that overlap a box; returns `false` if the box is
-    /// unbounded.
+    /// Refills the cache unless it holds all parts that overlap a box; returns `false` if the box
+    /// is unbounded.
     pub(super) fn covers(
         &mut self,
         composite: &dyn CompositeShape<N, D>,
@@ -113,8 +115,8 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         self.covers_with(composite, aabb, LANES)
     }
 
-    /// Does the work of [`Self::covers`], but keeps the large margin as long as it holds at most
-    /// `most` parts.
+    /// Fills the cache as [`Self::covers`] does, but keeps the large margin as long as it holds at
+    /// most `most` parts.
     pub(super) fn covers_with(
         &mut self,
         composite: &dyn CompositeShape<N, D>,

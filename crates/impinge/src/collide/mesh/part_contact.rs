@@ -1,10 +1,10 @@
 //! Computes the contact of each pair of parts, with a normal that the surfaces admit.
 //!
 //! ```text
-//!   separation ──> filter_normal ──> settled ──> Nothing   no contact
-//!   of the pair    per surface                   Refused   `Left`, without points
-//!                                                Found     points at the nearest points
-//!                                                Forced    points along the normal of a face
+//!   separation ──> filter_normal ──> combined_normal ──> Nothing   no contact
+//!   of the pair    per surface                           Refused   `Left`, without points
+//!                                                        Found     points at the nearest points
+//!                                                        Forced    points along a face's normal
 //! ```
 
 use crate::tables::ByDimension;
@@ -162,7 +162,7 @@ struct PartConfiguration<'a, N: Real, const D: usize> {
     /// Centre of part `i` in the frame of shape `j`, as `centers[i][j]`. If the first shape has no
     /// surface, all are in the frame of the second.
     centers: [[Point<N, D>; 2]; 2],
-    /// If it is `Some`, it replaces the centre of the first part in the frame of the second shape.
+    /// Replaces the centre of the first part in the frame of the second shape, if it is `Some`.
     reference: &'a Reference<N, D>,
 }
 
@@ -208,8 +208,8 @@ impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
-    /// Whether a contact along `normal` would push the other shape into a body. A face in an inner
-    /// wall of a body has such a normal: the inside is on its back as well.
+    /// Returns whether a contact along `normal` would push the other shape into a body. A face in
+    /// an inner wall of a body has such a normal: the inside is on its back as well.
     ///
     /// `normal` is from the first shape to the second, in the frame of the first.
     fn leads_into_body(&self, scene: &Scene<'_, N, D>, normal: &Vector<N, D>) -> bool {
@@ -225,8 +225,8 @@ impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
     }
 }
 
-/// Returns whether `over` is a side or corner of a triangle: then a ball has no point over the
-/// face.
+/// Returns whether `over` is a side or corner of a triangle: then the ball's centre does not
+/// project into the face.
 pub(super) fn is_beside(over: Option<FeatureId>) -> bool {
     over.is_some_and(|over| !matches!(over, FeatureId::Face(_)))
 }
@@ -371,8 +371,8 @@ enum CombinedNormal<N: Real, const D: usize> {
     Forced(Vector<N, D>, PartStatus),
 }
 
-/// Combines the results of both surfaces for `normal`. It and the result are in the frame of the
-/// first shape. If two faces compete, the one closer to `normal` wins.
+/// Combines the results of both surfaces for `normal`. `normal` and the result are in the frame of
+/// the first shape. If two faces compete, the one closer to `normal` wins.
 fn combined_normal<N: Space<D>, const D: usize>(
     placed: &PlacedPair<'_, N, D>,
     filtered: &[FilteredNormal<N, D>; 2],

@@ -1,7 +1,7 @@
 //! Merges the manifolds of many pairs of parts into few manifolds: one for each flat patch.
 //!
-//! The manifolds of the parts of a composite lie side by side. Manifolds with one normal in one
-//! plane are pieces of one contact area, which the points on its outline bound.
+//! The manifolds of the parts of a composite lie side by side. Manifolds with equal normals in one
+//! plane are pieces of one contact area; the points on the outline of that area suffice.
 //!
 //! ```text
 //!  pieces, one per pair of parts        patch
@@ -76,7 +76,7 @@ pub(crate) struct Merging<'a, N: Real, const D: usize> {
     pub(crate) size: OnceCell<N>,
 }
 
-/// The id that each point inherits; `None` for a new point.
+/// By point, the id that it inherits; `None` for a new point.
 pub(super) type KeptIds = SmallVec<[Option<Inherited>; 32]>;
 
 /// Merges the manifolds of parts into patches, sorted by their first parts. Replaces the patches of
@@ -131,8 +131,8 @@ fn merge_one<N: Real, const D: usize>(
     patches.truncate(1);
 }
 
-/// Returns what identifies a point between updates: its positions on both shapes, its parts and its
-/// features.
+/// Returns the anchors that identify a point between updates: its positions on both shapes, its
+/// parts and its features.
 fn anchors<N: Real, const D: usize>(
     pose: &PairPose<'_, N, D>,
     raw: &RawPoint<N, D>,
@@ -141,8 +141,8 @@ fn anchors<N: Real, const D: usize>(
     pose.anchors(&raw.point1, raw.distance, (parts, [raw.feature1, raw.feature2]))
 }
 
-/// Clears patch `at`, gives it `normal`, and returns its empty list of points; appends a patch if
-/// `at` is their number.
+/// Clears patch `at`, sets its normal, and returns its empty list of points. Appends a patch if
+/// `at` equals the number of patches.
 fn blank<N: Real, const D: usize>(
     patches: &mut Vec<Patch<N, D>>,
     at: usize,
@@ -238,8 +238,8 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
     }
 
     /// Returns the index of the piece of two parts; `None` if there is none. The search starts at
-    /// `guess`: the points of one pair of parts come together and patches are sorted by their
-    /// parts, so that the piece is mostly there or next.
+    /// `guess`: points of one pair of parts follow each other and patches are sorted by their
+    /// parts, so the piece is usually at `guess` or next to it.
     #[inline]
     fn piece_of(&self, parts: [u32; 2], guess: usize) -> Option<usize> {
         let is_at = |at: usize| self.pieces.get(at).is_some_and(|piece| piece.parts == parts);

@@ -32,7 +32,8 @@ const CELL: f64 = SAME * (1.0 + 1.0 / 16.0);
 const AXIS: [f64; 3] = [0.36, 0.48, 0.8];
 /// Patches per cell that a piece is compared with: the deepest ones.
 const MAX_COMPARED: usize = 32;
-/// Comparisons per piece, on average, that may be spent to find out whether all normals differ.
+/// Average number of comparisons per piece that may be spent on the test whether all normals
+/// differ.
 const MAX_ALIKE: usize = 4;
 
 /// A piece and its deepest point, by their indices.
@@ -205,7 +206,7 @@ struct NormalCells {
 }
 
 impl NormalCells {
-    /// Sorts pieces into cells, unless they are few.
+    /// Sorts pieces into cells; up to [`FEW_PIECES`] pieces share one cell.
     fn of<N: Real, const D: usize>(pieces: &[Piece<N, D>]) -> Self {
         let (mut cells, mut of_pieces, mut order) = (SmallVec::new(), Vec::new(), Vec::new());
         let empty = |number| NormalCell { number, patches: SmallVec::new() };
@@ -278,7 +279,8 @@ mod tests {
     use super::*;
     use crate::math::xorshift::Xorshift;
 
-    /// Pieces without points, with normals in all directions, some of them nearly equal.
+    /// Returns `count` pieces without points, with normals in all directions. If `has_equal`, some
+    /// normals are nearly equal.
     fn pieces<const D: usize>(count: usize, has_equal: bool) -> Vec<Piece<f64, D>> {
         let mut random = Xorshift(3);
         let mut pieces: Vec<Piece<f64, D>> = Vec::new();
@@ -293,8 +295,8 @@ mod tests {
         pieces
     }
 
-    /// All patches with the normal of a piece must be candidates, and few others: their number must
-    /// not grow with the number of patches.
+    /// Asserts that all patches with the normal of a piece are candidates, and few others: their
+    /// number must not grow with the number of patches.
     fn check<const D: usize>(count: usize, most: usize) {
         let pieces = pieces::<D>(count, true);
         let (mut cells, mut compared, mut same) = (NormalCells::of(&pieces), 0, 0);

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //!  gather: all points within the prediction, in 2D coordinates along two tangents
-//!  drop_copies: of points closer than 4 tolerances, one stays
+//!  drop_copies: of points within 4 tolerances of each other, one stays
 //!  choose: a deepest point, and those that span the largest area
 //!  points: ids, and the depth of the deepest
 //! ```
@@ -139,8 +139,8 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         self.merging.points[member.point].distance
     }
 
-    /// Collects the points within the prediction, including the margin for rotation, the deepest
-    /// first. The deepest point is always a member, even if its coordinates are NaN.
+    /// Lists the deepest point, and then the other points within the prediction, including the
+    /// margin for rotation. The deepest point is always a member, even if its coordinates are NaN.
     fn gather(
         &self,
         Lead { piece: lead, deepest }: Lead,
@@ -169,8 +169,7 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
     }
 
     /// Sorts the points along the first tangent, then along the second, and removes copies: parts
-    /// that meet at a point all have it. Of equal positions, the point that [`Self::is_better`]
-    /// prefers stays.
+    /// that meet at a point all have a copy of it. [`Self::is_better`] selects the copy that stays.
     fn drop_copies(&self, members: &mut Members<N>) {
         let near = N::lit(4.0) * self.merging.tolerance;
         sort(members);
@@ -213,8 +212,8 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
     }
 }
 
-/// Keeps, of points sorted along a line, the two ends, the points that continue old ones and, if
-/// neither end is deepest, one deepest point.
+/// Keeps the two ends of a line of sorted points, the points that continue old ones and, if neither
+/// end is deepest, one deepest point.
 fn keep_ends<N: Real>(points: &mut Projections<N>) {
     let (last, deepest) = (points.len() - 1, a_deepest(points));
     let is_inner = !(points[0].is_deepest || points[last].is_deepest);

@@ -7,10 +7,10 @@ use super::scene::Scene;
 use crate::math::order::{order_of, sort_keyed};
 use crate::math::{Real, Space, Vector, max};
 
-/// Normals whose cosine is larger count as one direction.
+/// Normals count as one direction if the cosine of the angle between them is larger.
 const ALIKE: f64 = 0.99;
 
-/// Escapes that are kept at a time, of different directions.
+/// Largest number of escapes kept at a time; their directions differ.
 const MAX_ESCAPES: usize = 32;
 
 /// A translation that resolves the overlap, according to one contact: the second shape moves along
@@ -20,7 +20,8 @@ struct Escape<N: Real, const D: usize> {
     depth: N,
 }
 
-/// Escapes, added shallowest first; of each direction only the longest is kept.
+/// Escapes in the order of their depths, the shallowest first. Of escapes with about the same
+/// direction only the longest is kept.
 struct Escapes<N: Real, const D: usize>(SmallVec<[Escape<N, D>; MAX_ESCAPES]>);
 
 /// Drops the contacts that do not hold for the whole shapes.
@@ -99,9 +100,9 @@ fn shallowest_first<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> Escapes<N, D> {
-    /// Adds the escape of a contact at least as deep as all before. It replaces the escape with
-    /// about the same normal or, if there are too many, the first one. Contacts that are apart add
-    /// nothing.
+    /// Adds the escape of a contact that is at least as deep as all contacts added before. It
+    /// replaces the escape with about the same normal or, if there are too many, the first one.
+    /// Contacts that are apart add nothing.
     fn add(&mut self, contact: &PartContact<N, D>) {
         let (normal, depth) = (contact.piece.normal, depth(contact));
         if depth <= N::ZERO {
@@ -135,7 +136,7 @@ fn is_explained<N: Space<D>, const D: usize>(
     let is_relevant = |escape: &&Escape<N, D>| {
         escape.depth >= least && (is_beyond || escape.normal.dot(&normal) < N::lit(ALIKE))
     };
-    // The known separating plane of the parts may still separate them after the motion.
+    // The normal of the parts may give a separating plane after the motion.
     let rest = |escape: &Escape<N, D>| {
         contact.distance + contact.normal.dot(&escape.normal) * escape.depth
     };
@@ -163,8 +164,9 @@ fn is_explained<N: Space<D>, const D: usize>(
     !shifts.is_empty() && scene.pair(contact.parts()).is_parted_by_one(&shifts, contact.tolerance)
 }
 
-/// Adds the contact of the nearest two parts if all contacts that hold are farther. If those are
-/// farther only by rounding, their distance is corrected instead.
+/// Restores the contact of the nearest two parts if all contacts that hold are farther. If the
+/// nearest of those is farther only by rounding, its distances are corrected instead. Changes
+/// nothing beside a ghost, whose neighbour has the contact.
 fn keep_one<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contacts: &mut [PartContact<N, D>],

@@ -1,4 +1,4 @@
-//! Contacts of composites in saved worlds.
+//! Serialized form of the contacts of composites, for saved worlds.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +11,7 @@ use crate::math::numbers::{Damage, NumberSource, Numbers, ensure};
 use crate::math::{Real, Space};
 use crate::shape::{CompositeShape, Geometry};
 
-/// The contacts of a pair with a composite.
+/// Serialized form of [`CompositeContacts`].
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct CompositeRecord<N: Real> {
@@ -19,8 +19,9 @@ pub(crate) struct CompositeRecord<N: Real> {
     pose12: Numbers<N>,
     patches: Vec<PatchRecord<N>>,
     reference: Option<Numbers<N>>,
-    /// The box of the parts that are kept. They decide which algorithm computes a pair of a compound, so the same have
-    /// to be kept again.
+    /// Corners of the box whose parts are cached; `None` if none are cached. The cached parts
+    /// select the algorithm for a pair with a compound, so the same parts must be cached after
+    /// loading.
     around: Option<Numbers<N>>,
     room: CacheMargin,
 }
@@ -28,8 +29,9 @@ pub(crate) struct CompositeRecord<N: Real> {
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 struct PatchRecord<N: Real> {
-    /// The normal, then the points with their distances.
+    /// The normal, then the position and distance of each point.
     numbers: Numbers<N>,
+    /// The other data of each point, and the indices of its parts.
     points: Vec<(PointRecord, [u32; 2])>,
 }
 
@@ -42,7 +44,8 @@ impl<N: Real> PatchRecord<N> {
         Self { numbers, points }
     }
 
-    /// The patch, on parts of which there are so many.
+    /// Restores the patch. `parts` are the numbers of parts of both shapes; a part index beyond
+    /// them is an error.
     fn restore<const D: usize>(&self, parts: [u32; 2]) -> Result<Patch<N, D>, Damage> {
         self.numbers.all(|numbers| {
             let normal = numbers.vector()?;
@@ -56,7 +59,7 @@ impl<N: Real> PatchRecord<N> {
 }
 
 impl<N: Real, const D: usize> CompositeContacts<N, D> {
-    /// The contacts as data.
+    /// Returns the serialized form of the contacts.
     pub(crate) fn record(&self) -> CompositeRecord<N> {
         let mut pose12 = Numbers::default();
         pose12.extend_pose(&self.pose12);
@@ -74,7 +77,8 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
-    /// The contacts of the data, between two shapes in the order in which contacts are kept.
+    /// Restores contacts from their serialized form. `shapes` are in the order of the stored
+    /// contacts.
     pub(crate) fn restored(
         record: &CompositeRecord<N>,
         shapes: [Geometry<'_, N, D>; 2],

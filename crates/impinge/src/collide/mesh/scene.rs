@@ -20,8 +20,8 @@ pub(crate) struct Scene<'a, N: Real, const D: usize> {
     pub(super) surfaces: [Option<SurfaceAccess<'a, N, D>>; 2],
     /// The cached parts of the second shape.
     around: &'a PartCache<N, D>,
-    /// Placement, relative to a convex first shape, of the part of the second shape placed first;
-    /// most parts of a surface have the same.
+    /// Placement of a part of the second shape relative to a convex first shape, computed for the
+    /// first part that is placed; most parts of a surface have this placement.
     shared: OnceCell<SharedPlacement<N, D>>,
 }
 
@@ -67,8 +67,8 @@ enum WholeOrPart<'a, N: Real, const D: usize> {
 
 /// A part of the first shape and a part of the second, in the order of their kinds.
 ///
-/// Both are relative to an anchor close to them, as in [`Between::parts`]. So the two form the same
-/// pair as there, up to the order, with bit for bit the same distance.
+/// Both are translated to an anchor close to them, as in [`Between::parts`]. Their distance is
+/// therefore equal, bit for bit, to that of the pair there; only the order may differ.
 pub(super) struct PlacedPair<'a, N: Real, const D: usize> {
     /// The two parts, in the order of their kinds.
     bodies: [PlacedPart<'a, N, D>; 2],
@@ -155,8 +155,8 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
     }
 
     /// Returns whether a point, in the frame of the first shape, lies in that shape deeper than
-    /// `depth`. Then no plane separates the point from the shape by less than `depth`. False for
-    /// composites and half-spaces.
+    /// `depth`. Then no translation shorter than `depth` moves the point out of the shape. `false`
+    /// for composites and half-spaces.
     pub(super) fn is_within(&self, point: &Point<N, D>, depth: N) -> bool {
         match self.between.pair.first {
             Kind::Composite(_) | Kind::Plane(_) => false,
@@ -238,9 +238,9 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         PlacedPair::new(bodies, self.turn(), origins)
     }
 
-    /// Returns the pair of a part of the first shape (0) or the second (1) and a half-space instead
-    /// of the other shape. The `plane` is in the frame of the other shape; its boundary runs
-    /// through `point`, in the frame of the first.
+    /// Returns the pair of a half-space and a part of the first shape (0) or of the second (1); the
+    /// half-space replaces the other shape. The `plane` is in the frame of the other shape; its
+    /// boundary runs through `point`, in the frame of the first.
     pub(super) fn above<'p>(
         &'p self,
         plane: &'p Plane<N, D>,
@@ -268,8 +268,8 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         Pose { rotation: self.between.pair.pose12.rotation, ..Pose::identity() }
     }
 
-    /// Returns the pair of a convex solid and a part with the shared placement, at less cost than
-    /// by `of`; `None` for other parts.
+    /// Returns the pair of a convex solid and a part with the shared placement, without computing
+    /// its poses again; `None` for other parts.
     fn with_shared_placement(&self, part: &Part<'a, N, D>) -> Option<PlacedPair<'a, N, D>> {
         if let PartSolid::Shape(_) = part.solid {
             return None;
@@ -286,7 +286,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         })
     }
 
-    /// Returns the placement of a part, which holds for all parts with the same pose and kind.
+    /// Returns the placement of a part; all parts with the same pose and kind have it.
     fn placement_of(&self, part: &Part<'a, N, D>) -> SharedPlacement<N, D> {
         let origins = [Point::origin(), Point::from(self.between.pose21.translation)];
         let rotation = part.pose.rotation;
@@ -334,7 +334,7 @@ impl<'a, N: Space<D>, const D: usize> PlacedPair<'a, N, D> {
         Self::of(bodies, relative, origins)
     }
 
-    /// Makes a pair of a part of the first shape and one of the second.
+    /// Creates a pair of a part of the first shape and a part of the second.
     fn of(
         [body1, body2]: [PlacedPart<'a, N, D>; 2],
         relative: RelativePose<N, D>,
@@ -344,7 +344,7 @@ impl<'a, N: Space<D>, const D: usize> PlacedPair<'a, N, D> {
         Self { bodies, relative, origins, is_shared: false }
     }
 
-    /// Replaces the part of the second shape. Returns `false`, without a change, if the new part
+    /// Replaces the part of the second shape. Returns `false`, and changes nothing, if the new part
     /// does not have the shared placement.
     fn exchange(&mut self, shared: &SharedPlacement<N, D>, part: &Part<'a, N, D>) -> bool {
         let Some(solid) = shared.recentred(part) else { return false };
@@ -376,8 +376,9 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         Some([[center1 + origin1, in1 + origin2], [in2 + origin1, center2 + origin2]])
     }
 
-    /// For a convex first shape, returns its centre, or `from` instead, and the centre of the part
-    /// of the second shape, both in the frame of the second. `None` if one is a half-space.
+    /// Returns the centre of a convex first shape, or `from` instead if it is `Some`, and the
+    /// centre of the part of the second shape, both in the frame of the second. `None` if one of
+    /// them has no centre.
     pub(super) fn centers_in_second(&self, from: &Option<Point<N, D>>) -> Option<[Point<N, D>; 2]> {
         let [first, second] = if self.relative.is_swapped { [1, 0] } else { [0, 1] };
         let origin = self.origins[1].coords;
@@ -428,8 +429,8 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         if self.relative.is_swapped { -normal } else { normal }
     }
 
-    /// Returns whether the two parts are separated, within `tolerance`, once the second shape moves
-    /// by one of `translations`, which are in the frame of the first.
+    /// Returns whether one of `translations` of the second shape, in the frame of the first,
+    /// separates the two parts up to `tolerance`.
     pub(super) fn is_parted_by_one(&self, translations: &[Vector<N, D>], tolerance: N) -> bool {
         let Some([one, other]) = self.corners() else {
             return translations.iter().any(|translation| self.is_parted(translation, tolerance));
@@ -457,8 +458,8 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         Some([first.corners()?, second.mapped(|corner| self.relative.turn.vector(&corner))])
     }
 
-    /// Returns whether the two parts are separated, within `tolerance`, once the second shape moves
-    /// by `translation`, in the frame of the first.
+    /// Returns whether `translation` of the second shape, in the frame of the first, separates the
+    /// two parts up to `tolerance`.
     fn is_parted(&self, translation: &Vector<N, D>, tolerance: N) -> bool {
         let mut pair = self.pair();
         pair.pose12.translation += self.inward(translation);

@@ -1,4 +1,4 @@
-//! One part of each of two shapes as a pair, with tolerances independent of the frames' origins.
+//! Pairs of one part of each of two shapes, with tolerances independent of the frames' origins.
 //!
 //! The triangles of a mesh are in the frame of the mesh, whose origin may be far away, and the
 //! tolerances of the pair algorithms grow with all coordinates. So both parts are placed relative
@@ -65,14 +65,15 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
         [self.pair.first, self.pair.second].mapped(|kind| Geometry(kind).as_composite())
     }
 
-    /// Returns whether a composite has ghosts beside parts.
+    /// Returns whether one of the composites has ghosts: parts that continue its surface across
+    /// seams, but that no query finds.
     #[inline]
     pub(crate) fn has_ghosts(&self) -> bool {
         self.composites().iter().flatten().any(|composite| composite.has_ghosts())
     }
 
-    /// Returns whether a composite has closed surfaces that bound bodies, in which the other shape
-    /// may lie.
+    /// Returns whether one of the composites has closed surfaces that bound bodies, in which the
+    /// other shape may lie.
     #[inline]
     pub(crate) fn has_bodies(&self) -> bool {
         self.composites().iter().flatten().any(|composite| composite.has_bodies())
@@ -114,8 +115,7 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Between<'_, N, D> {
-    /// Returns a box around one of the shapes, the first (0) or the second (1), in the frame of the
-    /// other.
+    /// Returns a bounding box of the first shape (0) or the second (1), in the frame of the other.
     pub(crate) fn whole_in_other(&self, which: usize) -> Aabb<N, D> {
         let (kind, pose) = self.in_frame_of_other(which);
         enclosing(&aabb_of(kind, pose), pose)
@@ -150,8 +150,8 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
         Some((part, pose))
     }
 
-    /// Returns whether the boxes of two composites are farther apart than `limit`, in the frame of
-    /// either; false if one shape is convex.
+    /// Returns whether the bounding boxes of two composites are farther apart than `limit` in the
+    /// frame of one of them. False if one shape is convex.
     pub(crate) fn are_boxes_beyond(&self, limit: N) -> bool {
         let [Some(parts1), Some(parts2)] = self.composites() else { return false };
         let is_beyond = |parts: &dyn CompositeShape<N, D>, other: usize| {
@@ -168,8 +168,8 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
     }
 }
 
-/// Returns which of two composites has fewer parts, the first (0) or, only if strictly fewer, the
-/// second (1); then that composite, and the other one.
+/// Orders two composites by their number of parts. Returns the index of the smaller one (0 on a
+/// tie), the smaller composite and the larger.
 pub(crate) fn by_number<'a, N: Real, const D: usize>(
     parts1: &'a dyn CompositeShape<N, D>,
     parts2: &'a dyn CompositeShape<N, D>,

@@ -1,4 +1,4 @@
-//! Boxes to search parts with, loosened by the rounding error of their coordinates.
+//! Bounding boxes for searches of parts, loosened by the rounding error of their coordinates.
 
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::{Point, Pose, Real, Space, Vector, max, max_component};
@@ -44,8 +44,8 @@ fn of_map<N: Real, const D: usize>(map: &dyn SupportMap<N, D>, pose: &Pose<N, D>
     Aabb::try_new(mins, maxs).unwrap_or_else(|_| Aabb::unbounded())
 }
 
-/// Loosens `aabb`, a box placed by `pose`, so that it encloses everything that it would enclose in
-/// exact arithmetic. Returns an unbounded box if the loosened box is not valid.
+/// Loosens `aabb`, a box transformed by `pose`, so that it encloses everything that it would
+/// enclose in exact arithmetic. Returns an unbounded box if the loosened box is not valid.
 pub(crate) fn enclosing<N: Real, const D: usize>(
     aabb: &Aabb<N, D>,
     pose: &Pose<N, D>,
@@ -57,7 +57,8 @@ pub(crate) fn enclosing<N: Real, const D: usize>(
 
 /// Returns a box around a point, loosened by rounding error; `None` if the point is not finite.
 ///
-/// `bounds` encloses everything that the box is compared with.
+/// `bounds` must enclose all boxes that the result is compared with: its coordinates scale the
+/// rounding error.
 #[inline(always)]
 pub(crate) fn around_point<N: Real, const D: usize>(
     point: &Point<N, D>,
@@ -87,8 +88,9 @@ fn rounding<N: Real>(scale: N) -> N {
     N::lit(ROUNDING_ERRORS) * N::EPSILON * scale
 }
 
-/// Returns a limit for boxes that rejects no part within `limit`, a distance or time of zero or
-/// more. Returns infinity if the square of the limit, which searches may compute, is not finite.
+/// Returns `limit` plus its rounding error, so that comparisons of boxes reject no part within
+/// `limit`, a distance or time of zero or more. Infinite if the square of the result, which
+/// searches may compute, is not finite.
 pub(crate) fn loosened<N: Real>(limit: N) -> N {
     let within = limit + rounding(limit);
     if (within * within).is_finite_number() { within } else { N::INFINITY }

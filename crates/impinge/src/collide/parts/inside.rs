@@ -31,7 +31,7 @@ use crate::shape::{EnclosedBody, Geometry, Kind};
 pub(crate) struct InsidePiece<N: Real, const D: usize> {
     /// Index of the shape that the piece belongs to: the first (0) or the second (1).
     pub(crate) inner: usize,
-    /// Index of the piece, as given by
+    /// Index of the piece, as returned by
     /// [`CompositeShape::piece_of`](crate::shape::CompositeShape::piece_of); 0 for a convex solid.
     piece: u32,
     /// Index range of the parts of the other shape that bound the body.
@@ -44,13 +44,13 @@ pub(crate) struct InsidePiece<N: Real, const D: usize> {
     blocked: Option<PartSeparation<N, D>>,
 }
 
-/// Relative distance behind the boundary of the point that is tested to decide whether the body
-/// ends there; the distance is at least the rounding error.
+/// Distance behind the boundary, relative to the separation, of the point that is tested to decide
+/// whether the body ends there. The rounding error is added to this distance.
 const BEYOND: f64 = 1.0 / 64.0;
 /// Rounding error of lengths, in units of epsilon times the coordinates.
 const ROUNDING: f64 = 64.0;
 
-/// Pieces of both shapes that are inside bodies.
+/// Pieces of both shapes that are inside bodies of the other shape.
 pub(crate) type InsidePieces<N, const D: usize> = SmallVec<[InsidePiece<N, D>; 1]>;
 
 /// Exit plane, in the frame of the first shape: through the nearest point of the boundary,
@@ -60,7 +60,7 @@ pub(crate) struct Exit<N: Real, const D: usize> {
     pub(crate) point: Point<N, D>,
     /// Unit normal out of the body.
     pub(crate) outward: Vector<N, D>,
-    /// Indices of the parts of the first and second shape that give the exit.
+    /// Indices of the parts of the first and second shape whose separation defines the exit.
     pub(crate) parts: [u32; 2],
 }
 
@@ -246,8 +246,8 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
         !is_held
     }
 
-    /// Returns the exit from the body. `None` if the piece clearly crosses the boundary; then the
-    /// contacts of its parts hold.
+    /// Returns the exit from the body. `None` if the piece clearly crosses the boundary; in that
+    /// case the contacts of its parts with the boundary are valid.
     pub(crate) fn exit(&self) -> Option<Exit<N, D>> {
         self.exit_at(&self.nearest.or(self.blocked)?)
     }
@@ -307,8 +307,8 @@ fn rounding<N: Real, const D: usize>(points: [&Point<N, D>; 2]) -> N {
     N::lit(ROUNDING) * N::EPSILON * size
 }
 
-/// Extends the result for the surfaces alone, `best`, to the bodies of the shapes: returns the pair
-/// of parts that is [`Wanted`] within `limit`.
+/// Extends `best`, the result for the surfaces alone, to the bodies of the shapes. Returns the pair
+/// of parts that is [`Wanted`]; `None` if no pair is within `limit`.
 pub(super) fn with_inside<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     limit: N,

@@ -5,8 +5,8 @@
 //! for a pair of parts is computed by the convex algorithms. [`between`] makes a pair of two parts,
 //! [`bounds`] makes boxes that include rounding errors, [`solid_bounds`] computes lower bounds of
 //! the distance from a convex solid to a part, [`slab_lanes`] from one part to 8 others, and
-//! [`inside`] finds pieces inside closed surfaces that bound bodies. The returned parts do not
-//! depend on the order of a search: the lowest indices win a tie.
+//! [`inside`] finds pieces inside closed surfaces that bound bodies. The nearest pair does not
+//! depend on the order of the search: the lowest indices win a tie.
 
 pub(crate) mod between;
 pub(crate) mod bounds;

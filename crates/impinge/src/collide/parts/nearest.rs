@@ -1,4 +1,4 @@
-//! Finds the nearest two parts of two shapes, or the deepest overlapping ones.
+//! Finds the nearest two parts of two shapes, or the deepest pair if parts overlap.
 
 use super::between::Between;
 use super::bounds::loosened;
@@ -8,7 +8,7 @@ use super::touching::{Touching, TouchingVisitor, each_touching};
 use crate::collide::separation::separation as of_convex;
 use crate::math::{Real, Space, Vector, max, min};
 
-/// Which pair of parts a search looks for.
+/// The pair of parts that a search looks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Wanted {
     /// The nearest pair, or the deepest if parts overlap; the lowest indices win a tie.
@@ -18,8 +18,8 @@ pub(crate) enum Wanted {
 }
 
 /// Returns the separation of the pair that is [`Wanted`]; `None` if no pair is within `limit`.
-/// `first` may name a likely pair, whose distance then bounds the search. See [`visit_near_pairs`]
-/// for the cost.
+/// `first` is an optional guess of the pair, whose distance then bounds the search. See
+/// [`visit_near_pairs`] for the cost.
 pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     limit: N,
@@ -41,7 +41,7 @@ pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
     nearest.best
 }
 
-/// Search for one pair, with the best pair so far.
+/// State of a search for one pair of parts: its limits and the best pair so far.
 struct NearestPart<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     limit: N,
@@ -51,7 +51,7 @@ struct NearestPart<'a, N: Real, const D: usize> {
 
 impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
     /// Searches two composites for parts that touch, by overlaps of boxes alone. Returns `true` if
-    /// the search is complete: a touching pair was found, or `limit` admits no other.
+    /// the search is complete: a touching pair was found, or `limit` admits only touching pairs.
     fn finds_touching(&mut self) -> bool {
         let (between, max_distance) = (self.between, min(self.limit, N::ZERO));
         let mut touching = TouchingPart { nearest: self, max_distance };
@@ -59,8 +59,8 @@ impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
         is_searched && (self.limit <= N::ZERO || self.bound() < N::ZERO)
     }
 
-    /// Searches two composites for their nearest parts. Returns `true` if these are apart, so that
-    /// they are the wanted pair; overlapping parts need the search by depth.
+    /// Searches two composites for their nearest parts. Returns `true` if these are apart and
+    /// therefore the wanted pair; overlapping parts need the search by depth.
     fn finds_apart(&mut self) -> bool {
         let (between, max_distance) = (self.between, self.limit());
         max_distance > N::ZERO
@@ -100,8 +100,7 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestPart<'_, N, D> {
         self.best.map_or(self.limit, |best| best.separation.distance)
     }
 
-    /// Returns a negative bound, which ends the search, once a touching pair is known and any is
-    /// wanted.
+    /// Returns a negative bound, which ends the search, once a touching pair is known and suffices.
     fn bound(&self) -> N {
         let limit = self.limit();
         let is_known = self.best.is_some() && limit <= N::ZERO && self.wanted == Wanted::Touching;

@@ -23,14 +23,14 @@ use crate::shape::{CompositeShape, Kind};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PartSeparation<N: Real, const D: usize> {
     pub(crate) separation: Separation<N, D>,
-    /// The separation in the frame of the first part, in which [`Between::parts`] states the pair.
+    /// The separation in the frame of the first part of the pair made by [`Between::parts`].
     pub(crate) local: Separation<N, D>,
     /// Index of the part of the first shape, and of the second; 0 for a convex solid.
     pub(crate) parts: [u32; 2],
 }
 
-/// Computes the separation of two shapes, at least one a composite: that of the nearest parts, or
-/// of the deepest if parts overlap. `None` beyond `limit`.
+/// Computes the separation of two shapes, at least one of them a composite: the separation of their
+/// nearest parts, or of the deepest pair if parts overlap. `None` if it exceeds `limit`.
 pub(crate) fn separation<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -39,13 +39,13 @@ pub(crate) fn separation<N: Space<D>, const D: usize>(
     found.map(|found| found.separation)
 }
 
-/// Receives the pairs of parts that a search finds, near ones first, and limits the search.
+/// Receives the pairs of parts found by a search, near pairs first, and limits the search.
 pub(crate) trait PairVisitor<N: Real, const D: usize> {
     /// Returns the largest distance at which a pair of parts is still needed; it may shrink but
     /// must not grow.
     fn limit(&self) -> N;
 
-    /// Returns the largest distance at which a pair of boxes must be opened; negative to end the
+    /// Returns the largest distance at which a pair of boxes must be descended; negative to end the
     /// search.
     fn bound(&self) -> N {
         loosened(max(self.limit(), N::ZERO))
@@ -72,13 +72,14 @@ pub(crate) trait PairVisitor<N: Real, const D: usize> {
     fn visit(&mut self, parts: [u32; 2]);
 }
 
-/// Visits the pairs of parts of two shapes that are within the limit of a visitor, near ones first.
+/// Visits the pairs of parts of two shapes that are within the limit of a visitor, near pairs
+/// first.
 ///
 /// Cost: a convex solid searches the parts near it. Two composites with trees are descended
 /// together where their boxes are near each other. Otherwise each part of the composite with fewer
-/// parts, near ones first, searches the other composite: at most n log m for n parts in the smaller
-/// and m in the larger, as long as parts do not all overlap. A half-space that is not aligned to an
-/// axis has no box and is compared with every part.
+/// parts, near parts first, searches the other composite: at most n log m for n parts in the
+/// smaller and m in the larger, as long as parts do not all overlap. A half-space that is not
+/// aligned to an axis has no box and is compared with every part.
 pub(crate) fn visit_near_pairs<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     visitor: &mut dyn PairVisitor<N, D>,
@@ -139,7 +140,8 @@ impl<'a, 'q, N: Space<D>, const D: usize> TreeParts<'a, 'q, N, D> {
         Self { between, visitor, parts, slack, slabs: None }
     }
 
-    /// Returns a box, in the frame of the other composite, around the swept contents of `aabb`.
+    /// Returns a box, in the frame of the other composite, around the parts in `aabb` during their
+    /// motion.
     fn swept(&self, which: usize, aabb: Aabb<N, D>) -> Aabb<N, D> {
         self.visitor.sweep(which).map_or(aabb, |sweep| sweep.of_box(&aabb))
     }
@@ -163,7 +165,7 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
     }
 
     /// Returns a lower bound of the overlap of boxes: parts deeper than a negative limit have boxes
-    /// that overlap as deep, up to rounding error.
+    /// that overlap at least as deeply, up to rounding error.
     fn depth(&self) -> N {
         max(-self.visitor.limit() - self.slack, N::ZERO)
     }
@@ -188,7 +190,8 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         self.toward(0, &unit(&offset)?.0)
     }
 
-    /// Returns the extent of a part along a direction; infinite for parts without corners.
+    /// Returns the largest coordinate of a part along a direction; infinite for parts without
+    /// corners.
     fn extent(&self, which: usize, id: u32, along: &Vector<N, D>) -> N {
         let Some(corners) = corners_of(self.parts[which], id) else { return N::INFINITY };
         range(&corners, along)[1]
@@ -248,14 +251,14 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
 type PartGaps<N> = SmallVec<[(N, u32); 2 * LANES]>;
 
 impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
-    /// Returns a lower bound of the gap of two parts along a direction; minus infinity without
-    /// corners.
+    /// Returns a lower bound of the gap of two parts along a direction; minus infinity if a part
+    /// has no corners.
     fn gap_along(&self, toward: &Toward<N, D>, parts: [u32; 2]) -> N {
         self.gap(toward, [0, 1].mapped(|which| self.extent(which, parts[which], &toward[which])))
     }
 
     /// Returns a lower bound of the gap along the line through the centroids of two parts; minus
-    /// infinity without corners.
+    /// infinity if a part has no corners.
     fn gap_between(&self, parts: [u32; 2]) -> N {
         let middles = [0, 1].mapped(|which| {
             let [a, b, c] = corners_of(self.parts[which], parts[which])?;
@@ -279,7 +282,8 @@ impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
         PartSlabs { which, part, slabs }
     }
 
-    /// Raises the lower bounds of parts to their gaps along the slabs and along their own axes.
+    /// Raises the lower bounds of parts to their gaps along the slabs and along the axes of the
+    /// parts.
     fn add_gaps(
         &self,
         around: &PartSlabs<N, D>,
@@ -352,8 +356,8 @@ impl<N: Space<D>, const D: usize> NearestSearch<'_, '_, N, D> {
         });
     }
 
-    /// Visits the near pairs of two composites: each part of the one with fewer parts searches the
-    /// other.
+    /// Visits the near pairs of two composites: each part of the composite with fewer parts
+    /// searches the other.
     fn of_many(&mut self, parts1: &dyn CompositeShape<N, D>, parts2: &dyn CompositeShape<N, D>) {
         let (which, fewer, more) = by_number(parts1, parts2);
         let (sweep, bound) = (self.visitor.sweep(1 - which), self.visitor.bound());
@@ -391,7 +395,7 @@ impl<N: Space<D>, const D: usize> BoxRanking<N, D> for RankedParts<'_, '_, N, D>
     fn limit(&self) -> Option<N> {
         let ends = self.visitor.bound() < N::ZERO;
         let limit = self.visitor.limit();
-        // False for NaN, within which no part is.
+        // The comparison is false for a NaN limit, within which no part lies.
         (!ends && limit <= N::INFINITY).then_some(limit)
     }
 

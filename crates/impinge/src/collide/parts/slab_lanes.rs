@@ -1,10 +1,10 @@
 //! Lower bounds of the distances from one part to 8 others at a time, along the slabs around the
 //! one part and the separating axes of the others.
 //!
-//! Two triangles in 3D overlap iff neither normal and no direction perpendicular to a side of each
-//! separates them; if they overlap, the shortest separating translation is along one of these axes
-//! (Gottschalk, Lin and Manocha, "`OBBTree`", 1996). Two triangles in 2D overlap iff no direction
-//! perpendicular to a side of either separates them.
+//! Two triangles in 3D overlap iff none of these axes separates them: the two normals and the nine
+//! cross products of a side of each. If they overlap, the shortest separating translation is along
+//! one of these axes (Gottschalk, Lin and Manocha, "`OBBTree`", 1996). Two triangles in 2D overlap
+//! iff no normal of a side of either separates them.
 
 use super::slabs::{AxisSlabs, rounding_unit};
 use crate::collide::packet::{LANES, PartPacket};
@@ -32,8 +32,8 @@ pub(crate) fn part_gaps2<N: Real>(
     gaps
 }
 
-/// Returns lower bounds of the distances of 8 parts in 3D from the solid inside the slabs, with the
-/// contract of [`part_gaps2`].
+/// Returns lower bounds of the distances of 8 parts in 3D from the solid inside the slabs; negative
+/// for overlaps. Skips axes, and differs by SIMD level above `limit`, as [`part_gaps2`] does.
 pub(crate) fn part_gaps3<N: Real>(
     slabs: &AxisSlabs<N, 3>,
     tiles: &PartPacket<N, 3>,
@@ -68,8 +68,8 @@ fn in_lanes_2d<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     gaps.certain(slabs)
 }
 
-/// Computes gaps in 3D: along the slabs, then along the normals of the other parts, then
-/// perpendicular to a side of each.
+/// Computes gaps in 3D: along the slabs, then along the normals of the other parts, then along the
+/// cross products of a side of each.
 #[inline(always)]
 fn in_lanes_3d<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -97,7 +97,7 @@ fn in_lanes_3d<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     gaps.certain(slabs)
 }
 
-/// Largest gaps of 8 parts so far.
+/// Corners of 8 parts, and the largest gap found so far for each of them.
 struct SlabGaps<S, V, const D: usize> {
     simd: S,
     corners: Corners<V, D>,
@@ -105,7 +105,7 @@ struct SlabGaps<S, V, const D: usize> {
 }
 
 impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D> {
-    /// Raises the gaps to those along the slabs.
+    /// Raises each gap to the largest gap along the slabs.
     #[inline(always)]
     fn along(&mut self, slabs: &AxisSlabs<N, D>) {
         for slab in &slabs.slabs {
@@ -116,7 +116,8 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D>
         }
     }
 
-    /// Raises the gaps to those along directions of any length.
+    /// Raises each gap to the gap along `along`, which may have any length, from the part with
+    /// corners `own`.
     #[inline(always)]
     fn across(&mut self, own: &Corners<V, D>, along: &[V; D]) {
         let squared = dot(along, along);
@@ -151,7 +152,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D>
     #[inline(always)]
     fn certain(&self, slabs: &AxisSlabs<N, D>) -> [N; LANES] {
         let (simd, slack) = (self.simd, self.slack(slabs));
-        // Subnormal lengths have too few digits.
+        // Subnormal lengths have a large relative rounding error.
         let least = N::MIN_POSITIVE / N::EPSILON * rounding_unit::<N>();
         let is_precise = slack.simd_gt(V::all(simd, least));
         let gaps = is_precise.select(self.gaps - slack, -V::all(simd, N::INFINITY));
@@ -161,7 +162,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D>
     }
 }
 
-/// Translates the corners of 8 parts to the origin of the slabs.
+/// Returns the corners of 8 parts relative to the origin of the slabs.
 #[inline(always)]
 fn translated_corners<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -189,8 +190,7 @@ fn sides<S: Simd, V: Wide<S>, const D: usize>([a, b, c]: &Corners<V, D>) -> Corn
     [minus(b, a), minus(c, b), minus(a, c)]
 }
 
-/// Returns the smallest and the largest coordinate of the corners along a direction, times its
-/// length.
+/// Returns the smallest and the largest dot product of the corners with `along`.
 #[inline(always)]
 fn extent<S: Simd, V: Wide<S>, const D: usize>(
     [a, b, c]: &Corners<V, D>,

@@ -1,5 +1,5 @@
-//! Slabs around one part, which reject parts of the other shape that lie far outside one of the
-//! slabs.
+//! Slabs around one part. They reject parts of the other shape that lie outside one slab by more
+//! than a limit.
 //!
 //! ```text
 //!                   r ── s
@@ -28,8 +28,8 @@ pub(crate) struct AxisSlabs<N: Real, const D: usize> {
     pub(super) origin: Vector<N, D>,
     /// The solid's contribution to the length that scales rounding errors.
     pub(super) size: N,
-    /// For a triangle, a slab perpendicular to each side's normal and, in 3D, to the plane's
-    /// normal.
+    /// For a triangle, one slab along the in-plane normal of each side and, in 3D, one along the
+    /// normal of the plane. Empty for a part without corners.
     pub(super) slabs: SmallVec<[Slab<N, D>; 5]>,
     /// Corners of the part relative to `origin`; `None` if it moves.
     pub(super) corners: Option<[Vector<N, D>; 3]>,
@@ -57,8 +57,8 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
         Self { origin, size: highest, slabs: smallvec![slab], corners: None }
     }
 
-    /// Returns the slabs around a part of the first shape (0) or the second (1); without slabs for
-    /// parts without corners.
+    /// Returns the slabs around a part of the first shape (0) or the second (1). There are no slabs
+    /// for a part without corners.
     pub(crate) fn of_part(
         between: &Between<'_, N, D>,
         which: usize,
@@ -106,7 +106,7 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
             let [lowest, highest] = range(&corners, &slab.along);
             max(max(lowest - slab.highest, slab.lowest - highest), gap)
         });
-        // Subnormal lengths have too few digits.
+        // Subnormal lengths have a large relative rounding error.
         let is_precise = size > N::MIN_POSITIVE / N::EPSILON;
         is_precise && gap - size * rounding_unit() > limit
     }
@@ -117,8 +117,8 @@ pub(super) fn rounding_unit<N: Real>() -> N {
     N::lit(ROUNDING) * N::EPSILON
 }
 
-/// Returns unit vectors perpendicular to each side of a triangle whose first corner is the origin,
-/// within its plane, and, in 3D, its normal. Vectors without length are left out.
+/// Returns the in-plane unit normals of the sides of a triangle whose first corner is the origin
+/// and, in 3D, the unit normal of its plane. Vectors of zero length are omitted.
 pub(crate) fn across<N: Real, const D: usize>(
     [_, one, other]: &[Vector<N, D>; 3],
 ) -> impl Iterator<Item = Vector<N, D>> {
@@ -140,8 +140,8 @@ pub(crate) fn corners_of<N: Real, const D: usize>(
     corners(&part.solid, &part.pose)
 }
 
-/// Returns the placed corners of a triangle or segment, whose first end occurs twice; `None` for
-/// other parts.
+/// Returns the corners of a triangle or segment, transformed by `pose`. The first end of a segment
+/// occurs twice. `None` for other parts.
 pub(crate) fn corners<N: Real, const D: usize>(
     solid: &PartSolid<'_, N, D>,
     pose: &Pose<N, D>,
@@ -163,13 +163,13 @@ pub(crate) fn range<N: Real, const D: usize>(
     [min(min(a, b), c), max(max(a, b), c)]
 }
 
-/// Returns the component of a vector perpendicular to another.
+/// Returns `v` minus its component along `other`; returns `v` if `other` has no direction.
 fn without<N: Real, const D: usize>(v: &Vector<N, D>, other: &Vector<N, D>) -> Vector<N, D> {
     unit(other).map_or(*v, |(along, _)| v - along * v.dot(&along))
 }
 
-/// Returns the longest component, perpendicular to both vectors, of a coordinate axis; zero if the
-/// two vectors span all directions.
+/// Removes the components along `one` and `other` from each coordinate axis, and returns the
+/// longest remainder; zero if the two vectors span all directions.
 fn normal_to<N: Real, const D: usize>(one: &Vector<N, D>, other: &Vector<N, D>) -> Vector<N, D> {
     let along = |v: &Vector<N, D>| unit(v).map_or_else(Vector::<N, D>::zeros, |(along, _)| along);
     let spans = [along(one), along(&without(other, one))];

@@ -21,8 +21,8 @@ use crate::tables::ByDimension;
 
 /// Rounding error of bounds, in units of epsilon times the coordinates.
 const ROUNDING: f64 = 128.0;
-/// Smallest slack of bounds, relative to the coordinates: the algorithms for curved solids stop at
-/// 2⁻⁴⁰.
+/// Smallest error of bounds, relative to the coordinates. The algorithms for curved solids stop at
+/// a relative tolerance of 2⁻⁴⁰.
 const CURVED: f64 = 8.0e-12;
 
 /// A convex solid in the frame of a composite.
@@ -31,7 +31,7 @@ pub(crate) struct SolidBounds<'a, N: Real, const D: usize> {
     map: &'a dyn SupportMap<N, D>,
     pose: Pose<N, D>,
     center: Point<N, D>,
-    /// Bound of the absolute coordinates of the solid, up to rounding.
+    /// Upper bound of the absolute coordinates of the solid, up to rounding.
     size: N,
 }
 
@@ -96,13 +96,13 @@ impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
 
     /// Returns the gap along a unit vector from the solid to points whose coordinate along it is at
     /// least `lowest`, minus the rounding error. Minus infinity if `along` is not a unit vector.
-    /// `largest` bounds the coordinates of these points.
+    /// `largest` is an upper bound of the absolute coordinates of these points.
     fn gap(&self, along: &Vector<N, D>, lowest: N, largest: N) -> N {
         let highest = self.map.core_support(&self.pose.inverse_vector(along));
         let height = along.dot(&self.pose.point(&highest).coords) + self.map.rounding();
         let size = self.size + largest;
         let bound = lowest - height - gap_slack(size);
-        // Subnormal lengths have too few digits.
+        // Subnormal lengths have a large relative rounding error.
         let is_precise = size > N::MIN_POSITIVE / N::EPSILON;
         let is_unit = (along.norm_squared() - N::ONE).abs() < N::lit(64.0) * N::EPSILON;
         if is_precise && is_unit && bound.is_finite_number() { bound } else { -N::INFINITY }

@@ -8,7 +8,7 @@ use crate::math::{Matrix, Point, Real, Vector, max, min};
 ///
 /// ```text
 ///    ,--------------------.
-///   ( x ---------------> o )    spread: what the path bends
+///   ( x ---------------> o )    spread: largest deviation of the path from the segment
 ///    `--------------------'
 /// ```
 #[derive(Clone, Copy, Debug)]

@@ -1,4 +1,4 @@
-//! Compares the searches and their bounds with a test of all pairs of parts.
+//! Compares the searches and their bounds with a brute-force test of all pairs of parts.
 
 use super::nearest::nearest_between;
 use super::solid_bounds::SolidBounds;
@@ -107,8 +107,9 @@ fn searches<N: Space<D>, const D: usize>(
     assert!(overlaps.iter().all(|count| count * 6 > overlaps[0] + overlaps[1]), "{overlaps:?}");
 }
 
-/// Asserts that searches beside a fine smooth surface, whose blocks have thin slabs and lie in many
-/// layers, are right: from inside, across it, near it and far away, aligned with it and not.
+/// Asserts that searches of a finely tessellated ellipsoid find the nearest part. The tree has many
+/// levels, and its nodes have thin slabs. The other solid lies inside, crosses the surface, or lies
+/// near or far outside; its axes are parallel to those of the ellipsoid or not.
 fn searches_of_surface<N: Space<3>>() {
     let half = Vector::<N, 3>::new(N::ONE, N::lit(0.75), N::HALF);
     let surface = ellipsoid(&Ellipsoid::new(half), 40);

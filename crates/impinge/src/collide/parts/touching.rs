@@ -1,4 +1,5 @@
-//! Pairs of parts of two composites, both with trees, that may be within a distance of each other.
+//! Finds pairs of parts of two composites that may be within a distance of each other. Both
+//! composites must have trees.
 //!
 //! The trees reject pairs by boxes. The remaining pairs are tested in SIMD lanes ([`pair_lanes`]),
 //! along every axis that may separate two triangles.
@@ -19,8 +20,8 @@ use crate::tables::ByDimension;
 
 /// Receives the pairs of parts that a search finds.
 pub(crate) trait TouchingVisitor<N: Real, const D: usize> {
-    /// Handles two parts. Returns the distance to search from now on, which must never grow; `None`
-    /// ends the search.
+    /// Handles two parts. Returns the `max_distance` for the rest of the search, which must not
+    /// exceed the previous one; `None` ends the search.
     fn visit(&mut self, parts: [u32; 2]) -> Option<N>;
 
     /// Returns the unit vector from the first composite to the second between the best pair so far,
@@ -30,7 +31,7 @@ pub(crate) trait TouchingVisitor<N: Real, const D: usize> {
     }
 }
 
-/// Which pairs of parts a search looks for.
+/// The pairs of parts that a search visits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Touching {
     /// All pairs within `max_distance`, each once.
@@ -44,11 +45,10 @@ pub(crate) enum Touching {
 }
 
 /// Visits the pairs of parts that may be within `max_distance`. Returns `false`, without a visit,
-/// for composites without trees or too far apart for boxes of `f32`.
+/// if a composite has no tree or if their translation overflows the `f32` of the boxes.
 ///
 /// Cost: O(n + k) for k pairs of parts and n pairs of blocks with boxes within `max_distance`, as
 /// long as the boxes fit tightly.
-/// boxes fit tightly.
 pub(crate) fn each_touching<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     max_distance: N,
@@ -100,8 +100,9 @@ struct TouchingSearch<'a, 'q, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> TouchingSearch<'_, '_, N, D> {
-    /// Returns whether two parts are beyond `max_distance` along the line through their centroids;
-    /// this rejects most pairs that boxes do not.
+    /// Returns whether two parts are farther apart than `max_distance` along the line through their
+    /// centroids; always false unless the nearest pair is wanted. This rejects most pairs whose
+    /// boxes are near.
     fn are_beyond(&self, one: &[Vector<N, D>; 3], other: &[Vector<N, D>; 3]) -> bool {
         let Some(max_distance) = self.max_distance.filter(|_| self.wanted == Touching::Nearest)
         else {
@@ -112,7 +113,7 @@ impl<N: Space<D>, const D: usize> TouchingSearch<'_, '_, N, D> {
         gap2 - gap1 > (max_distance + self.slack) * axis.norm()
     }
 
-    /// Passes a pair to the visitor and takes over the distance that it returns.
+    /// Passes a pair to the visitor and stores the distance that it returns as `max_distance`.
     fn found(&mut self, pair: [u32; 2]) {
         self.max_distance = self.max_distance.and_then(|_| self.visitor.visit(pair));
     }

@@ -8,8 +8,8 @@
 use crate::math::{Matrix, Point, Real, Vector, max_component, min};
 use crate::shape::{CurvedSupport, Ellipsoid, Geometry, Kind, SupportMap};
 
-/// Fraction of the largest possible radius that is taken off. It is below 1 so that the core of a
-/// sphere is not a point.
+/// Share of the largest possible radius by which an ellipsoid is eroded. It is below 1 so that the
+/// core of a sphere is not a point.
 const SHARE: f64 = 15.0 / 16.0;
 
 /// A solid as a core with a radius: the points within `radius` of the eroded solid. Support points
@@ -17,12 +17,12 @@ const SHARE: f64 = 15.0 / 16.0;
 #[derive(Clone, Copy)]
 pub(super) struct Eroded<'a, N: Real, const D: usize> {
     solid: &'a dyn SupportMap<N, D>,
-    /// Radius that is taken off; zero for all kinds but ellipsoids.
+    /// Erosion radius; zero for all kinds but ellipsoids.
     radius: N,
 }
 
 impl<'a, N: Real, const D: usize> Eroded<'a, N, D> {
-    /// Wraps a solid; `None` for half-spaces and composites.
+    /// Makes the eroded form of a solid; `None` for half-spaces and composites.
     pub(super) fn of(kind: Kind<'a, N, D>) -> Option<Self> {
         let radius = if let Kind::Ellipsoid(ellipsoid) = kind {
             least_curvature_radius(ellipsoid) * N::lit(SHARE)
@@ -92,7 +92,7 @@ mod tests {
     use crate::convex;
     use crate::shape::{Cone, Cuboid, Cylinder, Shape};
 
-    /// Asserts the same separation with and without erosion.
+    /// Asserts that the separations with and without erosion agree within `accuracy`.
     fn compare<N: Real>(seed: u64, accuracy: f64) {
         let random = &mut Random(seed);
         for round in 0..600 {

@@ -15,7 +15,7 @@ pub(super) enum FlatCore<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Real, const D: usize> FlatCore<'a, N, D> {
-    /// Wraps a solid; `None` if its core is not a hull of points.
+    /// Makes the variant of a solid; `None` if its core is not a hull of points.
     pub(super) fn of(kind: Kind<'a, N, D>) -> Option<Self> {
         Some(match kind {
             Kind::Segment(segment) => Self::Segment(segment),

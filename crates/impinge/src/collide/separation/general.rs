@@ -1,5 +1,5 @@
-//! Any two convex solids by the general algorithm (`convex`), with a tolerance on the limit and the
-//! rule for shared corners, so that results agree with those of the closed forms.
+//! Separation of any two convex solids by the general algorithm (`convex`), with a tolerance on the
+//! limit and the rule for shared corners, so that results agree with those of the closed forms.
 
 use super::eroded::Eroded;
 use super::flat_core::FlatCore;
@@ -76,7 +76,7 @@ pub(super) fn of_flat_cores_near<N: Simplicial<D>, const D: usize>(
     from_start(pair, limit, Some(normal))
 }
 
-/// Computes [`of_flat_cores`], starting along `start` if it is given.
+/// Computes [`of_flat_cores`] with a search that starts along `start`, if it is `Some`.
 fn from_start<N: Simplicial<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,

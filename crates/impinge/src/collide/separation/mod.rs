@@ -14,14 +14,14 @@
 //!
 //! - [`balls`], [`segments`], [`boxes`] and [`polygons`] hold closed forms and separating axis
 //!   tests;
-//! - [`apart`] searches the nearest points of triangles, boxes and hulls in 3D that are well apart,
-//!   for one pair or for 8;
+//! - [`apart`] searches for the nearest points of triangles, boxes and hulls in 3D that are well
+//!   apart, for one pair or for 8;
 //! - [`hulls`] is the separating axis test of triangles, boxes and hulls in 3D; `triangles` and
 //!   `chain` test 8 parts of a surface at a time;
-//! - `revolved` serves cylinders and cones by the signed distance of a point, `ridges` their deep
-//!   overlaps, and `revolved::coaxial` pairs with a common axis;
+//! - `revolved` computes cylinders and cones from the signed distance of a point, `ridges` their
+//!   deep overlaps, and `revolved::coaxial` pairs with a common axis;
 //! - `shared_corner` sets the distance to zero for solids that share a corner up to rounding;
-//! - `plane_any` serves half-spaces, `rounded` inflated solids, and `general` all other pairs by
+//! - `plane_any` handles half-spaces, `rounded` inflated solids, and `general` all other pairs by
 //!   GJK and EPA; it runs on `eroded` ellipsoids.
 //!
 //! Each function takes a pair and a `limit` and returns the separation in the frame of the first
@@ -101,7 +101,7 @@ fn look_up<N: Real, const D: usize>(table: &Table<N, D>, pair: &Pair<'_, N, D>) 
     table[Geometry(pair.first).kind() as usize][Geometry(pair.second).kind() as usize]
 }
 
-/// Entry below the diagonal: computes the pair in canonical order, and flips the result back.
+/// Entry below the diagonal of a table: computes the pair in canonical order and flips the result.
 fn flipped<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,

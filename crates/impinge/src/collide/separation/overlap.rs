@@ -1,6 +1,6 @@
 //! Distance of two solids if the depth of an overlap is not needed.
 //!
-//! If the solids are apart, it has the bits of the separation's distance.
+//! If the solids are apart, it is bit-identical to the distance of their separation.
 
 use super::balls::{
     ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_polygon, ball_polytope, ball_segment,
@@ -20,7 +20,7 @@ use crate::shape::{Geometry, Kind};
 /// pair, are first searched for a proof of overlap. Below it, separating axes are as fast.
 const DEEP: f64 = 1.0 / 8.0;
 
-/// How the distance of a pair is computed.
+/// Method by which the distance of a pair is computed.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum DistanceMethod {
     /// By a closed form, which costs no more if it includes the depth.
@@ -37,10 +37,10 @@ enum DistanceMethod {
 
 /// Returns the signed distance of two solids in 3D; `None` above `limit`.
 ///
-/// If the solids overlap and `limit` is zero or more, any number that is not positive may be
-/// returned, so clear overlaps are not measured. Otherwise the result has the bits of the
-/// separation's distance. Pairs that are not in the order of kinds are passed to the separation,
-/// which orders them.
+/// If the solids overlap and `limit` is zero or more, the result may be any number that is not
+/// positive, so that clear overlaps need not be measured. Otherwise it is bit-identical to the
+/// distance of the separation. Pairs that are not in the order of kinds are passed to the
+/// separation, which orders them.
 pub(crate) fn distance_3d<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     if let Some(known) = known_3d(pair) {
         return (known <= limit).then_some(known);
@@ -58,7 +58,8 @@ pub(crate) fn distance_3d<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: N) -> 
     distance(pair, limit, method)
 }
 
-/// Returns the signed distance of two solids in 2D, with the contract of [`distance_3d`].
+/// Returns the signed distance of two solids in 2D; `None` above `limit`. Overlaps are handled as
+/// by [`distance_3d`].
 pub(crate) fn distance_2d<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: N) -> Option<N> {
     if let Some(known) = known(pair, beside_ball_2d) {
         return (known <= limit).then_some(known);
@@ -69,7 +70,7 @@ pub(crate) fn distance_2d<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: N) -> 
     distance(pair, limit, method_2d(pair))
 }
 
-/// Returns the signed distance if its formula is a part of the formula for the separation; else
+/// Returns the signed distance if a part of the formula for the separation computes it; else
 /// `None`.
 fn known_3d<N: Real>(pair: &Pair<'_, N, 3>) -> Option<N> {
     use Kind::{Capsule, Segment};
@@ -103,7 +104,7 @@ fn known<N: Real, const D: usize>(
 
 /// Returns the signed distance of a ball from a solid in 3D; `center` is in the frame of the solid.
 /// It projects the centre without computing a direction, and subtracts radii in the order of the
-/// separation. `None` without a closed form.
+/// separation, for identical bits. `None` without a closed form.
 fn beside_ball_3d<N: Real>(radius: N, kind: Kind<'_, N, 3>, center: &Point<N, 3>) -> Option<N> {
     let apart = match kind {
         Kind::Triangle(triangle) => ball_triangle::distance_from(triangle.corners(), center),
@@ -119,8 +120,7 @@ fn beside_ball_3d<N: Real>(radius: N, kind: Kind<'_, N, 3>, center: &Point<N, 3>
     Some(apart - radius)
 }
 
-/// Returns the signed distance of a ball from a solid in 2D, with the contract of
-/// [`beside_ball_3d`].
+/// Returns the signed distance of a ball from a solid in 2D, as [`beside_ball_3d`] does in 3D.
 fn beside_ball_2d<N: Real>(radius: N, kind: Kind<'_, N, 2>, center: &Point<N, 2>) -> Option<N> {
     let apart = match kind {
         Kind::Triangle(triangle) => ball_triangle2::project(triangle.corners(), center)?.distance,
@@ -190,7 +190,7 @@ fn are_bare<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
 /// Returns whether two solids overlap by more than rounding, for certain. `false` proves nothing.
 /// The cores of capsules and rounded solids need not overlap.
 ///
-/// Costs a few support points of each solid, which are wasted if the solids are apart.
+/// Cost: a few support points of each solid.
 fn certainly_overlap<N: Simplicial<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     method: DistanceMethod,
@@ -206,12 +206,12 @@ fn certainly_overlap<N: Simplicial<D>, const D: usize>(
     }
 }
 
-/// Returns the innermost solid of a rounded one; other solids unchanged.
+/// Returns the innermost solid of a rounded solid; other solids unchanged.
 fn inner<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> Kind<'_, N, D> {
     if let Kind::Rounded(solid) = kind { inner(solid.inner().0) } else { kind }
 }
 
-/// Returns the method for two kinds in order, as in the table of 3D.
+/// Returns the method for two kinds in canonical order in 3D; the kinds are grouped as in `table3`.
 fn method_3d<N: Real>(pair: &Pair<'_, N, 3>) -> DistanceMethod {
     use Kind::{
         Ball, Capsule, Composite, Cone, Cuboid, Cylinder, Plane, Polytope, Segment, Triangle,
@@ -238,7 +238,7 @@ fn method_3d<N: Real>(pair: &Pair<'_, N, 3>) -> DistanceMethod {
     }
 }
 
-/// Returns the method for two kinds in order, as in the table of 2D.
+/// Returns the method for two kinds in canonical order in 2D.
 fn method_2d<N: Real>(pair: &Pair<'_, N, 2>) -> DistanceMethod {
     use Kind::{Ball, Composite, Plane};
     let (first, second) = (inner(pair.first), inner(pair.second));
@@ -265,7 +265,7 @@ mod tests {
         Rounded, Segment, Shape, Triangle,
     };
 
-    /// Counts the poses proved to overlap, and all poses that overlap.
+    /// Returns the number of poses proved to overlap, and the number of all poses that overlap.
     fn found<N: Simplicial<D> + Space<D>, const D: usize>(
         solids: &[Box<dyn Shape<N, D>>],
         poses: &[Pose<N, D>],
@@ -293,7 +293,7 @@ mod tests {
         (found, overlapping)
     }
 
-    /// Translations along a direction, in steps of a tenth of `size`.
+    /// Returns translations along a direction, in steps of a tenth of `size`.
     fn steps<N: Real, const D: usize>(direction: Vector<N, D>, size: f64) -> Vec<Vector<N, D>> {
         (0..24).map(|n| direction * N::lit(size * 0.1 * f64::from(n))).collect()
     }
@@ -361,7 +361,8 @@ mod tests {
 
     type Solids<N, const D: usize> = [Box<dyn Shape<N, D>>];
 
-    /// Asserts that distances by a part of the formula have the bits of the separation.
+    /// Asserts that distances by a part of the formula are bit-identical to those of the
+    /// separation.
     fn are_parts<N: Space<D>, const D: usize>(
         firsts: &Solids<N, D>,
         seconds: &Solids<N, D>,

@@ -10,8 +10,8 @@ use crate::shape::{Geometry, Kind, Plane, SupportMap};
 /// Returns the separation of a convex solid from a half-space, at the solid's point deepest in the
 /// half-space.
 ///
-/// Exact for every support map, including curved ones. Of several equally deep points, the solid's
-/// support map chooses one.
+/// Exact for every support map, including curved ones. If several points are equally deep, the
+/// solid's support map chooses one of them.
 pub(super) fn separation<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -26,7 +26,7 @@ pub(super) fn separation<N: Real, const D: usize>(
     (distance <= limit).then_some(Separation { distance, normal, point1, point2 })
 }
 
-/// Returns the distance of [`separation`] for a convex solid, rounded ones included, and a
+/// Returns the distance of [`separation`] for a convex solid, which may be rounded, and a
 /// half-space whose pose in the solid's frame is `pose12`; `None` if the solid is also a
 /// half-space.
 #[inline]

@@ -1,4 +1,4 @@
-//! Projects a point onto a solid of any kind, from which the separation of a ball follows.
+//! Projection of a point onto a solid of any kind. The separation of a ball follows from it.
 
 use super::balls::{
     ball_cone, ball_cuboid, ball_cylinder, ball_ellipsoid, ball_polygon, ball_polytope,

@@ -5,7 +5,7 @@
 //!         point  *        distance > 0: outside; < 0: inside, minus the depth
 //!                |        outward: unit, along which the distance is measured
 //!      .---------+-----.  `point` of the projection: on the surface
-//!      |  solid        |  point given = projection.point + outward * distance
+//!      |  solid        |  projected point = projection.point + outward * distance
 //! ```
 
 use crate::convex::Separation;

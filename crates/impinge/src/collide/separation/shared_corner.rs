@@ -102,7 +102,8 @@ fn is_between<N: Real, const D: usize>(
     (0..D).all(is_within) && (0..D).all(|one| (one + 1..D).all(|other| is_collinear(one, other)))
 }
 
-/// Calls `visit` with each corner of a flat-sided solid, in its own frame; never for other solids.
+/// Calls `visit` with each corner of a flat-sided solid, in its own frame; does nothing for other
+/// solids.
 fn each_corner<N: Real, const D: usize>(
     kind: &Kind<'_, N, D>,
     visit: &mut dyn FnMut(&Point<N, D>),

@@ -11,7 +11,7 @@ use crate::collide::parts;
 use crate::convex::Separation;
 use crate::math::Real;
 
-/// Table of 2D for one scalar type.
+/// Holds the table of 2D for one scalar type.
 struct Table2<N>(core::marker::PhantomData<N>);
 
 impl<N: Real> Table2<N> {
@@ -30,7 +30,7 @@ impl<N: Real> Table2<N> {
         let pp: Algorithm<N, 2> = plane_any::plane_plane;
         let gx: Algorithm<N, 2> = parts::separation;
         let __: Algorithm<N, 2> = flipped;
-        // Columns as rows: ball, segment, capsule, triangle, cuboid, polytope, cylinder, cone
+        // Rows and columns: ball, segment, capsule, triangle, cuboid, polytope, cylinder, cone
         // (neither occurs in 2D), ellipsoid, tapered capsule, rounded, support map, plane,
         // composite.
         [

@@ -15,7 +15,7 @@ use crate::collide::parts;
 use crate::convex::Separation;
 use crate::math::Real;
 
-/// Table of 3D for one scalar type.
+/// Holds the table of 3D for one scalar type.
 struct Table3<N>(core::marker::PhantomData<N>);
 
 impl<N: Real> Table3<N> {
@@ -41,7 +41,7 @@ impl<N: Real> Table3<N> {
         let pp: Algorithm<N, 3> = plane_any::plane_plane;
         let gx: Algorithm<N, 3> = parts::separation;
         let __: Algorithm<N, 3> = flipped;
-        // Columns as rows: ball, segment, capsule, triangle, cuboid, polytope, cylinder, cone,
+        // Rows and columns: ball, segment, capsule, triangle, cuboid, polytope, cylinder, cone,
         // ellipsoid, tapered capsule, rounded, support map, plane, composite.
         [
             [bb, bs, bs, b3, bc, bh, by, bo, be, bt, rr, gg, gp, gx],

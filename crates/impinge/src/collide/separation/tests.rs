@@ -1,4 +1,4 @@
-//! Tests that every kind has an algorithm with every kind: a missing one fails to compile or fails.
+//! Tests that each pair of kinds has an algorithm. Without one, compilation or a test fails.
 
 use crate::collide::Pair;
 use crate::collide::separation::separation;
@@ -10,7 +10,7 @@ use crate::shape::{
     TaperedCapsule, Triangle,
 };
 
-/// The kind with a number, by an exhaustive match from each kind to the next.
+/// Returns all kinds in order. The match is exhaustive, so that a new kind fails to compile here.
 fn all_kinds() -> Vec<ShapeKind> {
     let mut kinds = vec![ShapeKind::Ball];
     while let Some(next) = kinds.last().and_then(|kind| match kind {
@@ -34,7 +34,7 @@ fn all_kinds() -> Vec<ShapeKind> {
     kinds
 }
 
-/// A solid of each kind, one unit large in each direction along y from the local origin.
+/// A solid of each kind; the bounded solids extend from -1 to 1 along y.
 struct Solids<N: Real, const D: usize> {
     ball: Ball<N>,
     segment: Segment<N, D>,
@@ -92,7 +92,7 @@ impl<N: Space<D>, const D: usize> Solids<N, D> {
         }
     }
 
-    /// Returns the solid of a kind that both dimensions have.
+    /// Returns the solid of a kind; `None` for a kind of 3D only.
     fn kind(&self, kind: ShapeKind) -> Option<Kind<'_, N, D>> {
         Some(match kind {
             ShapeKind::Ball => Kind::Ball(&self.ball),
@@ -118,8 +118,9 @@ fn axis<N: Real, const D: usize>(at: usize) -> Vector<N, D> {
     axis
 }
 
-/// The second solid stands five units above the first: the gap is three, or two over half-spaces,
-/// which end at the origin; a half-space above reaches down without end.
+/// Asserts the distance if the second solid is five units above the first: 3 for bounded solids, 4
+/// above a half-space, -6 below the boundary of a half-space, and minus infinity for two
+/// half-spaces.
 fn check<N: Space<D>, const D: usize>(first: Kind<'_, N, D>, second: Kind<'_, N, D>) {
     let pose12 = Pose::from_translation(axis::<N, D>(1) * N::lit(5.0));
     let kinds = [first, second].map(|kind| Geometry(kind).kind());

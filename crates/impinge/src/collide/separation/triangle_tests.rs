@@ -1,6 +1,6 @@
 //! Triangles against triangles, boxes and hulls: compared with the general algorithm and with
-//! bounds that trust neither. A separating plane bounds the distance from below, two points of the
-//! solids from above.
+//! bounds that depend on neither. A separating plane bounds the distance from below, two points of
+//! the solids from above.
 
 use super::triangles::{TiledTriangles, TriangleGap, pair};
 use super::{Algorithm, gaps3, general, hulls, separation};
@@ -19,7 +19,7 @@ impl Xorshift {
         Pose { rotation: matrix, translation: self.vector(away) }
     }
 
-    /// A triangle; some are slivers, segments, points or aligned with the axes.
+    /// Draws a triangle; some are slivers, segments, points or aligned with the axes.
     fn triangle<N: Real>(&mut self, round: usize) -> Triangle<N, 3> {
         let mut corner = || Point::from(self.vector::<N>(1.0));
         let [a, mut b, mut c] = [corner(), corner(), corner()];
@@ -36,7 +36,7 @@ impl Xorshift {
 }
 
 /// Asserts a separation up to `slack`: its normal separates the solids by the distance, and its
-/// points are that far apart and lie in the solids.
+/// points have this distance and lie in the solids.
 fn check_proof<N: Real>(pair: &Pair<'_, N, 3>, found: &Separation<N, 3>, slack: f64, what: &str) {
     let maps = [pair.first, pair.second].map(|kind| match kind {
         Kind::Triangle(triangle) => triangle as &dyn SupportMap<N, 3>,
@@ -62,7 +62,7 @@ fn check_proof<N: Real>(pair: &Pair<'_, N, 3>, found: &Separation<N, 3>, slack: 
     }
 }
 
-/// Directions to all sides.
+/// Returns 26 unit vectors in all directions.
 fn directions<N: Real>() -> impl Iterator<Item = Vector<N, 3>> {
     let steps = || [-1.0, 0.0, 1.0].into_iter();
     let all = steps().flat_map(move |x| steps().flat_map(move |y| steps().map(move |z| [x, y, z])));
@@ -70,11 +70,11 @@ fn directions<N: Real>() -> impl Iterator<Item = Vector<N, 3>> {
     some.map(|v| Vector::<f64, 3>::from(v).normalize().map(N::lit))
 }
 
-/// Counts of the cases that occurred.
+/// Counts of the cases that occurred in a test.
 #[derive(Default)]
 struct Tally {
     overlaps: usize,
-    /// Answers that differ in bits from those of the general algorithm.
+    /// Results that differ in bits from those of the general algorithm.
     closed: usize,
     rounds: usize,
 }
@@ -100,7 +100,8 @@ fn check_pair<N: Real>(own: Algorithm<N, 3>, pair: &Pair<'_, N, 3>, size: f64, t
     assert_eq!(own(pair, less), None, "beyond the limit: {what}");
 }
 
-/// Boxes, hulls and triangles at every depth, of sizes from a tenth to one, some of them flat.
+/// Compares boxes, hulls and triangles at random depths. Their sizes are about 0.1 to 1; some are
+/// flat.
 fn at_random<N: Real>(rounds: usize) {
     let (mut random, mut tallies) = (Xorshift(7), [(); 4].map(|()| Tally::default()));
     for round in 0..rounds {
@@ -183,7 +184,7 @@ fn a_box_on_a_face_has_its_normal() {
     }
 }
 
-/// Many triangles against one solid, in packets and alone.
+/// Compares many triangles against one solid, in packets and one by one.
 fn together<N: Real>(rounds: usize) {
     let (mut random, mut touching) = (Xorshift(5), 0);
     for round in 0..rounds {
@@ -210,7 +211,8 @@ fn together<N: Real>(rounds: usize) {
     assert!(touching > rounds, "{touching} touch");
 }
 
-/// Returns how many triangles are within the limit and plain.
+/// Compares triangles in packets with single ones. Returns the number within the limit whose gap is
+/// certain.
 fn check_together<N: Real>(
     triangles: &[Triangle<N, 3>],
     solid: Kind<'_, N, 3>,
@@ -245,8 +247,8 @@ fn check_together<N: Real>(
     touching
 }
 
-/// Asserts that the gap of a triangle in a packet agrees with its separation; along its own normal
-/// it may be farther.
+/// Asserts that the gap of a triangle in a packet agrees with its separation. A gap along the
+/// triangle's own normal may be smaller than the distance.
 fn check_gap<N: Real>(
     gap: &TriangleGap<N>,
     triangle: &Triangle<N, 3>,

@@ -1,4 +1,4 @@
-//! Separation of two placed solids in the world frame, in the order in which they are given.
+//! Separation of two placed solids in the world frame, in the order of the arguments.
 
 use crate::collide::far::Apart;
 use crate::collide::pair::{Ordered, Placed, Placing};
@@ -134,8 +134,7 @@ impl<'a, N: Space<D>, const D: usize> Placed<'a, N, D> {
         Self { pose: shape.pose_at(isometry), shape }
     }
 
-    /// Places a solid at a pose; the rotation is dropped if the solid looks the same at any
-    /// rotation.
+    /// Places a solid at a pose; the rotation is dropped if it does not change the solid.
     pub(crate) fn of_pose(pose: &Pose<N, D>, shape: Geometry<'a, N, D>) -> Self {
         Self { pose: if shape.turns() { *pose } else { pose.without_rotation() }, shape }
     }

@@ -18,8 +18,8 @@ struct Case<'a> {
     id: &'a str,
     shapes: [&'a Value; 2],
     pose12: &'a Value,
-    /// Pose of the frame that the pair is brought into, if the poses are given in world
-    /// coordinates.
+    /// World pose of the first solid; `pose12` is then the world pose of the second. `None` if
+    /// `pose12` is relative to the first solid.
     pose1: Option<&'a Value>,
     expected: f64,
     tolerance: f64,
@@ -48,8 +48,8 @@ where
     let exact = [solid::<f64, D>(case.shapes[0])?, solid::<f64, D>(case.shapes[1])?];
     let proven = height([&*exact[0], &*exact[1]], &relative::<f64, D>(case), &normal);
     let across = (found.point2 - found.point1).map(Real::as_f64) - normal * distance;
-    // The reference has a gap of its own, up to about 1e-9 of the size for curved solids: an answer
-    // above it is right if its own normal proves it.
+    // The reference itself may be too small, by up to about 1e-9 of the size for curved solids. A
+    // larger distance counts as right if its own normal proves it.
     let beyond = distance - case.expected;
     let proven_better = beyond > 0.0 && proven >= case.expected && beyond < 10.0 * case.tolerance;
     let distance_error = if proven_better { distance - proven } else { beyond };
@@ -81,8 +81,9 @@ where
     )))
 }
 
-/// On curved surfaces, which decide the tolerance of `f64`, points are accurate to about the square
-/// root of distances: 1e-7 of the size. (`f32` has a tolerance that covers this.)
+/// Returns the factor of the tolerance for an error. Points on curved surfaces are accurate only to
+/// about the square root of the accuracy of distances, 1e-7 of the size in `f64`. The tolerance of
+/// `f32` covers this.
 fn slack<N: Real>(name: &str) -> f64 {
     match name.starts_with("point ") {
         true if size_of::<N>() == 8 => 1e3,

@@ -1,4 +1,4 @@
-//! Points, segments and flat solids; exact touching; numbers at the ends of their range.
+//! Points, segments and flat solids; exact touching; numbers near the limits of their range.
 
 use super::super::{Separation, Simplicial, separation};
 use super::solids::Points;
@@ -133,13 +133,14 @@ fn extreme_sizes() {
     }
 }
 
-/// The signed distance along a line through touching changes no faster than the length moved.
+/// Along a straight motion from overlap to separation, the signed distance increases by no more
+/// than the step.
 #[test]
 fn continuous_through_touching() {
     let cube = Cuboid::new(vector::<f32, 3>([1.0, 0.5, 0.75]));
     let cylinder = Cylinder::new(1.0_f32, 0.5);
     let mut pose = Pose::<f32, 3>::identity();
-    // A turn by 3-4-5 and 5-12-13 triangles.
+    // A rotation about z with the sine 0.6 and the cosine 0.8.
     pose.rotation.set_column(0, &vector([0.8, 0.6, 0.0]));
     pose.rotation.set_column(1, &vector([-0.6, 0.8, 0.0]));
     let solids: [&dyn SupportMap<f32, 3>; 2] = [&cube, &cylinder];

@@ -1,4 +1,4 @@
-//! Pairs with answers known otherwise: by hand, and by trying all axes of two boxes.
+//! Compares pairs with results computed by hand, and boxes with the best of all candidate axes.
 
 use super::super::{Separation, Simplicial, separation};
 use super::generator::{Generator, Sample};
@@ -25,8 +25,8 @@ fn expect<N: Real, const D: usize>(
     within(found, distance, normal, points, [100.0 * N::EPSILON.as_f64(); 2]);
 }
 
-/// Compares as `expect`; a normal on a curved surface is accurate to the square root of the
-/// distance.
+/// Compares like [`expect`], but without points. On curved surfaces a normal is accurate only to
+/// the square root of the accuracy of the distance.
 #[track_caller]
 fn expect_curved<N: Real>(found: Option<Separation<N, 3>>, distance: f64, normal: [f64; 3]) {
     let tolerance = 64.0 * N::EPSILON.as_f64() + 1e-11;
@@ -126,7 +126,8 @@ fn axes<const D: usize>(pose12: &Pose<f64, D>, crosses: &[Vector<f64, D>]) -> Ve
     axes
 }
 
-/// Compares overlapping boxes with the best of all axes, relative to their scale.
+/// Compares the distance of two boxes with the greatest height over all axes; for disjoint boxes
+/// that is only a lower bound. `tolerance` is relative to the scale of the sample.
 fn against_all_axes<N, const D: usize>(
     crosses: impl Fn(&Pose<f64, D>) -> Vec<Vector<f64, D>>,
     tolerance: f64,

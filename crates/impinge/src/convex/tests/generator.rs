@@ -6,7 +6,8 @@ use super::super::{Simplicial, separation};
 use super::solids::{Own, Solid, solid};
 use crate::math::{Pose, Real, Vector, unit_or};
 
-/// G. Steele, D. Lea, C. Flood, "Fast Splittable Pseudorandom Number Generators" (2014).
+/// `SplitMix64`: G. Steele, D. Lea, C. Flood, "Fast Splittable Pseudorandom Number Generators"
+/// (2014).
 pub(super) struct Generator(pub(super) u64);
 
 impl Generator {
@@ -28,7 +29,7 @@ impl Generator {
         Vector::from_fn(|_, _| self.between(-size, size))
     }
 
-    /// Returns a direction, uniform enough.
+    /// Returns a random unit vector, almost uniformly distributed.
     pub(super) fn direction<const D: usize>(&mut self) -> Vector<f64, D> {
         let axis = Vector::<f64, D>::from_fn(|row, _| f64::from(u8::from(row == 0)));
         loop {
@@ -43,8 +44,8 @@ impl Generator {
         json!(self.vector::<D>(size).iter().copied().collect::<Vec<_>>())
     }
 
-    /// Returns a solid of a kind with about the size `size`; `thin` makes one extent 200 times
-    /// smaller.
+    /// Returns a random solid of a kind, with sizes of about `size`; `thin` makes one extent 200
+    /// times smaller.
     pub(super) fn shape<const D: usize>(&mut self, kind: &str, size: f64, thin: bool) -> Value {
         let slim = if thin { size / 200.0 } else { size };
         let mut length = |scale: f64| self.between(0.5, 2.0) * scale;
@@ -72,7 +73,7 @@ impl Generator {
         }
     }
 
-    /// Returns a rotation, in the form of the test data.
+    /// Returns a random rotation, as a pose at the origin.
     pub(super) fn rotation<const D: usize>(&mut self) -> Pose<f64, D>
     where
         f64: Own<D>,
@@ -83,7 +84,7 @@ impl Generator {
     }
 }
 
-/// A pair of solids at a pose, in both scalars.
+/// A pair of solids at a relative pose, for use with any scalar.
 pub(super) struct Sample<const D: usize> {
     pub(super) shapes: [Value; 2],
     pub(super) pose12: Pose<f64, D>,
@@ -95,8 +96,8 @@ impl<const D: usize> Sample<D>
 where
     f64: Simplicial<D> + Own<D>,
 {
-    /// Draws a rotation, then moves the second along a random direction until the distance is about
-    /// `target`.
+    /// Draws a rotation, then moves the second solid along a random direction until the distance is
+    /// about `target`.
     pub(super) fn new(shapes: [Value; 2], target: f64, generator: &mut Generator) -> Self {
         let mut sample = Self { shapes, pose12: generator.rotation(), scale: 0.0 };
         let [a, b] = sample.solids::<f64>();
@@ -113,7 +114,7 @@ where
         sample
     }
 
-    /// Rounds all numbers to `N`; the rotation is one up to rounding then.
+    /// Rounds the pose to `N`; its rotation is then orthonormal only up to rounding.
     pub(super) fn representable<N: Real>(mut self) -> Self {
         self.pose12.translation.apply(|x| *x = N::lit(*x).as_f64());
         self.pose12.rotation.apply(|x| *x = N::lit(*x).as_f64());

@@ -106,14 +106,15 @@ where
     }
 }
 
-/// Returns the largest number, and the one that a hundredth of the numbers exceeds.
+/// Returns the largest error and the 99th percentile.
 fn summary(errors: &mut [f64]) -> [f64; 2] {
     errors.sort_by(f64::total_cmp);
     let count = errors.len();
     [errors[count - 1], errors[count - 1 - count / 100]]
 }
 
-/// Bounds of the errors relative to the scale: largest and 99 % of distances, then of points.
+/// Bounds of the errors relative to the scale: the largest error and the 99th percentile, of
+/// distances, then of points.
 type Bounds = [[f64; 2]; 2];
 
 fn lower_bounds<N, const D: usize>(kinds: usize, bounds: [Bounds; 2])
@@ -154,7 +155,7 @@ fn lower_bounds_3d() {
     lower_bounds::<f64, 3>(KINDS.len(), [flat, [[1e-10, 1e-11], [1e-7, 1e-8]]]);
 }
 
-/// Asserts that the separation of swapped solids is the flipped separation, up to rounding.
+/// Asserts that swapping the solids keeps the distance, up to the tolerance.
 fn swapped<N, const D: usize>(kinds: usize, tolerance: [f64; 2])
 where
     N: Simplicial<D> + Own<D>,
@@ -223,7 +224,7 @@ fn scaling_by_powers_of_two_is_exact() {
     }
 }
 
-/// A limit never hides a pair within it, and always one well beyond it.
+/// A limit never excludes a pair within it, and always excludes a pair well beyond it.
 #[test]
 fn limits() {
     let (mut within, mut beyond) = (0, 0);

@@ -1,4 +1,4 @@
-//! Solids for the tests, and their properties, computed slowly.
+//! Convex solids for the tests, and slow computations of their properties.
 
 use serde_json::Value;
 
@@ -50,7 +50,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for RoundCuboid<N, D> {
     }
 }
 
-/// A solid symmetric about y, with another axis in its place.
+/// A solid of revolution about y, with the y axis exchanged for the axis `axis`.
 struct Along<N: Real> {
     axis: usize,
     solid: Solid<N, 3>,
@@ -66,7 +66,7 @@ impl<N: Real> SupportMap<N, 3> for Along<N> {
     }
 }
 
-/// Shapes that exist in one dimension only.
+/// Solids and poses that depend on the dimension.
 pub(super) trait Own<const D: usize>: Real {
     fn own(shape: &Value) -> Option<Solid<Self, D>>;
     fn pose(pose: &Value) -> Pose<Self, D>;
@@ -156,7 +156,7 @@ fn point<N: Real, const D: usize>(value: &Value) -> Point<N, D> {
     Point::from(vector(value))
 }
 
-/// Returns the solid of an entry of the test data, if it is convex.
+/// Returns the solid of an entry of the test data; `None` if it is not convex.
 pub(super) fn solid<N: Own<D>, const D: usize>(shape: &Value) -> Option<Solid<N, D>> {
     if let Some(own) = N::own(shape) {
         return Some(own);
@@ -184,7 +184,8 @@ pub(super) fn solid<N: Own<D>, const D: usize>(shape: &Value) -> Option<Solid<N,
     })
 }
 
-/// Returns how far the plane across `normal` separates two solids: `min n·b − max n·a`.
+/// Returns the distance by which planes perpendicular to `normal` separate two solids:
+/// `min n·b − max n·a`.
 pub(super) fn height<N: Real, const D: usize>(
     solids: [&dyn SupportMap<N, D>; 2],
     pose12: &Pose<N, D>,
@@ -196,7 +197,7 @@ pub(super) fn height<N: Real, const D: usize>(
     lowest2.coords.dot(&n) - solids[1].rounding() - top1
 }
 
-/// The signed distance of a point from a solid.
+/// Returns the signed distance of a point from a solid; NaN without a result.
 pub(super) fn outside<const D: usize>(solid: &dyn SupportMap<f64, D>, point: &Point<f64, D>) -> f64
 where
     f64: Simplicial<D>,

@@ -51,7 +51,8 @@ fn to_box(point: &Vector<f64, 3>, half_extents: &Vector<f64, 3>) -> f64 {
     beyond.map(|x| x.max(0.0)).norm() + beyond.max().min(0.0)
 }
 
-/// In the half-plane of the distance from the axis and the height the cone is a triangle.
+/// Returns the signed distance from a cone, which is a triangle in the half-plane of radial
+/// distance and height.
 fn to_cone([radial, y]: [f64; 2], [height, radius]: [f64; 2]) -> f64 {
     let at = |radial: f64, y: f64| Vector::<f64, 3>::new(radial, y, 0.0);
     let (point, apex, rim, middle) =

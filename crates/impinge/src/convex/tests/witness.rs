@@ -7,14 +7,14 @@ use super::surface::off;
 use crate::math::{Point, Real};
 
 const KINDS: [&str; 6] = ["segment", "capsule_y", "triangle", "cuboid", "cylinder_y", "cone_y"];
-/// Far, near, touching, shallow and ever deeper; relative to the size.
+/// Target distances: far, near, touching, shallow and increasingly deep; relative to the size.
 const TARGETS: [f64; 10] = [1.0, 1e-2, 1e-5, 0.0, -1e-5, -1e-3, -1e-2, -0.1, -0.3, -0.8];
 
 /// Number of trials for each pair of kinds.
 const ROUNDS: usize = 400;
 
-/// Returns the errors of a separation's points: their distances from the two solids' surfaces, and
-/// how much they are offset across the normal.
+/// Returns the errors of a separation's points: their distances from the surfaces of the two
+/// solids, and the mismatch between their offset and the distance along the normal.
 fn errors<N: Simplicial<3> + Own<3>>(sample: &Sample<3>, found: &Separation<N, 3>) -> [f64; 3] {
     let [point1, point2] =
         [found.point1, found.point2].map(|p| Point::from(p.coords.map(Real::as_f64)));
@@ -27,7 +27,8 @@ fn errors<N: Simplicial<3> + Own<3>>(sample: &Sample<3>, found: &Separation<N, 3
     ]
 }
 
-/// `allowed` is relative to the size of the pair.
+/// Checks random samples of every pair of kinds; `allowed` is the error relative to the size of the
+/// pair.
 fn check<N>(rounds: usize, allowed: f64)
 where
     N: Simplicial<3> + Own<3>,

@@ -1,4 +1,4 @@
-//! Contacts of a single pair: of convex solids, or with a composite.
+//! Contacts of a single pair of convex solids, or of a single pair with a composite.
 
 use crate::collide::{ManifoldRequest, Placed, Solid};
 use crate::math::{Point, Pose, Real, Space, Vector};
@@ -6,7 +6,7 @@ use crate::narrow_phase::state::{CompositeState, ContactState, KeptContacts, Kep
 use crate::query::ContactManifold;
 use crate::shape::Geometry;
 
-/// Stored contacts of a single pair.
+/// The stored contacts of a single pair.
 #[derive(Clone)]
 pub(in crate::narrow_phase) enum PairContacts<N: Real, const D: usize> {
     Convex(ContactState<N, D>),
@@ -48,8 +48,8 @@ impl<N: Real, const D: usize> KeptPoints<N, D> for PairContacts<N, D> {
     }
 }
 
-/// Returns two values in the order in which contacts are stored: first the value of the solid in
-/// whose frame they are.
+/// Reorders one value for each solid, given in the pair's order: first the value of the solid in
+/// whose frame contacts are stored.
 pub(super) fn in_kept_order<T>([one, other]: [T; 2], is_swapped: bool) -> [T; 2] {
     if is_swapped { [other, one] } else { [one, other] }
 }
@@ -63,7 +63,7 @@ pub(super) fn pose21<N: Real, const D: usize>(
     Pose::relative(second, first)
 }
 
-/// Combines each pose with its shape.
+/// Returns each shape with its pose.
 pub(super) fn placed<'a, N: Real, const D: usize>(
     [pose1, pose2]: &[Pose<N, D>; 2],
     [shape1, shape2]: [Geometry<'a, N, D>; 2],
@@ -72,7 +72,8 @@ pub(super) fn placed<'a, N: Real, const D: usize>(
 }
 
 impl<N: Space<D>, const D: usize> PairContacts<N, D> {
-    /// Updates the contacts. `copies` has a copy of each solid that is small enough.
+    /// Updates the contacts. `copies` has a copy of each solid that is a ball, segment, capsule or
+    /// box.
     pub(in crate::narrow_phase) fn update(
         &mut self,
         (poses, shapes): (&[Pose<N, D>; 2], [Geometry<'_, N, D>; 2]),

@@ -1,5 +1,5 @@
-//! Copies of shapes. A generator recognises its shapes by them from call to call, and its readers
-//! need them later.
+//! Copies of a generator's shapes. The generator compares them with its arguments to detect changed
+//! shapes, and readers need them to build manifolds after the call.
 //!
 //! Small solids are copied and compared. Hulls are recognised by a shared [twin](Polytope::twin),
 //! and composites by their [`Revision`]; a composite itself is not kept.
@@ -15,7 +15,7 @@ use crate::shape::{
 };
 use crate::tables::ByDimension;
 
-/// A copy of a shape, or a key that recognises it, from the last call.
+/// A copy of a shape from the last call, or a key that identifies the shape.
 #[derive(Clone, Debug)]
 pub(super) enum KeptShape<N: Real, const D: usize> {
     Solid(Solid<N, D>),
@@ -37,7 +37,7 @@ pub(crate) enum Revolved<N: Real> {
 }
 
 impl<N: Real, const D: usize> KeptShape<N, D> {
-    /// Returns a copy; `None` for custom shapes, which may change without notice.
+    /// Returns a copy or key of a shape. `None` for custom shapes, which may change without notice.
     pub(super) fn of(shape: Geometry<'_, N, D>) -> Option<Self> {
         Some(match shape.0 {
             Kind::Ball(_) | Kind::Segment(_) | Kind::Capsule(_) | Kind::Cuboid(_) => {
@@ -56,7 +56,7 @@ impl<N: Real, const D: usize> KeptShape<N, D> {
         })
     }
 
-    /// Returns `true` if `shape` gives the same results as the kept one in all queries.
+    /// Returns `true` if `shape` equals the kept shape, so that all queries have the same results.
     pub(super) fn is(&self, shape: Geometry<'_, N, D>) -> bool {
         match (self, shape.0) {
             (Self::Solid(kept), _) => kept.is(shape),
@@ -85,7 +85,7 @@ impl<N: Real, const D: usize> KeptShape<N, D> {
         }
     }
 
-    /// Returns the geometry of the shape; `None` for a composite.
+    /// Returns the geometry of the kept shape; `None` for a composite, which is not copied.
     pub(super) fn geometry(&self) -> Option<Geometry<'_, N, D>>
     where
         N: Space<D>,
@@ -107,14 +107,15 @@ impl<N: Real, const D: usize> KeptShape<N, D> {
 /// The solids on which a contact of a composite lies.
 #[derive(Clone, Debug)]
 pub(super) struct KeptTouch<N: Real, const D: usize> {
-    /// By side, the part with its pose; `None` for a shape that is its own part.
+    /// By solid: the touched part and its pose. `None` for a convex shape, which the generator
+    /// keeps as a whole.
     parts: [Option<(KeptShape<N, D>, Pose<N, D>)>; 2],
     turns_with_second: Option<bool>,
 }
 
 impl<N: Space<D>, const D: usize> KeptTouch<N, D> {
-    /// Copies the solids; `None` if a part is a custom solid. `are_whole[i]` is `true` if shape `i`
-    /// is its own part.
+    /// Copies the solids on which a contact lies; `None` if a part is a custom solid.
+    /// `are_whole[i]` is `true` if shape `i` is not a composite and kept as a whole.
     pub(super) fn of(touched: &Touched<'_, N, D>, are_whole: [bool; 2]) -> Option<Self> {
         let Touched { solids, poses, turns_with_second, .. } = touched;
         let mut parts = [None, None];
@@ -126,8 +127,8 @@ impl<N: Space<D>, const D: usize> KeptTouch<N, D> {
         Some(Self { parts, turns_with_second: *turns_with_second })
     }
 
-    /// Returns the solids on which the contact lies. `wholes[i]` is shape `i` if it is its own
-    /// part; `None` if such a shape is missing.
+    /// Returns the solids on which the contact lies. `wholes[i]` is shape `i` if it is kept as a
+    /// whole. `None` if such a shape is missing.
     pub(super) fn touched<'a>(
         &'a self,
         wholes: [Option<Geometry<'a, N, D>>; 2],

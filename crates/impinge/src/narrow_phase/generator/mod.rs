@@ -1,4 +1,4 @@
-//! The library's own contact algorithm as an object, for use without a world.
+//! The library's own contact algorithm for one pair, for use without a world.
 
 mod contacts;
 mod kept;
@@ -26,7 +26,7 @@ use crate::query::ContactManifold;
 use crate::shape::{Geometry, Shape};
 
 /// Returns the default maximum number of points of a manifold: two in 2D and four in 3D, enough to
-/// span an overlap of faces.
+/// span the overlap of two faces.
 pub(crate) const fn conforming_points<const D: usize>() -> usize {
     1 << (D - 1)
 }
@@ -60,18 +60,19 @@ pub struct PairManifoldGenerator<N: Real, const D: usize> {
     max_points: usize,
     /// Identifier of the pair in contact ids; `None` until it is allocated.
     number: Option<u64>,
-    /// Copies of the shapes at the last update; `None` for shapes that cannot be recognised.
+    /// Copies of the shapes at the last update. `None` for a shape whose changes cannot be
+    /// detected.
     shapes: [Option<KeptShape<N, D>>; 2],
-    /// The solids on which the contacts of a composite lie, in the order of contacts.
+    /// The solids on which each contact of a composite lies, in the order of the contacts.
     touched: Vec<KeptTouch<N, D>>,
-    /// Whether all data for reading the contacts later are kept.
+    /// Whether all data are kept that a reader needs to build the manifolds later.
     is_readable: bool,
-    /// Whether the contacts are those for `numbers` and `request`.
+    /// Whether the contacts belong to `numbers` and `request`.
     is_current: bool,
     /// The coordinates of both isometries at the last update.
     numbers: [[N; 7]; 2],
     request: ManifoldRequest<N>,
-    /// Poses at the last update, which readers use.
+    /// Poses at the last update, for readers.
     poses: [Pose<N, D>; 2],
     contacts: PairContacts<N, D>,
     /// State of contact reuse, if it is enabled.
@@ -83,7 +84,7 @@ pub struct PairManifoldGenerator<N: Real, const D: usize> {
 #[derive(Clone)]
 struct PairReuse<N: Real, const D: usize> {
     tolerance: N,
-    /// Bounding radii; see [`ReachBounds::reach`].
+    /// Bounding radii of the two shapes around their origins; see [`ReachBounds::reach`].
     reaches: [N; 2],
     reference: Reference<N, D>,
 }
@@ -125,8 +126,8 @@ impl<N: Real, const D: usize> PairManifoldGenerator<N, D> {
     /// Returns the generator with contact reuse, as
     /// [`DefaultNarrowPhase::try_reusing`](super::DefaultNarrowPhase::try_reusing) describes it.
     /// While no point of the smaller solid has moved farther than `tolerance` relative to the other
-    /// since the last computation, contacts stay fixed to the solids, and only their depths are
-    /// measured again.
+    /// solid since the last computation, contacts stay fixed to the solids, and only their depths
+    /// are measured again.
     ///
     /// A pair of a ball with a ball, a box, a segment or a capsule is always computed, which is
     /// equally fast. Custom shapes are always computed too, since they may have changed.
@@ -210,11 +211,12 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         }
     }
 
-    /// Removes all contacts; the pair is then one of two convex solids.
+    /// Removes all contacts, and replaces a composite state by an empty convex state. Only for
+    /// shapes that are certainly far apart, which are never composites.
     fn clear(&mut self) {
         match &mut self.contacts {
             PairContacts::Convex(state) => state.clear(),
-            // This state belongs to shapes of an earlier call.
+            // The state belongs to the shapes of an earlier call.
             PairContacts::Composite(_) => {
                 (self.number, self.shapes) = (None, [None, None]);
                 self.contacts = PairContacts::new(false);
@@ -247,8 +249,8 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         solids.iter().all(Option::is_some) && solids.iter().any(is_ball)
     }
 
-    /// Moves the contacts along with the solids if these have moved little enough; returns whether
-    /// it did.
+    /// Moves the contacts along with the solids and returns `true`, if contact reuse is enabled and
+    /// the solids have moved little enough. Otherwise returns `false`.
     fn keeps_contacts(&mut self) -> bool {
         let Some(reuse) = &mut self.reuse else { return false };
         let is_swapped = self.contacts.is_swapped();
@@ -265,7 +267,7 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         self.shapes.iter().zip(shapes).all(is_kept)
     }
 
-    /// Replaces the kept shapes, and prepares the state for their kinds.
+    /// Replaces the kept shapes, and resets the state where it depends on the old shapes.
     fn replace_shapes(&mut self, given: [&dyn Shape<N, D>; 2], shapes: [Geometry<'_, N, D>; 2]) {
         let has_composite = shapes.iter().any(|shape| shape.as_composite().is_some());
         match &mut self.contacts {

@@ -1,4 +1,4 @@
-//! Tests of contacts kept for a single pair.
+//! Tests of the contacts that a generator keeps for one pair.
 
 use super::*;
 use crate::math::Isometry2;
@@ -85,7 +85,7 @@ fn an_update_without_motion_keeps_contacts_and_ids() {
     }
 }
 
-/// Returns a vertical line of two segments at `x`, local to the line.
+/// Returns a vertical polyline of two segments, at abscissa `x` in its local frame.
 fn wall(x: f64) -> Polyline<f64, 2> {
     Polyline::open([-2.0, 0.0, 2.0].map(|y| Point::<f64, 2>::new(x, y)).to_vec())
 }

@@ -50,7 +50,7 @@ pub(crate) fn first_arrival<N: Space<D>, const D: usize>(
     search.first
 }
 
-/// Two parts that certainly do not touch before the time `earliest` (zero or more).
+/// Two parts that certainly do not touch before the time `earliest`, zero or more.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct LaterPair<N> {
     earliest: N,
@@ -102,7 +102,8 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         }
     }
 
-    /// Casts the parts of the composite with fewer parts against the other composite.
+    /// Sweeps the box of the composite with more parts through the other composite, and tests each
+    /// part found there against the composite with more parts.
     fn of_many(&mut self, parts1: &dyn CompositeShape<N, D>, parts2: &dyn CompositeShape<N, D>) {
         let (which, fewer, more) = by_number(parts1, parts2);
         let aabb = self.grown(&self.between.whole_in_other(1 - which));
@@ -188,7 +189,8 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         self.first = found.or(self.first);
     }
 
-    /// Adds the contact of a solid that is inside a body at the start, although it touches no part.
+    /// Handles a solid that is inside a body at the start: a start in contact, although the solid
+    /// touches no part.
     fn begin_inside(&mut self) {
         if self.start == WholeContact::Unknown && self.between.has_bodies() {
             let mut inside = held_pieces(self.between);
@@ -241,7 +243,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         if which == 1 { *velocity } else { -self.between.pose21.vector(velocity) }
     }
 
-    /// Returns a box loosened by the target distance, so that it overlaps everything within that
+    /// Returns a box loosened by the target distance, so that it overlaps every box within that
     /// distance of `aabb`.
     fn grown(&self, aabb: &Aabb<N, D>) -> Aabb<N, D> {
         let grown = aabb.loosened(self.path.target);
@@ -258,7 +260,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
     }
 }
 
-/// The contacts of the whole shapes in their configuration at the time `along`.
+/// A query for the contacts of the whole shapes at the time `along`.
 struct WholeQuestion<'p, 'a, N: Real, const D: usize> {
     between: Between<'a, N, D>,
     path: &'p Path<N, D>,
@@ -309,7 +311,7 @@ fn rounding<N: Real, const D: usize>(placed: &PartPair<'_, N, D>) -> N {
     N::lit(ROUNDING) * N::EPSILON * size(&placed.pair())
 }
 
-/// Converts a path from the frame of the first shape to that of its part.
+/// Converts a path from the frame of the first shape to the frame of its part.
 fn path_in_first_part<N: Real, const D: usize>(
     placed: &PartPair<'_, N, D>,
     path: &Path<N, D>,
@@ -318,8 +320,8 @@ fn path_in_first_part<N: Real, const D: usize>(
 }
 
 impl<N: Space<D>, const D: usize> PartArrival<N, D> {
-    /// Returns the separation of the parts when they touch, in the frame of the first shape, and
-    /// the features.
+    /// Returns the separation of the parts at the impact, in the frame of the first shape, and the
+    /// touching features.
     pub(crate) fn separation_with_features(
         &self,
         between: &Between<'_, N, D>,
@@ -336,7 +338,8 @@ impl<N: Space<D>, const D: usize> PartArrival<N, D> {
 }
 
 impl<N: Real, const D: usize> PartArrival<N, D> {
-    /// Whether this impact is earlier than `other`, or at the same time with lower part indices.
+    /// Returns whether this impact is earlier than `other`, or at the same time with lower part
+    /// indices.
     fn is_before(&self, other: &Self) -> bool {
         let (along, others) = (self.arrival.along, other.arrival.along);
         along < others || (along == others && self.parts < other.parts)

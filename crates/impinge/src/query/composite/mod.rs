@@ -1,7 +1,8 @@
-//! Queries of composites: each queries the parts, which are found by their boxes.
+//! Queries on composites: a search finds candidate parts by their boxes, and the query runs on each
+//! of these parts.
 //!
-//! The result never depends on the order in which a search reports the parts: of equal results the
-//! one with the lowest part indices wins.
+//! The result never depends on the order in which a search reports the parts: among equal results,
+//! the result with the lowest part indices wins.
 
 mod impact;
 mod mover;

@@ -23,7 +23,7 @@ pub(super) struct Mover<'a, N: Real, const D: usize> {
     target: N,
 }
 
-/// The times at which none of the axes tested so far separates the solid from the part.
+/// The times at which none of the tested axes separates the solid from the part.
 struct ContactSpan<N> {
     enter: N,
     leave: N,

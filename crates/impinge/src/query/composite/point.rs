@@ -54,10 +54,10 @@ impl<'a, N: Real, const D: usize> PartQuery<'a, N, D> {
 }
 
 impl<N: Real, const D: usize> PartQuery<'_, N, D> {
-    /// Whether the part is certainly farther than `distance`, by a plane perpendicular to the
-    /// direction of its centre. Only triangles and segments without a pose are tested. If m is the
-    /// sum of the corners c relative to the query point, the plane is at the distance min(m · c) /
-    /// |m|.
+    /// Returns whether the part is certainly farther than `distance`, by a plane perpendicular to
+    /// the direction of its centre. Only triangles and segments without a pose are tested. With `m`
+    /// the sum of the corners `c` relative to the query point, the distance of the plane is
+    /// `min(m · c) / |m|`.
     fn is_beyond(&self, distance: N) -> bool {
         let corners: [Vector<N, D>; 3] = match self.solid() {
             _ if self.query != Point::origin() => return false,
@@ -132,8 +132,8 @@ pub(crate) fn nearest_part<N: Space<D>, const D: usize>(
     if parts.has_bodies() { deepest_within(parts, point, best) } else { best }
 }
 
-/// Returns the result for a composite with bodies: the deepest of `best` and, for each body that
-/// contains the point, the nearest part of the body's boundary.
+/// Returns the result for a composite with bodies: the deepest among `best` and the nearest
+/// boundary part of each body that contains the point.
 fn deepest_within<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     point: &Point<N, D>,
@@ -164,14 +164,15 @@ fn deepest_within<N: Space<D>, const D: usize>(
 }
 
 impl<N: Real, const D: usize> PartPoint<N, D> {
-    /// Whether this point is nearer or deeper than `other`, or equal with a lower part index.
+    /// Returns whether this point is nearer or deeper than `other`, or equal with a lower part
+    /// index.
     fn is_before(&self, other: &Self) -> bool {
         self.distance < other.distance
             || (self.distance == other.distance && self.part < other.part)
     }
 }
 
-/// The entry of composites in the table of shapes.
+/// Implements the point query of composites in the dispatch table of shapes.
 pub(crate) fn surface_point<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     point: &Point<N, D>,

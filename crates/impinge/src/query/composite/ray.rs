@@ -32,7 +32,7 @@ pub(crate) fn each_hit<N: Space<D>, const D: usize>(
     let RayQuestion { ray, max_time, solid } = question;
     let mut latest = *max_time;
     let Some(start) = around_point(&ray.origin, &parts.search().bounds()) else { return };
-    // False for NaN, so that a NaN limit finds nothing.
+    // The comparison is false for NaN, so that a NaN limit finds nothing.
     let is_valid = latest >= N::ZERO && ray.dir.iter().all(|x| x.is_finite_number());
     if !is_valid {
         return;
@@ -72,7 +72,7 @@ fn start_inside<N: Space<D>, const D: usize>(
     Some(RayIntersection { part: nearest.part, ..at_start(nearest.feature) })
 }
 
-/// Whether a ray hits a composite up to a time.
+/// Returns whether a ray hits a composite up to a time.
 pub(crate) fn is_crossed<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     ray: &Ray<N, D>,

@@ -161,8 +161,8 @@ fn turning<N: Space<D>, const D: usize>(
     is_face_normal(pair.first, part1, &outward1).then_some(false)
 }
 
-/// Whether the normal is a face normal of the surface at the part, up to rounding. A line in 3D has
-/// no face.
+/// Returns whether the normal is a face normal of the surface at the part, up to rounding. A line
+/// in 3D has no face.
 fn is_face_normal<N: Space<D>, const D: usize>(
     kind: Kind<'_, N, D>,
     part: u32,

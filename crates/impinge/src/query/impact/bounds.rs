@@ -135,7 +135,7 @@ impl<N: Real> Rate<N> {
         product(max(self.speed, N::ZERO), time) + product(product(self.bend, time), time)
     }
 
-    /// Returns the time in which a gap is used up; infinite if it never is.
+    /// Returns the time in which the motion uses up a gap; infinite if it never does.
     pub(super) fn time_for(&self, gap: N) -> N {
         if !(self.speed <= N::INFINITY && self.bend <= N::INFINITY) {
             return N::ZERO;
@@ -145,7 +145,7 @@ impl<N: Real> Rate<N> {
         let gained_speed = N::TWO * self.bend.sqrt() * gap.sqrt();
         let root = length(&Vector::<N, 2>::new(self.speed, gained_speed));
         if self.speed > N::ZERO {
-            // The usual formula would cancel digits.
+            // The usual formula would suffer from cancellation.
             N::TWO * gap / (self.speed + root)
         } else if self.bend > N::ZERO {
             (root - self.speed) / (N::TWO * self.bend)
@@ -225,7 +225,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     ///
     /// A point at `u` from the other body's centre has the velocity `u' - S u` in the frame of that
     /// body, which rotates with the generator `S`. The velocity is a linear function of the
-    /// position. Its derivative, `u'' - 2 S u' + S² u`, bends the path.
+    /// position. Its derivative, `u'' - 2 S u' + S² u`, curves the path.
     pub(super) fn sweep(&self, which: usize, rate: &Rate<N>, span: N) -> PartSweep<N, D> {
         let travel = rate.travel(span);
         let [body, other] = [which, 1 - which].mapped(|index| self.bodies[index]);
@@ -256,16 +256,15 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         PartSweep::anywhere(travel)
     }
 
-    /// Whether the parts of the bodies can be advanced separately: at least one body is a
+    /// Returns whether the parts of the bodies can be advanced separately: at least one body is a
     /// composite, and both have constant velocities.
     pub(super) fn has_parts_on_known_paths(&self) -> bool {
         let is_known = self.bodies.iter().all(|body| body.constant().is_some());
         is_known && self.bodies.iter().any(|body| body.shape.as_composite().is_some())
     }
 
-    /// Returns a time span over which the bound `safe` covers the whole span, of any order of
-    /// magnitude; zero if there is none. Used where the bound over all the remaining time is
-    /// infinite.
+    /// Returns a time span, of any order of magnitude, that the bound `safe` covers completely;
+    /// zero if there is none. Used if the bound over all the remaining time is infinite.
     fn first_span(&self, remaining: N, safe: &dyn Fn(N) -> N) -> N {
         let (mut low, mut high) = (N::MIN_POSITIVE, min(remaining, N::MAX));
         // The exponents of floating-point numbers span at most 2^11 values.
@@ -343,7 +342,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     /// fixed.
     ///
     /// The speed of approach grows with the other body's distance from the centre of rotation. That
-    /// distance may grow on the way, and the normal may rotate towards the other body's motion.
+    /// distance may grow during the motion, and the normal may rotate towards the other body's
+    /// motion.
     fn about_unbounded(&self, index: usize, to: N) -> Rate<N> {
         let other = self.bodies[1 - index];
         let turn = self.swing(index, N::ONE, to);
@@ -354,8 +354,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     }
 
     /// Returns an upper bound of the speed at which the centres approach along `direction`, a unit
-    /// vector from the first to the second; in any direction if `None`. Speeds within rounding
-    /// error are treated as zero.
+    /// vector from the first to the second; if `None`, the bound is for any direction. Speeds
+    /// within rounding error are treated as zero.
     fn drift(&self, direction: Option<&Vector<N, D>>, to: N) -> N {
         if let [Some(motion1), Some(motion2)] = self.bodies.mapped(MovingBody::constant) {
             let relative = motion1.linear - motion2.linear;
@@ -455,7 +455,7 @@ fn arm_of_box<N: Space<D>, const D: usize>(
     })
 }
 
-/// Returns the product, where zero times infinity is zero.
+/// Returns the product of two numbers, where zero times infinity is zero.
 fn product<N: Real>(a: N, b: N) -> N {
     if a == N::ZERO || b == N::ZERO { N::ZERO } else { a * b }
 }

@@ -76,7 +76,7 @@ impl<N: Real, const D: usize> Path<N, D> {
         N::lit(8.0) * N::EPSILON * max_component(&self.velocity)
     }
 
-    /// Whether a contact at the start is an impact.
+    /// Returns whether a contact at the start is an impact.
     pub(crate) fn counts_at_start(&self, normal: &Vector<N, D>, gap: N, tolerance: N) -> bool {
         self.contact_at_start
             || is_hit_at_start(gap, self.closing(normal), tolerance, self.rounding_error())
@@ -103,9 +103,9 @@ impl<N: Space<D>, const D: usize> Arrival<N, D> {
     }
 }
 
-/// Whether a contact at the start is an impact without
-/// [`ImpactOptions::contact_at_start`](super::ImpactOptions): a contact that gets deeper is, and so
-/// is an overlap that does not separate. Any other contact is not. An unbounded overlap always is.
+/// Returns whether a contact at the start is an impact without
+/// [`ImpactOptions::contact_at_start`](super::ImpactOptions). The impacts are contacts that get
+/// deeper, overlaps that do not separate, and unbounded overlaps.
 ///
 /// A gap within `tolerance` and a closing speed within `rounding_error` are treated as zero.
 pub(super) fn is_hit_at_start<N: Real>(
@@ -120,7 +120,7 @@ pub(super) fn is_hit_at_start<N: Real>(
 
 /// The start of the path of two solids.
 pub(crate) enum Beginning<N: Real, const D: usize> {
-    /// The solids are in contact at the start; `counts` is whether the contact is an impact.
+    /// The solids are in contact at the start; `counts` is true if the contact is an impact.
     InContact { arrival: Arrival<N, D>, counts: bool },
     /// The solids are apart at the start; `None` if there is no impact.
     Apart(Option<Arrival<N, D>>),
@@ -172,7 +172,8 @@ pub(crate) fn begin<N: Space<D>, const D: usize>(
     Beginning::Apart(by_steps(start, path, from, found, tolerance))
 }
 
-/// Conservative advancement from the configuration at time `along`.
+/// Runs conservative advancement from the configuration at time `along`, in which the separation is
+/// `found`.
 fn by_steps<N: Space<D>, const D: usize>(
     start: &Pair<'_, N, D>,
     path: &Path<N, D>,
@@ -227,7 +228,8 @@ fn arrival_of_balls<N: Space<D>, const D: usize>(
     let across = middle + velocity * foot;
     let leg = ((contact_distance * contact_distance - across.norm_squared()) / squared).sqrt();
     let along = (foot - leg) * scale;
-    // False for NaN, so that balls that pass each other are also left to the iteration.
+    // The comparison is false for NaN, so that balls that pass each other are also left to the
+    // iteration.
     let is_in_time = along > N::ZERO && along <= path.end;
     if !is_in_time {
         return None;
@@ -243,8 +245,8 @@ fn arrival_of_balls<N: Space<D>, const D: usize>(
 /// Planes across that normal still separate the solids by the target distance. So the target is
 /// their distance if the nearest point of one solid, on its plane, has that distance from the other
 /// solid. The normal is unchanged if the other solid has the same normal towards that point. For
-/// curved solids the normal has rotated on the way, by about the square root of the error that the
-/// step removed. The plane of a half-space needs no proof.
+/// curved solids the normal has rotated during the step, by about the square root of the error that
+/// the step removed. The plane of a half-space needs no proof.
 fn touching<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     before: &Separation<N, D>,
@@ -262,8 +264,8 @@ fn touching<N: Space<D>, const D: usize>(
         let point1 = point2 - normal * target;
         return Some(Separation { distance: target, normal, point1, point2 });
     }
-    // For balls a full separation costs no more, and the nearest points of support maps rarely
-    // stay.
+    // For balls a full separation costs no more than the proof. For support maps the nearest points
+    // rarely stay the same.
     if let Kind::Ball(_) | Kind::SupportMap(_) = first {
         return None;
     }
@@ -302,8 +304,8 @@ mod tests {
     use crate::collide::separation::hulls::tests::Random;
     use crate::shape::{Ball, Shape};
 
-    /// Checks, for balls that fly past each other at all distances, that the equation finds an
-    /// impact exactly when the iteration does.
+    /// Checks, for balls that pass each other at all distances, that an impact from the equation
+    /// agrees with the iteration, and that the equation finds nearly all impacts.
     fn fly<N: Space<3>>(size: f64) {
         let random = &mut Random(3);
         let (mut met, mut count) = (0, 0);

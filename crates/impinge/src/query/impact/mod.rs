@@ -108,7 +108,7 @@ pub struct ImpactOptions<N: Real> {
     ///
     /// With `None` (the default) the search continues up to rounding. If 256 more steps do not
     /// suffice for that, as for surfaces that slide on each other, it accepts a millionth of the
-    /// sizes and the distance: 2⁻²⁰, in `f32` 2⁻¹⁷. Straight paths always go up to rounding.
+    /// sizes and the distance: 2⁻²⁰, in `f32` 2⁻¹⁷. Straight paths ignore this option.
     pub tolerance: Option<N>,
     /// Whether solids that touch or overlap at time zero are an impact at time zero, whatever their
     /// velocities. False by default: solids that separate or just slide are not.
@@ -193,7 +193,7 @@ pub enum ImpactStatus {
 }
 
 impl ImpactStatus {
-    /// Whether the solids touched or overlapped at time zero, or were within the target distance.
+    /// Returns whether the solids overlapped or were within the target distance at time zero.
     #[must_use]
     pub const fn is_at_start(self) -> bool {
         matches!(self, Self::TouchingAtStart | Self::PenetratingAtStart)
@@ -335,8 +335,8 @@ pub fn impact<N: Space<D>, const D: usize>(
     entries::impact(moving1, moving2, options)
 }
 
-/// Returns the first time, zero or more, at which two solids touch that move with constant
-/// velocities and do not rotate; `None` if they never touch.
+/// Returns the first time, zero or more, at which two solids with constant velocities and without
+/// rotation touch; `None` if they never touch.
 ///
 /// The result is the time of [`impact`] with default options; see [`impact`] for starts in contact,
 /// the accuracy and the cost.
@@ -472,7 +472,7 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
     }
 }
 
-/// Whether bounding balls prove that the solids stay farther apart than the target distance.
+/// Returns whether bounding balls prove that the solids stay beyond the target distance.
 fn are_parted<N: Real, const D: usize>(
     moving1: &Moving<'_, N, D>,
     moving2: &Moving<'_, N, D>,
@@ -488,7 +488,7 @@ fn are_parted<N: Real, const D: usize>(
     apart.stays_beyond(options.target_distance, &velocity, options.max_time)
 }
 
-/// Whether the first of two otherwise equal solids comes second in canonical order, by the
+/// Returns whether the first of two otherwise equal solids comes second in canonical order, by the
 /// components of its velocity.
 fn is_later<N: Real, const D: usize>(
     moving1: &Moving<'_, N, D>,

@@ -64,8 +64,8 @@ pub trait RigidMotion<N: Space<D>, const D: usize> {
     }
 
     /// Returns [`Self::position_at`] as a pose in the world frame translated so that `origin` is
-    /// its origin. An override can keep digits far from the world's origin: the algorithms use only
-    /// differences of positions.
+    /// its origin. An override can avoid rounding errors far from the world's origin: the
+    /// algorithms use only differences of positions.
     fn pose_about(&self, origin: &Vector<N, D>, time: N) -> Pose<N, D> {
         let pose = N::pose(&self.position_at(time));
         Pose { rotation: pose.rotation, translation: pose.translation - origin }

@@ -136,9 +136,9 @@ pub(crate) fn impact_of_flight<N: Space<D>, const D: usize>(
     Some(if swapped { found.flipped() } else { found })
 }
 
-/// Whether the second of two bodies that are equal at time zero comes first in canonical order.
-/// They are compared by their positions at the latest time or, if these are equal too, at one of
-/// the times 1, 2¹⁶, 2³², ….
+/// Returns whether the second of two bodies that are equal at time zero comes first in canonical
+/// order. They are compared by their positions at the latest time or, if these are equal too, at
+/// one of the times 1, 2¹⁶, 2³², ….
 fn two_leads<N: Space<D>, const D: usize>(
     one: &MovingBody<'_, N, D>,
     two: &MovingBody<'_, N, D>,
@@ -146,7 +146,7 @@ fn two_leads<N: Space<D>, const D: usize>(
 ) -> bool {
     let world = Vector::<N, D>::zeros();
     let later = |time| [one, two].mapped(|body| body.placed(&world, time));
-    // At most 64 times, the largest of them finite.
+    // At most 64 times, all of them finite.
     let times = iter::successors(Some(N::ONE), |time| Some(*time * N::lit(65536.0)));
     let times = times.take_while(|time| time.is_finite_number());
     let longest = Some(options.max_time).filter(|time| time.is_finite_number());
@@ -165,7 +165,8 @@ impl<'a, N: Space<D>, const D: usize> MovingBody<'a, N, D> {
 /// The search for an impact of two bodies in canonical order.
 struct ImpactSearch<'a, N: Space<D>, const D: usize> {
     bodies: [MovingBody<'a, N, D>; 2],
-    /// The world point to which all positions are relative: near the bodies, to keep digits.
+    /// The world point to which all positions are relative. It is near the bodies, to limit
+    /// rounding errors.
     origin: Vector<N, D>,
     end: N,
     target: N,
@@ -212,7 +213,7 @@ enum Mode<N> {
 }
 
 impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
-    /// Steps to the first impact; `None` if there is none up to `end`.
+    /// Advances to the first impact; `None` if there is none up to `end`.
     fn run(&self) -> Option<Impact<N, D>> {
         let mut configuration = self.look(N::ZERO, None)?;
         let starts = self.end >= N::ZERO;
@@ -242,8 +243,8 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
             }
             let later = time + step.time;
             if later <= time {
-                // An unbounded speed gives a step of zero. Any other step that does not advance the
-                // time is below the resolution of the time.
+                // A step of zero comes from an unbounded speed. Any other step that does not
+                // advance the time is below the resolution of the time.
                 let is_small = step.time > N::ZERO;
                 let status =
                     if is_small { ImpactStatus::Reached } else { ImpactStatus::StepsSpent };
@@ -310,8 +311,8 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
     }
 
     /// Returns the configuration of the bodies at a time; `None` if a pose is not finite, and for
-    /// composites without parts. The parts that were nearest in `before` are tested first, to bound
-    /// the search.
+    /// composites without parts. The nearest parts of the configuration `before` are tested first,
+    /// to bound the search.
     fn look(
         &self,
         time: N,
@@ -335,7 +336,8 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
         })
     }
 
-    /// Whether a contact at the start is an impact, by the rule of [`impact`](super::impact).
+    /// Returns whether a contact at the start is an impact, by the rule of
+    /// [`impact`](super::impact).
     fn counts_at_start(&self, configuration: &Configuration<'_, '_, N, D>) -> bool {
         let (closing, rounding_error) =
             configuration.poses.moment.closing(&configuration.points, configuration.size);
@@ -384,7 +386,7 @@ impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
         max(N::lit(NEAR[0]), N::lit(NEAR[1]) * N::EPSILON) * self.size
     }
 
-    /// Whether the bodies have been apart and their gap is within [`Self::near`].
+    /// Returns whether the bodies have been apart and their gap is within [`Self::near`].
     fn is_near(&self, mode: Mode<N>) -> bool {
         matches!(mode, Mode::Apart) && self.gap <= self.near()
     }
@@ -398,8 +400,8 @@ impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
         }
     }
 
-    /// Whether the bodies have an impact: the gap, or in `Contact` the excess, is used up within
-    /// its tolerance.
+    /// Returns whether the bodies have an impact: the gap, or in `Contact` the excess, is used up
+    /// within its tolerance.
     fn is_hit(&self, mode: Mode<N>) -> bool {
         match mode {
             Mode::Apart => self.gap <= self.tolerance,
@@ -408,8 +410,8 @@ impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
     }
 }
 
-/// The search for the largest step in which no two parts use up the excess. Each two parts are
-/// advanced separately, until they use it up or the step has ended earlier.
+/// The search for the largest step in which no two parts use up the excess. Each pair of parts is
+/// advanced separately, until it uses up the excess or reaches the end of the step found so far.
 struct PartSteps<'s, 'b, 'a, N: Space<D>, const D: usize> {
     search: &'s ImpactSearch<'a, N, D>,
     configuration: &'s Configuration<'b, 'a, N, D>,

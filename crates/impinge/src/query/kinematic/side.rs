@@ -16,7 +16,7 @@ pub(super) struct KinematicSide<N: Real, const D: usize> {
     support: SideSupport<N, D>,
 }
 
-/// The supporting feature of a solid towards the other one.
+/// The supporting feature of a solid towards the other solid of the pair.
 enum SideSupport<N: Real, const D: usize> {
     /// The plane of a half-space, by its outward normal.
     Boundary(Vector<N, D>),
@@ -81,7 +81,7 @@ impl<N: Real, const D: usize> KinematicSide<N, D> {
             (SideSupport::Feature(feature), FeatureId::Face(_)) => {
                 NeighborhoodGeometry::Plane(feature.normal.unwrap_or(self.outward))
             }
-            // The ends of a lying cylinder's contact are on the rims.
+            // The contact points at the ends of a lying cylinder are on the rims.
             (
                 SideSupport::Center
                 | SideSupport::Axis
@@ -130,7 +130,7 @@ fn perpendicular_edge<N: Real, const D: usize>(
     flattest.filter(|side| is_perpendicular(side, outward))
 }
 
-/// Whether two unit vectors are perpendicular up to rounding.
+/// Returns whether two unit vectors are perpendicular up to rounding.
 fn is_perpendicular<N: Real, const D: usize>(side: &Vector<N, D>, outward: &Vector<N, D>) -> bool {
     side.dot(outward).abs() <= super::least_angle()
 }
@@ -142,7 +142,7 @@ fn along<N: Real, const D: usize>(feature: &Feature<N, D>, index: usize) -> Opti
     unit(&(feature.vertices[next] - feature.vertices[index])).map(|(along, _)| along)
 }
 
-/// Whether the contact is on the round side of the cylinder, and the radius is positive.
+/// Returns whether the contact is on the round side of the cylinder and the radius is positive.
 fn is_lying<N: Real, const D: usize>(cylinder: &Cylinder<N>, outward: &Vector<N, D>) -> bool {
     outward[1].abs() <= N::lit(LYING_SINE) && cylinder.radius() > N::ZERO
 }

@@ -209,7 +209,7 @@ fn capsules_segments_and_cylinders() {
     let below = Pose::relative(&lying, &at(0.2, 0.0, 0.2, [0.0; 3]));
     follow([&capsule, &floor], below, |a, b| matches!((a, b), (Vertex(_), Face(_))));
     let cylinder = Cylinder::new(0.3_f64, 0.25);
-    // The rim is round, so the position on it is of first order only.
+    // The rim is round, so the position on it has an error of first order.
     let (solids, pose12) = ([&floor as &dyn Shape<f64, 3>, &cylinder], below.inverse());
     let followed = first_features(solids, pose12, |a, _| matches!(a, Face(_)));
     assert!(matches!(followed[1], Edge(_)), "a rim: {followed:?}");

@@ -1,4 +1,5 @@
-//! Mass of the areas and volumes that closed meshes and lines enclose, and of filled meshes in 2D.
+//! Mass of the areas and volumes that closed polylines and meshes enclose, and of filled meshes in
+//! 2D.
 
 use super::integrals::{Integrals, LocalUnits};
 use super::outline::crossed;
@@ -30,8 +31,8 @@ impl<const D: usize> Cones<D> {
         self.total += (self.sum.mass - before).abs();
     }
 
-    /// Returns the moments of the body, whatever the orientation of its surface; no mass if the sum
-    /// is treated as zero.
+    /// Returns the moments of the body, for either orientation of its surface. The body has no mass
+    /// if the sum is treated as zero.
     fn moments(&self) -> Moments<D> {
         if self.sum.mass.abs() <= NONE * self.total {
             return Integrals::none().moments();
@@ -85,15 +86,15 @@ pub(super) fn enclosed3<N: Real>(shape: &dyn Shape<N, 3>) -> Result<Moments<3>, 
     Ok(units.grown(&cones.moments()))
 }
 
-/// Returns the units for a shape with these bounds.
+/// Returns the local units for a shape with these bounds.
 fn units<N: Real, const D: usize>(bounds: Option<&Aabb<N, D>>) -> LocalUnits<D> {
     let origin = Point::<N, D>::origin();
     let [low, high] = bounds.map_or([&origin; 2], |bounds| [bounds.mins(), bounds.maxs()]);
     LocalUnits::around([low, high], N::ZERO)
 }
 
-/// Returns the first triangle with a side that has no neighbour, several neighbours, or one that
-/// traverses it in the same direction; 0 if there is none.
+/// Returns the first triangle with a side that has no neighbour, several neighbours, or a neighbour
+/// that traverses the side in the same direction; 0 if there is none.
 fn opening<N: Real>(mesh: &TriMesh<N, 3>) -> u32 {
     let is_open = |triangle: u32| {
         let corners = *mesh.triangle(triangle).corners();

@@ -6,8 +6,8 @@ use crate::shape::Moments;
 /// The frame in which a shape is integrated: in doubles, about the shape's centre, in units of
 /// about its size.
 ///
-/// So a large distance from the origin costs no digits, and no power of a length overflows or
-/// underflows. The unit is a power of two: scaling the shape by a power of two scales the result
+/// So the distance from the origin does not affect the accuracy, and no power of a length overflows
+/// or underflows. The unit is a power of two: scaling the shape by a power of two scales the result
 /// exactly.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LocalUnits<const D: usize> {
@@ -109,8 +109,8 @@ impl<const D: usize> Integrals<D> {
         Self { mass: -self.mass, first: -self.first, second: -self.second }
     }
 
-    /// Returns the moments of the body, in the units; without mass at the origin if the mass is not
-    /// positive.
+    /// Returns the moments of the body, in the units. If the mass is not positive, the result is a
+    /// body without mass at the origin.
     pub(super) fn moments(&self) -> Moments<D> {
         let is_body = self.mass > 0.0;
         if !is_body {

@@ -45,12 +45,12 @@ use crate::shape::{
 ///
 /// # Accuracy
 ///
-/// Closed forms are accurate to the last digits of the scalar, in `f32` usually to the nearest
-/// number. Distances from the origin cost no digits. Quadrature is used for rounded ellipsoids and
-/// ellipses, accurate to about 1e-8, and for a user's convex shape, accurate to about 1e-8 in 2D
-/// and 1e-4 in 3D. A rounded flat tetrahedron is also accurate to about 1e-4. A closed mesh whose
-/// surfaces are close together loses digits in proportion to its size over their gap. Scaling a
-/// shape by a power of two scales the result exactly.
+/// Closed forms are accurate to the rounding of the scalar; in `f32` the result is usually the
+/// nearest number. The distance from the origin does not affect the accuracy. Quadrature is used
+/// for rounded ellipsoids and ellipses, accurate to about 1e-8, and for a user's convex shape,
+/// accurate to about 1e-8 in 2D and 1e-4 in 3D. A rounded flat tetrahedron is also accurate to
+/// about 1e-4. For a closed mesh whose surfaces are close together, the relative error grows with
+/// the ratio of its size to their gap. Scaling a shape by a power of two scales the result exactly.
 ///
 /// # Errors
 /// If the density is negative or not finite; if the shape, or a part of a compound, is a half-space
@@ -231,7 +231,7 @@ impl<N: Real> Weighing<'_, N> {
     }
 }
 
-/// Adds a body at a pose to the sum.
+/// Adds a body placed at `pose` to the sum `all`; `None` is an empty sum.
 fn add_placed<N: Real, const D: usize>(
     all: &mut Option<Moments<D>>,
     pose: &Pose<N, D>,

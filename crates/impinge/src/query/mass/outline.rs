@@ -35,7 +35,7 @@ pub(super) fn round_polygon<N: Real>(polygon: &Polytope<N, 2>, radius: N) -> Mom
 }
 
 /// Returns the moments of the set of points within `radius` of a triangle, which may be clockwise
-/// or without area.
+/// or have no area.
 pub(super) fn round_triangle<N: Real>(corners: &[Point<N, 2>; 3], radius: N) -> Moments<2> {
     round_points(corners, radius)
 }

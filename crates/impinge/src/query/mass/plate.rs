@@ -15,13 +15,14 @@ pub(super) struct Plate {
     pub(super) center: V3,
     /// The matrix of second moments about the centre.
     second: M3,
-    /// The unit normal on the side from which the corners run counter-clockwise; `None` without
-    /// area.
+    /// The unit normal on the side from which the corners run counter-clockwise; `None` for a
+    /// polygon without area.
     pub(super) normal: Option<V3>,
 }
 
 impl Plate {
-    /// Returns the integrals over the polygon with the given corners; empty if there are none.
+    /// Returns the integrals over the polygon with the given corners; an empty plate if there are
+    /// no corners.
     pub(super) fn new(corners: &[V3]) -> Self {
         let start = corners.first().copied().unwrap_or_else(V3::zeros);
         let (mut area_vector, mut first, mut second) = (V3::zeros(), V3::zeros(), M3::zeros());
@@ -43,7 +44,7 @@ impl Plate {
         Self { area, center: start + center, second, normal: Some(area_vector / area) }
     }
 
-    /// Adds the prism on the front of the plate, or a share of it.
+    /// Adds a prism with the plate as its base, or a share of the prism.
     ///
     /// The prism has the height `height`. `share` is the fraction of its mass that is added, with
     /// the centre at the height `altitude` above the plate.
@@ -151,8 +152,8 @@ fn add_lune(corner: &V3, [axis, from]: [&V3; 2], angle: f64, radius: f64, sum: &
     let middle = from * cosine + axis.cross(from) * sine;
     let across = axis.cross(&middle);
     let whole = libm::sin(angle);
-    // Integrals over the directions u: ∫ u = π sin(angle / 2) along the middle, and ∫ u uᵀ in its
-    // three axes.
+    // The integrals over the directions u of the lune: ∫ u = π sin(angle / 2) along the middle, and
+    // ∫ u uᵀ in the axes `middle`, `across` and `axis`.
     let second = middle * middle.transpose() * ((angle + whole) * (2.0 / 3.0))
         + across * across.transpose() * ((angle - whole) * (2.0 / 3.0))
         + axis * axis.transpose() * (angle * (2.0 / 3.0));

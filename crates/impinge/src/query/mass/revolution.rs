@@ -2,8 +2,7 @@
 //!
 //! A slice at z is a ball of D − 1 dimensions with the radius of the profile: a disk in 3D, a
 //! segment in 2D. The profile consists of lines and arcs. Their integrals are polynomials and
-//! trigonometric functions; Gauss-Legendre quadrature with 16 nodes integrates both to the last
-//! digits.
+//! trigonometric functions; Gauss-Legendre quadrature with 16 nodes integrates both up to rounding.
 
 use super::integrals::LocalUnits;
 use super::solids::{UNIT_BALL, round_box};
@@ -67,7 +66,8 @@ impl<const D: usize> Slices<D> {
         });
     }
 
-    /// Returns the moments of the body about the line along `axis` through the origin.
+    /// Returns the moments of the body about the line along `axis`, a unit vector, through the
+    /// origin.
     fn moments(&self, axis: &Vector<f64, D>) -> Moments<D> {
         if self.mass <= 0.0 {
             return Moments::massless(Vector::<f64, D>::zeros());
@@ -89,7 +89,8 @@ fn rotation_to<const D: usize>(axis: &Vector<f64, D>) -> Matrix<f64, D> {
     Matrix::<f64, D>::identity() - mirrored + axis * y.transpose() * 2.0
 }
 
-/// Returns the moments of the convex hull of two balls; a capsule if their radii are equal.
+/// Returns the moments of the convex hull of two balls, which is a capsule if their radii are
+/// equal.
 pub(super) fn two_balls<N: Real, const D: usize>(
     ends: [&Point<N, D>; 2],
     radii: [N; 2],

@@ -72,7 +72,7 @@ pub(super) fn simplex<N: Real, const D: usize, const CORNERS: usize>(
     let count = CORNERS as f64;
     let center = corners.iter().sum::<Vector<f64, D>>() / count;
     let measure = measure_of(&corners);
-    // A point has no scale. False for NaN, which then has no mass.
+    // False for a point, which has no scale, and for NaN: the body then has no mass.
     let has_measure = measure > 0.0;
     if !has_measure {
         return units.grown(&Moments::massless(Vector::<f64, D>::zeros()));

@@ -13,8 +13,8 @@ const DEPTH: u32 = 9;
 /// An arc whose height is at most this many epsilon of the solid's size is treated as a segment.
 const FLAT: f64 = 64.0;
 
-/// Returns the moments of a convex solid from its support points, accurate to about 1e-9; polygons
-/// are exact.
+/// Returns the moments of a convex solid from its support points, accurate to about 1e-9; for
+/// polygons up to rounding.
 ///
 /// # Errors
 /// If a support point is not finite.
@@ -47,8 +47,8 @@ pub(super) struct Tracing<'s> {
 }
 
 impl<'s> Tracing<'s> {
-    /// `support` returns a support point for a unit vector; an arc with a height of at most `flat`
-    /// is treated as a segment.
+    /// Returns an empty tracing. `support` returns a support point for a unit vector; an arc with a
+    /// height of at most `flat` is treated as a segment.
     pub(super) fn new(support: &'s dyn Fn(&V2) -> V2, flat: f64) -> Self {
         Self { support, flat, sum: Integrals::none() }
     }

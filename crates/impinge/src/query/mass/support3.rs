@@ -28,22 +28,21 @@ const THIN_EPSILON: f64 = 64.0;
 /// The maximum number of times that a group of slices is halved.
 const HALVINGS: u32 = 6;
 
-/// A group is not halved further if the sum of its halves differs by less than this; mass and
-/// moments are about 1.
+/// A group is not halved further if the sum of its halves differs from it by less than this. In the
+/// round frame mass and moments are about 1.
 const ENOUGH: f64 = 1e-5;
 
-/// Each quarter of a slice's outline has at most two to this power of arcs.
+/// The maximum number of times that each quarter of a slice's outline is halved.
 const DEPTH: u32 = 3;
 
-/// The height over its chord up to which an arc is flat; points of the solid are about 1 from its
-/// centre.
+/// The height over its chord up to which an arc is flat, in the round frame: points of the solid
+/// are about 1 from its centre.
 const FLAT: f64 = 1e-5;
 
 /// The maximum number of steps that narrow an interval of the outline; ten are usual.
 const MAX_STEPS: usize = 40;
 
-/// A solid scaled to the proportions of a ball is treated as without volume if its volume is at
-/// most this.
+/// The volume in the round frame up to which a solid is treated as having no volume.
 const NOTHING: f64 = 1e-6;
 
 /// Returns the moments of a convex solid from its support points, accurate to about 1e-4.
@@ -192,9 +191,9 @@ impl<N: Real> Sliced<'_, N> {
         }
     }
 
-    /// Sums slices at Gauss-Legendre nodes between two angles. The angle of a slice is that of a
-    /// ball's slice, so that the area of a slice is a smooth function of the angle even at the ends
-    /// of a solid that is round there.
+    /// Sums slices at Gauss-Legendre nodes between two angles. Slices are indexed by the angle that
+    /// a slice of a ball would have. The area of a slice is then a smooth function of the angle,
+    /// even at the ends of a solid that is round there.
     fn group(&self, ends: [V3; 2], [from, to]: [f64; 2]) -> Integrals<3> {
         let (center, half) = ((ends[0].z + ends[1].z) * 0.5, (ends[1].z - ends[0].z) * 0.5);
         let (middle, step, mut sum) = ((from + to) * 0.5, (to - from) * 0.5, Integrals::none());

@@ -7,8 +7,8 @@ use super::segment::nearest;
 use crate::math::{Point, Real};
 use crate::shape::{Cone, FeatureId};
 
-/// In the half-plane, the base and the slanted side are two segments; returns the nearest point of
-/// both.
+/// Returns the nearest point of the base and the slanted side, which are two segments in the
+/// half-plane.
 pub(super) fn surface_point<N: Real>(cone: &Cone<N>, point: &Point<N, 3>) -> SurfacePoint<N, 3> {
     let (radius, half_height) = (cone.radius(), cone.half_height());
     let meridian = Meridian::of(point);
@@ -33,7 +33,7 @@ pub(super) fn surface_point<N: Real>(cone: &Cone<N>, point: &Point<N, 3>) -> Sur
     }
 }
 
-/// Whether the cone contains a point; `flat` is (distance from the axis, height).
+/// Returns whether the cone contains a point; `flat` is (distance from the axis, height).
 fn contains<N: Real>(cone: &Cone<N>, flat: &Point<N, 2>) -> bool {
     let (radius, half_height) = (cone.radius(), cone.half_height());
     flat.y.abs() <= half_height

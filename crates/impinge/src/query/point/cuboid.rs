@@ -4,7 +4,8 @@ use super::SurfacePoint;
 use crate::math::{Point, Real, max, min};
 use crate::shape::FeatureId;
 
-/// For a point outside, every coordinate is clamped; for a point inside, the nearest face is used.
+/// Returns the nearest point of the surface. A point outside is clamped in every coordinate; a
+/// point inside is projected onto the nearest face.
 ///
 /// Corners may be at infinity.
 pub(super) fn surface_point<N: Real, const D: usize>(
@@ -23,8 +24,8 @@ pub(super) fn surface_point<N: Real, const D: usize>(
     SurfacePoint::on(nearest, feature_beyond(corners, point))
 }
 
-/// Returns the nearest point on the nearest face; of several such faces on the one with the lowest
-/// index.
+/// Returns the nearest point on the nearest face. If several faces are equally near, the face with
+/// the lowest index wins.
 fn on_nearest_face<N: Real, const D: usize>(
     corners: [&Point<N, D>; 2],
     point: &Point<N, D>,

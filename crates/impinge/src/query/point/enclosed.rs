@@ -13,12 +13,12 @@ use crate::shape::{CompositeShape, Polyline, TriMesh};
 use crate::tables::entries;
 
 impl<N: Real> TriMesh<N, 3> {
-    /// Whether the point, in the frame of the mesh, lies in the volume that the mesh bounds, or on
-    /// the mesh; `None` if the mesh [does not bound a volume](Self::is_volume).
+    /// Returns whether the point, in the frame of the mesh, lies in the volume that the mesh
+    /// bounds, or on the mesh; `None` if the mesh [does not bound a volume](Self::is_volume).
     ///
-    /// True exactly if [`Self::signed_distance`], which defines the inside, is zero or negative. A
-    /// point that is not finite is never inside. The cost is O(log n) plus the triangles over the
-    /// point along one axis.
+    /// True if and only if [`Self::signed_distance`], which defines the inside, is zero or
+    /// negative. A point that is not finite is never inside. The cost is O(log n) plus the
+    /// triangles over the point along one axis.
     #[must_use]
     pub fn encloses(&self, point: &Point<N, 3>) -> Option<bool> {
         self.is_volume().then(|| {
@@ -40,7 +40,7 @@ impl<N: Real> TriMesh<N, 3> {
     ///
     /// All other queries, also those of [`PointQuery`](crate::query::PointQuery), treat the mesh as
     /// a surface, unless it is [solid](Self::solid). A point that is not finite is infinitely far
-    /// away. The cost is a search for the nearest triangle, and one for the triangles over the
+    /// away. The cost is a search for the nearest triangle, and a search for the triangles over the
     /// point along one axis.
     ///
     /// ```
@@ -83,12 +83,12 @@ impl<N: Real> TriMesh<N, 3> {
 }
 
 impl<N: Real> Polyline<N, 2> {
-    /// Whether the point, in the frame of the line, lies in the area that the line bounds, or on
-    /// the line; `None` if the line [does not bound an area](Self::is_outline).
+    /// Returns whether the point, in the frame of the line, lies in the area that the line bounds,
+    /// or on the line; `None` if the line [does not bound an area](Self::is_outline).
     ///
-    /// True exactly if [`Self::signed_distance`], which defines the inside, is zero or negative. A
-    /// point that is not finite is never inside. The cost is O(log n) plus the segments beside the
-    /// point along one axis.
+    /// True if and only if [`Self::signed_distance`], which defines the inside, is zero or
+    /// negative. A point that is not finite is never inside. The cost is O(log n) plus the segments
+    /// beside the point along one axis.
     #[must_use]
     pub fn encloses(&self, point: &Point<N, 2>) -> Option<bool> {
         self.is_outline().then(|| {
@@ -158,7 +158,7 @@ fn signed<N: Space<D>, const D: usize>(
     let Some(nearest) = entries::nearest_part(parts, point, false) else {
         return N::INFINITY;
     };
-    // The parts are thin, but the distance is negative inside a body.
+    // The parts have no thickness, but the distance from a part is negative inside a body.
     let distance = nearest.distance.abs();
     match winding() {
         Some(0) => distance,
@@ -186,8 +186,9 @@ fn winding<N: Space<D>, const D: usize>(
     sum
 }
 
-/// Returns the shortest way out of a box along an axis: its direction, and a box without width
-/// along it. `None` for a point outside the box, and for a point that is not finite.
+/// Returns the axis-parallel ray from the point to the nearest face of the box: its direction, and
+/// a box without width that covers it. `None` for a point outside the box, and for a point that is
+/// not finite.
 fn shortest_exit<N: Real, const D: usize>(
     bounds: &Aabb<N, D>,
     point: &Point<N, D>,

@@ -130,13 +130,13 @@ pub trait PointQuery<N: Space<D>, const D: usize> {
     /// Returns the signed distance to the boundary in the local frame: negative inside.
     fn signed_distance_to_local_point(&self, point: &Point<N, D>) -> N;
 
-    /// Whether the point, given in the local frame, lies in the solid or on its boundary.
+    /// Returns whether the point, given in the local frame, lies in the solid or on its boundary.
     fn contains_local_point(&self, point: &Point<N, D>) -> bool {
         self.project_local_point(point).0.is_inside
     }
 
-    /// Returns the nearest point of the solid, or without `solid` of its boundary, placed at `m`,
-    /// in the world frame.
+    /// Returns the nearest point of the solid placed at `m`, in the world frame; without `solid`,
+    /// the nearest point of its boundary.
     ///
     /// With `solid`, a point inside is its own projection, bitwise equal.
     fn project_point<R: AbstractRotation<N, D>>(
@@ -166,7 +166,7 @@ pub trait PointQuery<N: Space<D>, const D: usize> {
         if solid && distance < N::ZERO { N::ZERO } else { distance }
     }
 
-    /// Whether the point lies in the solid placed at `m`, or on its boundary.
+    /// Returns whether the point lies in the solid placed at `m`, or on its boundary.
     fn contains_point<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
@@ -187,8 +187,8 @@ pub trait PointQuery<N: Space<D>, const D: usize> {
         (entries::placed_projection(&local, &pose, point, false), feature)
     }
 
-    /// Returns the nearest point of the solid, or without `solid` of its boundary, placed at `m`,
-    /// in the world frame, and its location on the solid: see
+    /// Returns the nearest point of the solid placed at `m`, in the world frame, and its location
+    /// on the solid; without `solid`, the nearest point of its boundary. See
     /// [`Self::project_local_point_with_location`].
     fn project_point_with_location<R: AbstractRotation<N, D>>(
         &self,
@@ -223,9 +223,9 @@ pub(crate) fn placed<N: Real, const D: usize>(
     PointProjection { point: pose.point(&local.point), ..*local }.of_solid(point, solid)
 }
 
-/// Returns the nearest point of a solid, or without `solid` of its boundary, placed at `pose`, in
-/// the outer frame, and its distance: the magnitude of [`PointQuery::distance_to_point`]. `None`
-/// for a composite without parts.
+/// Returns the nearest point of a solid placed at `pose`, in the outer frame; without `solid`, the
+/// nearest point of its boundary. Also returns its distance, the magnitude of
+/// [`PointQuery::distance_to_point`]. `None` for a composite without parts.
 #[inline]
 pub(crate) fn project<N: Space<D>, const D: usize>(
     shape: Geometry<'_, N, D>,
@@ -245,8 +245,8 @@ pub(crate) fn project<N: Space<D>, const D: usize>(
     Some((placed(&nearest, pose, point, solid), if is_own { N::ZERO } else { distance }))
 }
 
-/// Whether a ball or a box does not contain the point and is farther from it than `farthest` by
-/// more than rounding. False for other shapes. The point is in the local frame.
+/// Returns whether a ball or a box does not contain the point and is farther from it than
+/// `farthest` by more than rounding. False for other shapes. The point is in the local frame.
 #[inline(always)]
 pub(crate) fn is_surely_beyond<N: Real, const D: usize>(
     shape: Geometry<'_, N, D>,

@@ -5,8 +5,8 @@ use super::segment::{feature_at, nearest};
 use crate::math::{Mapped, Point, Real, cross};
 use crate::shape::{FeatureId, Polytope, PolytopeFace};
 
-/// For a point inside, returns its projection onto the plane of the nearest face, which is the
-/// nearest point of the boundary because the solid is convex. `None` for a point outside.
+/// Returns the projection of a point inside onto the plane of the nearest face. This is the nearest
+/// point of the boundary because the solid is convex. `None` for a point outside.
 fn from_inside<N: Real, const D: usize>(
     solid: &Polytope<N, D>,
     point: &Point<N, D>,
@@ -20,7 +20,7 @@ fn from_inside<N: Real, const D: usize>(
     })
 }
 
-/// For a point outside, returns the nearest point of all sides.
+/// Returns the nearest point of the boundary; for a point outside, the nearest point of all sides.
 pub(super) fn surface_point2<N: Real>(
     solid: &Polytope<N, 2>,
     point: &Point<N, 2>,
@@ -37,8 +37,8 @@ pub(super) fn surface_point2<N: Real>(
     best
 }
 
-/// For a point outside, returns its nearest projection onto a face that contains the projection, or
-/// else the nearest point of all edges.
+/// Returns the nearest point of the boundary. For a point outside, this is its nearest projection
+/// onto a face that contains the projection, or else the nearest point of all edges.
 pub(super) fn surface_point3<N: Real>(
     solid: &Polytope<N, 3>,
     point: &Point<N, 3>,
@@ -71,7 +71,7 @@ fn on_line<N: Real, const D: usize>(
     SurfacePoint::on(found, feature_at(fraction, ends, between))
 }
 
-/// Whether the projection of `point` onto the face's plane lies in the face.
+/// Returns whether the projection of `point` onto the face's plane lies in the face.
 fn falls_into<N: Real>(
     solid: &Polytope<N, 3>,
     face: &PolytopeFace<N, 3>,

@@ -7,7 +7,8 @@ use crate::shape::{FeatureId, Segment, SupportMap};
 /// Returns the nearest point of the segment between `ends`, and its parameter: 0 at the first end,
 /// 1 at the second. If the ends coincide, the segment is a point.
 ///
-/// The position is measured from the nearer end, so that long segments lose no digits there.
+/// The position is measured from the nearer end, so that it is accurate near both ends of a long
+/// segment.
 pub(crate) fn nearest<N: Real, const D: usize>(
     ends: [&Point<N, D>; 2],
     point: &Point<N, D>,
@@ -15,7 +16,7 @@ pub(crate) fn nearest<N: Real, const D: usize>(
     let [a, b] = ends;
     let along = b - a;
     let (from_a, to_b) = shares(&along, [&(point - a), &(b - point)]);
-    // False for NaN, for which an end is returned.
+    // The comparison is false for NaN, for which an end is returned.
     if from_a > N::ZERO && to_b > N::ZERO {
         let whole = from_a + to_b;
         return if from_a < to_b {
@@ -36,7 +37,7 @@ fn shares<N: Real, const D: usize>(along: &Vector<N, D>, parts: [&Vector<N, D>; 
     if whole * N::EPSILON > N::MIN_POSITIVE && from_a.abs() + to_b.abs() < N::INFINITY {
         return (from_a, to_b);
     }
-    // The squares would overflow, underflow or lose digits.
+    // The squares would overflow, underflow or lose precision.
     let largest = parts.mapped(max_component);
     let scale = max(largest[0], largest[1]).power_of_two_below();
     let along = along / scale;

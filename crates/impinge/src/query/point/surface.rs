@@ -25,7 +25,7 @@ impl<N: Real, const D: usize> SurfacePoint<N, D> {
         if self.is_beaten_by(&other, query) { other } else { self }
     }
 
-    /// Whether `other` is nearer to `query` than `self`.
+    /// Returns whether `other` is nearer to `query` than `self`.
     pub(super) fn is_beaten_by(&self, other: &Self, query: &Point<N, D>) -> bool {
         let (first, second) = (query - self.point, query - other.point);
         let (square1, square2) = (first.norm_squared(), second.norm_squared());
@@ -37,8 +37,8 @@ impl<N: Real, const D: usize> SurfacePoint<N, D> {
         }
     }
 
-    /// For a set without thickness: if `query` lies on it within rounding, makes `query` its own
-    /// projection.
+    /// Makes `query` its own projection if it lies within rounding on the set, which has no
+    /// thickness.
     ///
     /// `reach` is the largest distance of the set from the local origin. The rounding error of
     /// coordinates is proportional to it and to the coordinates of the query point.
@@ -48,8 +48,8 @@ impl<N: Real, const D: usize> SurfacePoint<N, D> {
         if near { Self { point: *query, ..self } } else { self }
     }
 
-    /// Converts to the public form. A point that is its own projection is inside, whatever
-    /// `is_inside` says, so that distance zero and being inside are equivalent.
+    /// Converts to the public form. A point that is its own projection is inside, whatever the
+    /// value of `is_inside`, so that zero distance and being inside are equivalent.
     pub(crate) fn projection(self, query: &Point<N, D>) -> (PointProjection<N, D>, FeatureId) {
         let finite = query.iter().all(|x| x.is_finite_number());
         let touches = self.is_inside || length(&(query - self.point)) == N::ZERO;

@@ -16,7 +16,7 @@ pub(super) fn surface_point<N: Real>(
     SurfacePoint { is_inside: contains(triangle, point), ..found }
 }
 
-/// Whether the point lies on the same side of all three lines, or on them.
+/// Returns whether the point lies on the same side of all three lines, or on them.
 ///
 /// The areas are computed relative to the point. Swapping the ends of a side negates its area
 /// exactly, so two triangles that share a side leave no gap. For collinear corners, whose areas are

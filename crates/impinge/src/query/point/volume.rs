@@ -7,8 +7,8 @@ use crate::shape::FeatureId;
 
 impl<N: Real, const D: usize> Aabb<N, D> {
     /// Returns the nearest point of the box's boundary, and the feature that contains it, with the
-    /// ids of a cuboid's features. The point is at infinity for a point inside an unbounded box
-    /// without faces.
+    /// ids of a cuboid's features. For a point inside a box without finite faces, the result is at
+    /// infinity.
     pub fn project_point_with_feature(
         &self,
         point: &Point<N, D>,
@@ -16,7 +16,7 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         cuboid::surface_point([self.mins(), self.maxs()], point).projection(point)
     }
 
-    /// Returns the nearest point of the box, or without `solid` of its boundary.
+    /// Returns the nearest point of the box; without `solid`, the nearest point of its boundary.
     pub fn project_point(&self, point: &Point<N, D>, solid: bool) -> PointProjection<N, D> {
         self.project_point_with_feature(point).0.of_solid(point, solid)
     }
@@ -34,7 +34,7 @@ impl<N: Real, const D: usize> BoundingSphere<N, D> {
         SurfacePoint { point: found.point + self.center().coords, ..found }.projection(point)
     }
 
-    /// Returns the nearest point of the sphere, or without `solid` of its boundary.
+    /// Returns the nearest point of the sphere; without `solid`, the nearest point of its boundary.
     pub fn project_point(&self, point: &Point<N, D>, solid: bool) -> PointProjection<N, D> {
         self.project_point_with_feature(point).0.of_solid(point, solid)
     }

@@ -17,13 +17,13 @@ pub(super) struct Roots<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Roots<N, D> {
-    /// Returns the points of entering and leaving. They are computed from `middle`, and so are
-    /// accurate however far away the line's origin is.
+    /// Returns the entry and exit points. They are computed from `middle`, and so are accurate
+    /// however far away the line's origin is.
     pub(super) fn points(&self) -> [Vector<N, D>; 2] {
         [self.middle - self.half_chord, self.middle + self.half_chord]
     }
 
-    /// Whether the line stays at the constant distance `radius` from the origin.
+    /// Returns whether the line stays at the constant distance `radius` from the origin.
     pub(super) fn runs_at(&self, radius: N) -> bool {
         self.leave == N::INFINITY && self.middle.norm() == radius
     }

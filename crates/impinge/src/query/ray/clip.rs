@@ -46,7 +46,7 @@ pub(super) fn clipped<N: Real, const D: usize>(
     in_order(&span).then_some(span)
 }
 
-/// Whether entering comes before leaving, up to rounding.
+/// Returns whether entering comes before leaving, up to rounding.
 pub(super) fn in_order<N: Real, const D: usize>(span: &Span<N, D>) -> bool {
     let (enter, leave) = (span.enter.t, span.leave.t);
     enter <= leave || enter - leave <= N::lit(8.0) * N::EPSILON * max(enter.abs(), leave.abs())

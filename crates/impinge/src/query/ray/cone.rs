@@ -8,8 +8,8 @@ use crate::bounding_volume::Ray;
 use crate::math::{Mapped, Point, Real, Vector, cross2, max, min, unit_or};
 use crate::shape::{Cone, Cylinder, FeatureId};
 
-/// Clips the lower nappe of the infinite double cone at the base and at the apex. A cone without
-/// height is a disk, a cone without radius a segment.
+/// Returns the span by clipping the lower nappe of the infinite double cone at the base and at the
+/// apex. A cone without height is a disk, and a cone without radius is a segment.
 pub(super) fn span<N: Real>(cone: &Cone<N>, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
     let (radius, half_height) = (cone.radius(), cone.half_height());
     if half_height == N::ZERO {
@@ -26,8 +26,8 @@ pub(super) fn span<N: Real>(cone: &Cone<N>, ray: &Ray<N, 3>) -> Option<Span<N, 3
 
 /// The infinite cone below the apex, and a line through it.
 ///
-/// `(cosine, sine)` belong to half the opening angle. A point at the distance `x` from the axis and
-/// the height `y ≤ 0` over the apex is inside where `cosine · x ≤ -sine · y`.
+/// `cosine` and `sine` are those of half the opening angle. A point at the distance `x` from the
+/// axis and the height `y ≤ 0` over the apex is inside where `cosine · x ≤ -sine · y`.
 struct Nappe<N: Real> {
     cosine: N,
     sine: N,

@@ -7,7 +7,7 @@ use crate::bounding_volume::Ray;
 use crate::math::{Mapped, Real, Vector, unit_or};
 use crate::shape::{Cylinder, FeatureId};
 
-/// Clips the span in the infinite round side with the two caps.
+/// Returns the span by clipping the span in the infinite round side with the two caps.
 pub(super) fn span<N: Real>(cylinder: &Cylinder<N>, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
     let side = round_side(cylinder.radius(), ray)?;
     let half_height = cylinder.half_height();

@@ -7,8 +7,8 @@ use crate::collide::separation::balls::ball_ellipsoid::project;
 use crate::math::{Real, Vector, max, max_component, min, unit_or};
 use crate::shape::{Ellipsoid, FeatureId};
 
-/// In units of the half axes the ellipsoid is a ball. An ellipsoid with a zero half axis is hit in
-/// one point, unless the line lies in its plane.
+/// Returns the span, computed in units of the half axes, in which the ellipsoid is a unit ball. An
+/// ellipsoid with a zero half axis is hit in one point, unless the line lies in its plane.
 pub(super) fn span<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     ray: &Ray<N, D>,
@@ -85,7 +85,8 @@ fn through<N: Real, const D: usize>(
     Some(Span::thin(crossing, crossing))
 }
 
-/// Returns the span of a line that lies in the plane of a flat ellipsoid.
+/// Returns the span of a line that lies in the plane of a flat ellipsoid; `None` if the line lies
+/// beside that plane.
 fn lengthwise<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     ray: &Ray<N, D>,

@@ -159,17 +159,17 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
         }
     }
 
-    /// Whether the ray enters the box of the triangle in time. This is tested last: where areas
-    /// underflow, their signs are meaningless.
+    /// Returns whether the ray enters the box of the triangle in time. This is tested last: where
+    /// areas underflow, their signs are meaningless.
     fn enters_box(&self, corners: &[Point<N, 3>; 3]) -> bool {
         let enter = box_of_corners(corners).sweep_interval(&self.around, &self.ray.dir);
         enter.is_some_and(|(enter, _)| enter <= self.limit())
     }
 
-    /// A sufficient test for [`Self::enters_box`] without a division: at the time of the hit the
-    /// ray is inside the box, or outside by less than half of the margin in `around`. Half of the
-    /// margin is 8 epsilon of the coordinates; the position has an error of at most 3 epsilon, and
-    /// the times in [`Self::enters_box`] of 2 epsilon.
+    /// Returns whether [`Self::enters_box`] is certainly true, by a test without a division: at the
+    /// time of the hit the ray is inside the box, or outside by less than half of the margin in
+    /// `around`. Half of the margin is 8 epsilon of the coordinates; the position has an error of
+    /// at most 3 epsilon, and the times in [`Self::enters_box`] of 2 epsilon.
     #[inline(always)]
     fn is_surely_within(&self, corners: &[Point<N, 3>; 3], toi: N) -> bool {
         let (ray, [a, b, c]) = (self.ray, corners);

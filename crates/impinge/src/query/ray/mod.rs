@@ -187,7 +187,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         self.cast_local_ray_until(ray, max_time, solid).into_iter().collect()
     }
 
-    /// Whether the ray, given in the local frame, hits the solid up to `max_time`.
+    /// Returns whether the ray, given in the local frame, hits the solid up to `max_time`.
     fn intersects_local_ray(&self, ray: &Ray<N, D>, max_time: N) -> bool {
         self.cast_local_ray_until(ray, max_time, true).is_some()
     }
@@ -291,7 +291,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         self.cast_local_ray(&local, solid).map(|hit| hit.toi)
     }
 
-    /// Whether the ray hits the solid placed at `m`.
+    /// Returns whether the ray hits the solid placed at `m`.
     fn intersects_ray<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
@@ -451,8 +451,8 @@ pub(crate) fn first_that<N: Space<D>, const D: usize>(
     first
 }
 
-/// Whether hit `a` is earlier than `b`, or at the same time on a part with a lower index. The hits
-/// must be on different parts, and no time may be NaN.
+/// Returns whether hit `a` is earlier than `b`, or at the same time on a part with a lower index.
+/// The hits must be on different parts, and no time may be NaN.
 fn is_before<N: Real, const D: usize>(
     a: &RayIntersection<N, D>,
     b: &RayIntersection<N, D>,
@@ -465,7 +465,7 @@ pub(crate) fn at_start<N: Real, const D: usize>(feature: FeatureId) -> RayInters
     RayIntersection { toi: N::ZERO, normal: Vector::<N, D>::zeros(), feature, part: 0 }
 }
 
-/// The common part of all casts: handles non-finite and zero directions, and scales the others.
+/// Implements the common part of all casts: non-finite and zero directions, and scaling.
 ///
 /// `project` is called if a ray may start inside; it returns `None` if it can exclude that. `span`
 /// is called for finite rays whose direction was divided by a power of two, so that its largest

@@ -1,5 +1,5 @@
-//! Fast rejection. Finds rays that certainly miss a ball or a box, as most rays do that hit its
-//! bounding box, and points that a solid certainly does not contain.
+//! Fast rejection tests. They find rays that certainly miss a ball or a box, and points that a
+//! solid certainly does not contain. Most rays that hit the bounding box of a solid miss the solid.
 
 use crate::bounding_volume::Ray;
 use crate::math::{Point, Real, Vector, max, max_component, min};
@@ -9,8 +9,8 @@ use crate::shape::{Geometry, Kind, Triangle};
 /// directions: several times the margin of the exact test.
 const SLACK: f64 = 64.0;
 
-/// Whether the cast of a ray against a ball or a box certainly finds nothing, whatever its options.
-/// False for other shapes, and near overflow or underflow.
+/// Returns whether the cast of a ray against a ball or a box certainly finds nothing, whatever its
+/// options. Always false for other shapes, and near overflow or underflow.
 #[inline(always)]
 pub(crate) fn surely_misses<N: Real, const D: usize>(
     shape: Geometry<'_, N, D>,
@@ -23,19 +23,19 @@ pub(crate) fn surely_misses<N: Real, const D: usize>(
     }
 }
 
-/// Returns the magnitude below which values may be lost in squares.
+/// Returns the absolute margin that covers terms lost to underflow.
 fn lost<N: Real>() -> N {
     N::MIN_POSITIVE / N::EPSILON
 }
 
-/// Whether the first number is larger than the second by more than `slack`, and is finite.
+/// Returns whether the first number is larger than the second by more than `slack`, and is finite.
 #[inline(always)]
 fn exceeds<N: Real>(first: N, second: N, slack: N) -> bool {
     first > second + slack && first < N::INFINITY
 }
 
-/// Whether the ball is behind the ray, or the line of the ray passes the centre at more than the
-/// radius.
+/// Returns whether the ball is behind the ray, or the line of the ray passes the centre at more
+/// than the radius.
 #[inline(always)]
 fn passes_ball<N: Real, const D: usize>(radius: N, ray: &Ray<N, D>) -> bool {
     let unit = N::lit(SLACK) * N::EPSILON;
@@ -53,8 +53,8 @@ fn passes_ball<N: Real, const D: usize>(radius: N, ray: &Ray<N, D>) -> bool {
     exceeds(apart - away * away, radius_squared * squared, unit * apart + lost())
 }
 
-/// Whether a separating axis shows that the line misses the box, or that the box is behind the ray
-/// (Gottschalk, Lin and Manocha, "`OBBTree`", 1996).
+/// Returns whether a separating axis shows that the line misses the box, or that the box is behind
+/// the ray (Gottschalk, Lin and Manocha, "`OBBTree`", 1996).
 #[inline(always)]
 fn passes_box<N: Real, const D: usize>(half: &Vector<N, D>, ray: &Ray<N, D>) -> bool {
     let unit = N::lit(SLACK) * N::EPSILON;
@@ -82,7 +82,8 @@ fn product_magnitudes<N: Real, const D: usize>(
     (origin[axis] * dir[next]).abs() + (origin[next] * dir[axis]).abs()
 }
 
-/// Whether the ray starts outside the box on an axis and does not approach it along that axis.
+/// Returns whether the ray starts outside the box on an axis and does not approach it along that
+/// axis.
 #[inline(always)]
 fn is_behind<N: Real, const D: usize>(
     half: &Vector<N, D>,
@@ -96,8 +97,8 @@ fn is_behind<N: Real, const D: usize>(
     goes_away && exceeds(distance, half[axis], unit * distance + lost())
 }
 
-/// Returns false if a solid is certainly too far from a point to contain it. A fast test for the
-/// most frequent kinds, since most rays that come near a solid miss it.
+/// Returns false if a solid certainly does not contain a point. A fast test for the most frequent
+/// kinds, since most rays that come near a solid miss it.
 pub(super) fn may_hold<N: Real, const D: usize>(kind: Kind<'_, N, D>, point: &Point<N, D>) -> bool {
     match kind {
         Kind::Triangle(triangle) => may_lie_on(triangle, point),
@@ -115,7 +116,8 @@ pub(super) fn may_hold<N: Real, const D: usize>(kind: Kind<'_, N, D>, point: &Po
     }
 }
 
-/// Whether the box of a triangle, loosened by the rounding error of a thin set, contains a point.
+/// Returns whether the box of a triangle, loosened by the rounding error of a thin set, contains a
+/// point.
 fn may_lie_on<N: Real, const D: usize>(triangle: &Triangle<N, D>, point: &Point<N, D>) -> bool {
     let [a, b, c] = triangle.corners();
     let largest = |corner: &Point<N, D>| max_component(&corner.coords);

@@ -1,6 +1,6 @@
 //! Ray casts against a convex solid known by support points alone.
 //!
-//! The number of steps is limited; a time is never later than the hit.
+//! The number of steps is limited; a returned time is never later than the hit.
 
 use super::ball::roots;
 use super::span::{Crossing, Span};
@@ -9,7 +9,7 @@ use crate::convex::{Simplicial, separation};
 use crate::math::{Pose, Real, Vector, max};
 use crate::shape::{Ball, Feature, FeatureId, SupportMap};
 
-/// The maximum number of distance computations. Flat faces take 2 or 3, round ones about 6. For a
+/// The maximum number of distance computations. Flat faces take 2 or 3, round faces about 6. For a
 /// line that grazes a round face the gap shrinks by a constant factor in each step.
 const ROUNDS: usize = 64;
 
@@ -57,7 +57,7 @@ impl<N: Real, const D: usize> RaySolid<'_, N, D> {
     /// Returns the span of the line; `None` if the line misses the solid, or leaves it before time
     /// zero.
     pub(super) fn span(&self, ray: &Ray<N, D>) -> Option<Span<N, D>> {
-        // Uses a larger radius, since the radius is only accurate up to rounding.
+        // The radius is enlarged, since it is only accurate up to rounding.
         let around = roots(&ray.origin.coords, &ray.dir, self.radius * N::lit(1.0625))?;
         if around.leave < N::ZERO {
             return None;

@@ -53,8 +53,8 @@ fn ray_corner<N: Real>(corner: &Point<N, 2>, ray: &Ray<N, 2>) -> RayCorner<N> {
     RayCorner { t, side: cross2(&ray.dir, &to_corner) }
 }
 
-/// Whether a side leads from the left of the line, or from the line, to the right (`falling`), or
-/// from right to left.
+/// Returns whether a side leads from the left of the line, or from the line, to the right
+/// (`falling`), or from right to left.
 fn crosses<N: Real>(corners: &[RayCorner<N>; 3], side: usize, falling: bool) -> bool {
     let (from, to) = (corners[side].side, corners[(side + 1) % 3].side);
     let (high, low) = if falling { (from, to) } else { (to, from) };

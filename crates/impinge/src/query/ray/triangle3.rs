@@ -136,7 +136,7 @@ fn through<N: Real>(corners: &[Sheared<N>; 3]) -> Through<N> {
     let [a, b, c] = corners;
     let areas = [cross2(&b.flat, &c.flat), cross2(&c.flat, &a.flat), cross2(&a.flat, &b.flat)];
     let total = areas[0] + areas[1] + areas[2];
-    // Written without branches: the deciding sign is unpredictable.
+    // Written without branches, because the deciding sign is unpredictable.
     let all = |is: [bool; 3]| is[0] & is[1] & is[2];
     let all_left = all(filled(|side| areas[side] >= N::ZERO));
     let all_right = all(filled(|side| areas[side] <= N::ZERO));
@@ -149,8 +149,8 @@ fn through<N: Real>(corners: &[Sheared<N>; 3]) -> Through<N> {
     if total.abs() <= rounding { Through::EdgeOn } else { Through::Miss }
 }
 
-/// Returns the crossing at `t`. Its normal faces against the ray, and its face is the one on that
-/// side.
+/// Returns the crossing at `t`. Its normal points against the ray, and its face is the face on that
+/// side of the triangle.
 fn crossing<N: Real>(corners: &[Point<N, 3>; 3], dir: &Vector<N, 3>, t: N) -> Crossing<N, 3> {
     let [a, b, c] = corners;
     let normal = cross(&(b - a), &(c - a));

@@ -23,7 +23,7 @@ pub struct EnclosedBody<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Space<D>, const D: usize> EnclosedBody<'a, N, D> {
-    /// Returns the body that `boundary` bounds as a whole; the frame is that of `boundary`.
+    /// Returns the body that `boundary` bounds as a whole, in the frame of `boundary`.
     pub(in crate::shape) fn within(boundary: &'a dyn CompositeShape<N, D>) -> Self {
         Self { boundary, pose: Pose::identity(), first: 0 }
     }
@@ -34,12 +34,12 @@ impl<'a, N: Space<D>, const D: usize> EnclosedBody<'a, N, D> {
         Self { pose: pose.compose(&self.pose), first: first + self.first, ..*self }
     }
 
-    /// Returns the indices, in the composite, of the parts of the boundary.
+    /// Returns the range of part indices, in the composite, of the boundary.
     pub(crate) fn parts(&self) -> Range<u32> {
         self.first..self.first + self.boundary.num_parts()
     }
 
-    /// Whether the body contains `point`, which is given in the composite's frame.
+    /// Returns whether the body contains `point`, which is given in the composite's frame.
     pub(crate) fn holds(&self, point: &Point<N, D>) -> bool {
         self.boundary.winds_around(&self.pose.inverse_point(point))
     }
@@ -79,8 +79,8 @@ fn root(above: &mut [u32], mut at: u32) -> u32 {
     at
 }
 
-/// Checks the orientation of each piece of a closed surface by its signed area or volume, which is
-/// negative if the front faces inwards. A piece with a content below minus the rounding error must
+/// Checks the orientation of each piece of a closed surface. The signed area or volume of a piece
+/// is negative if its front faces inwards. A piece that is negative beyond rounding errors must
 /// bound a cavity.
 ///
 /// `cone(part)` returns the signed content between a part and a fixed point; `is_cavity(part)`
@@ -106,7 +106,8 @@ pub(super) fn check_fronts(
     Ok(())
 }
 
-/// A content at most this fraction of the sum of its terms' magnitudes counts as zero.
+/// The rounding error of a signed area or volume, as a fraction of the sum of the magnitudes of its
+/// terms.
 const NONE: f64 = 1024.0 * f64::EPSILON;
 
 #[cfg(test)]

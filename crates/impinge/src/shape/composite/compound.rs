@@ -64,7 +64,7 @@ pub struct Compound<N: Space<D>, const D: usize> {
     has_surface: bool,
     /// Whether any child has a body bounded by a closed surface.
     has_bodies: bool,
-    /// Whether any child has ghosts.
+    /// Whether any child has ghost parts.
     has_ghosts: bool,
     revision: Revision,
 }
@@ -140,7 +140,7 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
         &self.children
     }
 
-    /// The number of children, at least one.
+    /// Returns the number of children, at least one.
     #[must_use]
     pub const fn num_children(&self) -> usize {
         self.children.len()
@@ -150,8 +150,8 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
     /// [`Shape::scaled`].
     ///
     /// Each child is scaled in its own frame. Factors of equal magnitude allow any rotation of a
-    /// child. Otherwise the child's rotation must map axes to axes, or turn about an axis across
-    /// which the factors have equal magnitudes: any other rotation would shear the child.
+    /// child. Otherwise the child's rotation must map axes to axes, or have an axis such that the
+    /// two factors across it have equal magnitudes: any other rotation would shear the child.
     ///
     /// # Errors
     /// If a factor is zero or not finite, a child would be sheared, a child does not support its
@@ -327,8 +327,8 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Compound<N, D> {
         Some(self.revision)
     }
 
-    /// Visits the corner numbers of the child, with the index of the child's first part added in
-    /// the upper 32 bits.
+    /// Visits the corner numbers that the child reports, with the index of the child's first part
+    /// in the upper 32 bits.
     fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
         let (child, own) = self.child_of_part(part);
         if let Some(composite) = self.composite(child) {
@@ -429,14 +429,14 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Compound<N, D> {
         self.aabb
     }
 
-    /// With more than `FEW_CHILDREN` children the result is the box of the rotated local box.
+    /// Returns the union of the boxes of the children, or, if there are more than `FEW_CHILDREN`,
+    /// the box around the rotated local box.
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         if self.children.len() > FEW_CHILDREN {
             return self.local_aabb().transformed_by(pose);
         }
         let placed = self.children.iter().zip(&self.poses);
-        // A child's position is rounded twice: in the child's own pose, and in the rotation by
-        // `pose`.
+        // A child's position is rounded twice: in the child's own pose, and when `pose` rotates it.
         let turn = Pose { translation: Vector::<N, D>::zeros(), ..*pose };
         let boxes = placed.map(|((_, shape), own)| match shape.geometry().as_composite() {
             // No recursion into composites: nested compounds may share children, so the cost would
@@ -449,7 +449,8 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Compound<N, D> {
         let (low, high) = (bounds.mins().coords, bounds.maxs().coords);
         let finite = |x: N| if x.is_finite_number() { x.abs() } else { N::ZERO };
         let extent = low.zip_map(&high, |low, high| max(finite(low), finite(high)));
-        // Rounding is proportional to the positions of the children and the extent of the box.
+        // The rounding error is proportional to the distances of the children and the extent of the
+        // box.
         Aabb::of_rotated(low, high, N::TWO * arms + length_of(&extent), pose)
     }
 

@@ -32,7 +32,8 @@ impl Joints {
         Self::of_vertices(welded(vertices), parts)
     }
 
-    /// The joints of parts with `K` vertices each, given the joint of each vertex: its first vertex.
+    /// Computes the joints of parts with `K` vertices each from `of_vertex`, the joint of each
+    /// vertex.
     pub(in crate::shape) fn of_vertices<const K: usize>(
         of_vertex: Vec<u32>,
         parts: &[[u32; K]],
@@ -69,20 +70,20 @@ impl Joints {
         self.of_vertex[vertex as usize]
     }
 
-    /// The joint of each vertex.
+    /// Returns the joint of each vertex, in the order of the vertices.
     #[cfg(feature = "serde")]
     pub(in crate::shape) fn of_vertices_in_order(&self) -> &[u32] {
         &self.of_vertex
     }
 
-    /// The parts that meet at a joint, ascending.
+    /// Returns the parts that meet at a joint, in ascending order.
     #[inline]
     pub(in crate::shape) fn parts(&self, joint: u32) -> &[u32] {
         let [start, end] = [0, 1].mapped(|next| self.starts[joint as usize + next] as usize);
         &self.parts[start..end]
     }
 
-    /// Whether the vertices of each joint still have the same position.
+    /// Returns whether all vertices of each joint still have the same position.
     pub(in crate::shape) fn are_together<N: Real, const D: usize>(
         &self,
         vertices: &[Point<N, D>],
@@ -91,7 +92,7 @@ impl Joints {
     }
 }
 
-/// Returns for each vertex the lowest vertex at the same position. +0 and −0 are equal.
+/// Returns for each vertex the lowest vertex at the same position, where +0 and −0 are equal.
 fn welded<N: Real, const D: usize>(vertices: &[Point<N, D>]) -> Vec<u32> {
     let key = |vertex: u32| -> [u64; D] {
         filled(|axis| (vertices[vertex as usize][axis] + N::ZERO).bits())

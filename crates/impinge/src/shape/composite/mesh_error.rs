@@ -20,7 +20,7 @@ use crate::math::{Point, Real, Vector};
 pub enum MeshError {
     /// There are no parts.
     Empty,
-    /// A line through consecutive vertices was given fewer than two vertices.
+    /// Fewer than two vertices were given for a line through consecutive vertices.
     TooFewVertices {
         /// The number of vertices given.
         given: usize,
@@ -44,7 +44,7 @@ pub enum MeshError {
         /// The number of vertices or parts given.
         given: usize,
     },
-    /// The number of moved vertices differs from the number of vertices.
+    /// The number of vertices to move differs from the number of vertices of the shape.
     WrongCount {
         /// The number of vertices given.
         given: usize,
@@ -56,7 +56,7 @@ pub enum MeshError {
     NotClosed {
         /// The index of the part.
         part: usize,
-        /// The vertices at the ends of the edge; the vertex twice where a line is open.
+        /// The vertices at the ends of the edge; for an open line, its end vertex twice.
         edge: [u32; 2],
     },
     /// The parts of a solid disagree about the inside. Each edge must be traversed equally often in
@@ -68,7 +68,7 @@ pub enum MeshError {
         edge: [u32; 2],
     },
     /// The front of a closed surface faces its inside, and the surface is not a cavity in another
-    /// one.
+    /// closed surface.
     InsideOut {
         /// The index of the first part of the surface.
         part: usize,
@@ -129,8 +129,8 @@ impl fmt::Display for MeshError {
 
 impl std::error::Error for MeshError {}
 
-/// The maximum number of vertices and of parts: the corners of all parts need 32-bit indices, and a
-/// few values are reserved.
+/// The maximum number of vertices and of parts. The corners of all parts together must fit 32-bit
+/// indices, of which a few values are reserved.
 const MAX: usize = (u32::MAX / 3 - 2) as usize;
 
 /// Checks that all vertices are finite and that there are at most [`MAX`].
@@ -165,7 +165,7 @@ pub(in crate::shape) fn check_parts<const K: usize>(
     Ok(())
 }
 
-/// Checks that the moved vertices are finite and that there are exactly `needed`.
+/// Checks that all moved vertices are finite, and that their number is `needed`.
 pub(in crate::shape) fn check_moved<N: Real, const D: usize>(
     vertices: &[Point<N, D>],
     needed: usize,

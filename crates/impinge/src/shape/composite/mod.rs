@@ -1,9 +1,9 @@
 //! Shapes made of parts: the interface between composites and queries.
 //!
-//! Parts are indexed from 0. The parts of nested composites follow each other, so that one index
-//! identifies a part at any depth; `path_to_part` on `dyn Shape` converts an index to a path. No
-//! algorithm processes a composite as a whole: it searches for candidate parts ([`PartSearch`]) and
-//! processes each as a separate solid.
+//! Parts are indexed from 0. The parts of nested composites are numbered consecutively, so that one
+//! index identifies a part at any depth; `path_to_part` on `dyn Shape` converts an index to a path.
+//! No algorithm processes a composite as a whole: it searches for candidate parts ([`PartSearch`])
+//! and processes each as a separate solid.
 
 pub(crate) mod body;
 pub(crate) mod compound;
@@ -70,7 +70,7 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
     /// `visit` returns the new limit, which never grows; a negative limit ends the search. Visiting
     /// near parts first is faster, but no order is required.
     ///
-    /// `around` is a box around the ray's origin that contains its rounding error. The default uses
+    /// `around` is a box that contains the ray's origin with its rounding error. The default uses
     /// [`Self::search`]; override it in a composite whose test is tighter than boxes.
     fn parts_along(
         &self,
@@ -82,14 +82,14 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
         self.search().cast(around, &ray.dir, limit, &mut |part, _| visit(part, self.part(part)));
     }
 
-    /// Returns the surface to which the parts belong, so that contacts do not catch on the seams
-    /// between parts. `None` if the parts are separate solids.
+    /// Returns the surface that the parts form, so that contacts do not catch on the seams between
+    /// parts. `None` if the parts are separate solids.
     fn surface(&self) -> Option<&dyn Surface<N, D>> {
         None
     }
 
-    /// Returns the surface for the library's algorithms; the library's own composites provide more
-    /// than [`Surface`].
+    /// Returns the surface with the methods that the library's own composites implement in addition
+    /// to [`Surface`].
     #[doc(hidden)]
     fn surface_access(&self) -> Option<SurfaceAccess<'_, N, D>> {
         self.surface().map(SurfaceAccess::of_any)
@@ -100,14 +100,14 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
     /// default visits none, for separate solids.
     ///
     /// In a triangle mesh or polyline the numbers are vertex indices, with coinciding positions
-    /// merged. In a height field they are the indices of grid points. In a compound they are the
-    /// numbers of the children; those of different children differ as long as they are below 2³².
+    /// merged. In a height field they are the indices of grid points. A compound passes on the
+    /// numbers of its child; numbers of different children differ as long as they are below 2³².
     fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
         let _ = (part, visit);
     }
 
-    /// Whether two different parts share a corner and therefore always touch. Tests of a shape
-    /// against itself skip such pairs. The default uses [`Self::each_corner`].
+    /// Returns whether two different parts share a corner and therefore always touch. Tests of a
+    /// shape against itself skip such pairs. The default uses [`Self::each_corner`].
     fn are_adjacent(&self, part1: u32, part2: u32) -> bool {
         let (mut corners, mut is_shared) = (SmallVec::<[u64; 4]>::new(), false);
         self.each_corner(part1, &mut |corner| corners.push(corner));
@@ -120,8 +120,8 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
         path.push(part);
     }
 
-    /// Returns the composite as a built-in shape, for which the library can compute what it
-    /// encloses; `None` for a user's composite.
+    /// Returns the composite as a built-in shape, for algorithms that have a method of their own
+    /// for it, such as mass properties. `None` for a user's composite.
     #[doc(hidden)]
     fn built_in(&self) -> Option<&dyn Shape<N, D>> {
         None
@@ -140,28 +140,28 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
         None
     }
 
-    /// Calls `visit` with an [`EnclosedBody`] for each closed surface among the parts that bounds a
-    /// body.
+    /// Calls `visit` with an [`EnclosedBody`] for each body that parts of the composite bound as a
+    /// closed surface.
     #[doc(hidden)]
     fn each_body(&self, visit: &mut dyn FnMut(&EnclosedBody<'_, N, D>)) {
         let _ = visit;
     }
 
-    /// Whether [`Self::each_body`] visits any body. O(1).
+    /// Returns whether [`Self::each_body`] visits any body. O(1).
     #[doc(hidden)]
     fn has_bodies(&self) -> bool {
         false
     }
 
-    /// Whether the composite has ghosts: parts that take part in seams, but that no query finds.
-    /// O(1).
+    /// Returns whether the composite has ghosts: parts that continue the surface across seams, but
+    /// that no query finds. O(1).
     #[doc(hidden)]
     fn has_ghosts(&self) -> bool {
         false
     }
 
-    /// Whether the composite, as a boundary, winds around `point`; for a point on a part either
-    /// result is allowed.
+    /// Returns whether the composite, as a closed boundary, winds around `point`. For a point on a
+    /// part either result is allowed.
     #[doc(hidden)]
     fn winds_around(&self, point: &Point<N, D>) -> bool {
         let _ = point;
@@ -169,7 +169,7 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
     }
 
     /// Returns the index of the connected piece that a part belongs to. By default a surface is one
-    /// piece, and each separate solid is a piece.
+    /// piece, and each separate solid is a piece of its own.
     #[doc(hidden)]
     fn piece_of(&self, part: u32) -> u32 {
         if self.surface().is_some() { 0 } else { part }
@@ -228,14 +228,14 @@ impl<N: Real, const D: usize> PartSolid<'_, N, D> {
         }
     }
 
-    /// Returns the solid as queries see it.
+    /// Returns the kind of the solid on which queries dispatch, with a reference to the solid.
     #[must_use]
     pub fn geometry(&self) -> Geometry<'_, N, D> {
         self.as_shape().geometry()
     }
 }
 
-/// Searches of the parts of a composite by their boxes.
+/// A search structure over the parts of a composite, by their boxes.
 ///
 /// A box may be larger than its part: callers test each reported part. Each part is reported at
 /// most once; near parts first is faster, but no order is required. Non-finite input reports no
@@ -255,15 +255,15 @@ impl<N: Real, const D: usize> PartSolid<'_, N, D> {
 pub trait PartSearch<N: Real, const D: usize>: Send + Sync {
     /// Returns a box around all parts, as small as is cheap to compute: every query reads it.
     ///
-    /// The default is unbounded, which is always valid. Two composites are then tested against each
-    /// other for each part of the smaller one, however far apart they are.
+    /// The default is unbounded, which is always valid. A query of two composites then tests every
+    /// part of the smaller one, however far apart the composites are.
     fn bounds(&self) -> Aabb<N, D> {
         Aabb::unbounded()
     }
 
-    /// Returns the tree behind the search, if the index of each box in it is the index of its part.
-    /// Two composites that both have such a tree are traversed together, which is many times as
-    /// fast as part by part. Every search but [`BoxTree`] returns `None` (the default).
+    /// Returns the tree that implements the search, if each box in the tree has the index of its
+    /// part. Two composites with such trees are traversed together, which is much faster than a
+    /// search for each part. Every search except [`BoxTree`] returns `None` (the default).
     fn as_tree(&self) -> Option<&BoxTree<N, D>> {
         None
     }
@@ -272,8 +272,8 @@ pub trait PartSearch<N: Real, const D: usize>: Send + Sync {
     fn overlapping(&self, aabb: &Aabb<N, D>, visit: &mut dyn FnMut(u32));
 
     /// Calls `visit` with each part whose box is at most `limit` from `aabb`, and with a lower
-    /// bound of that distance. `visit` returns the new limit, which never grows: to find the
-    /// nearest part, it is the smallest distance so far. A negative limit ends the search.
+    /// bound of that distance. `visit` returns the new limit, which never grows; a search for the
+    /// nearest part returns the smallest distance so far. A negative limit ends the search.
     fn nearest(&self, aabb: &Aabb<N, D>, limit: N, visit: &mut dyn FnMut(u32, N) -> N);
 
     /// Calls `visit` with each part whose box is hit by `aabb`, moving with `velocity`, at a time
@@ -288,7 +288,8 @@ pub trait PartSearch<N: Real, const D: usize>: Send + Sync {
     );
 }
 
-/// The contact normals that parts have as pieces of one surface, so that solids slide over seams.
+/// The rule for the contact normals of parts that form one surface. It lets solids slide over the
+/// seams between parts.
 ///
 /// Without it, the edges between the triangles of a floor would stop a sliding box. All vectors are
 /// in the frame of the composite.
@@ -305,9 +306,9 @@ pub trait PartSearch<N: Real, const D: usize>: Send + Sync {
 /// assert_eq!(surface.snapped(0, &slanted), Some(Vector::y()));
 /// ```
 pub trait Surface<N: Real, const D: usize>: Send + Sync {
-    /// Whether the unit vector `normal`, pointing away from the part, is a normal of the whole
-    /// surface at the feature of the part. At a face only the face normal is admitted; at a convex
-    /// seam any normal between those of the two faces; at a flat or concave seam only the face
+    /// Returns whether the whole surface admits `normal`, a unit vector that points away from the
+    /// part, at the feature of the part. At a face only the face normal is admitted; at a convex
+    /// seam any normal between the two face normals; at a flat or concave seam only the face
     /// normals. The test has a tolerance for rounding.
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, D>) -> bool;
 
@@ -316,7 +317,7 @@ pub trait Surface<N: Real, const D: usize>: Send + Sync {
     /// on the border of the surface, such as a piece inside a filled shape.
     fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>>;
 
-    /// Whether the part can touch a solid whose centre is `center`: false if the surface is
+    /// Returns whether the part can touch a solid whose centre is `center`. False if the surface is
     /// one-sided and the centre is behind the part.
     fn faces(&self, part: u32, center: &Point<N, D>) -> bool;
 }

@@ -19,14 +19,14 @@ use crate::shape::{Revision, Segment};
 /// [`Segment`]; all coordinates are in the frame of the line. Segments join where the positions of
 /// their ends are equal, regardless of vertex indices.
 ///
-/// **Sides.** A line is a skin and has no inside, except in 2D for `encloses` and
-/// `signed_distance`, unless `solid` makes a closed line a body. In 2D it has two sides, or one
-/// after `one_sided`. The solid side is then its left, as for an outline that runs
-/// counter-clockwise, and no contact arises from that side.
+/// **Sides.** A line is a skin without an inside. In 2D `encloses` and `signed_distance` use the
+/// area inside, and `solid` makes a closed line a body. In 2D contacts arise on both sides, or only
+/// on the right after `one_sided`. The left is then the solid side, as for an outline that runs
+/// counter-clockwise.
 ///
 /// **Seams.** Contacts treat the line as one surface (see [`Surface`](crate::shape::Surface)): at a
-/// joint only normals of the whole line are admitted, so that nothing catches on the joints of a
-/// floor. Segments whose directions differ by less than 0.57 degrees (a sine of 0.01) count as
+/// joint only normals of the whole line are admitted, so that solids do not catch on the joints of
+/// a floor. Segments whose directions differ by less than 0.57 degrees (a sine of 0.01) count as
 /// straight. [`Self::with_internal_edges_kept`] disables this.
 ///
 /// **Degenerate segments.** A segment without length is kept, so that part indices do not change:
@@ -55,10 +55,10 @@ pub struct Polyline<N: Real, const D: usize> {
     is_cycle: bool,
     /// Whether vertices have moved since the joints were computed.
     pub(in crate::shape) is_moved: bool,
-    /// Maps the direction of a segment to the normal on its front; `None` for a line with two
-    /// sides, and in 3D.
+    /// Maps the direction of a segment to the normal on its front. `None` for a line with two
+    /// sides, and always in 3D.
     pub(in crate::shape) front: Option<Front<N, D>>,
-    /// Whether `solid` was called; valid while [`Self::is_cycle`].
+    /// Whether `solid` was called; has an effect only while [`Self::is_cycle`] is true.
     pub(in crate::shape) is_solid: bool,
     pub(in crate::shape) keeps_internal_edges: bool,
     /// For each segment, the first segment of its connected piece; computed on first use.
@@ -198,7 +198,8 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
 
 #[cfg(feature = "serde")]
 impl<N: Real, const D: usize> Polyline<N, D> {
-    /// The joints are these: vertices were moved since they were together.
+    /// Replaces the joints by those of a saved line, whose vertices were moved apart after
+    /// construction.
     pub(in crate::shape) fn move_joints(&mut self, joints: Joints) {
         let is_whole = joints.are_together(&self.vertices);
         self.is_cycle = is_whole && is_cycle(self.vertices.len(), &self.segments, &joints);
@@ -245,7 +246,7 @@ impl<N: Real, const D: usize> Polyline<N, D> {
         self.joints.parts(self.joints.of(self.segments[segment as usize][end as usize]))
     }
 
-    /// Whether each end of a segment is joined to another segment. O(n).
+    /// Returns whether each end of a segment is joined to another segment. O(n).
     #[must_use]
     pub fn is_closed(&self) -> bool {
         let joint = |&vertex: &u32| self.joints.parts(self.joints.of(vertex));
@@ -258,14 +259,14 @@ impl<N: Real, const D: usize> Polyline<N, D> {
         &self.tree
     }
 
-    /// Whether the line is one-sided: nothing touches it from its left.
+    /// Returns whether the line is one-sided: no contact arises on its left.
     #[must_use]
     pub const fn is_one_sided(&self) -> bool {
         self.front.is_some()
     }
 
-    /// Whether the line is a body, not a skin: `solid` was called, and no joined vertices have been
-    /// moved apart since. Always false in 3D.
+    /// Returns whether the line is a body, not a skin: `solid` was called, and no joined vertices
+    /// have been moved apart since. Always false in 3D.
     #[must_use]
     pub const fn is_solid(&self) -> bool {
         self.is_solid && self.is_cycle
@@ -281,7 +282,7 @@ impl<N: Real, const D: usize> Polyline<N, D> {
         })
     }
 
-    /// Whether contacts treat each segment as a separate solid; see
+    /// Returns whether contacts treat each segment as a separate solid; see
     /// [`Self::with_internal_edges_kept`].
     #[must_use]
     pub const fn keeps_internal_edges(&self) -> bool {
@@ -302,8 +303,8 @@ impl<N: Real, const D: usize> Polyline<N, D> {
 }
 
 impl<N: Real> Polyline<N, 2> {
-    /// Whether the line is the outline of one or several areas: at each joint as many segments end
-    /// as start, as in every [closed](Self::closed) line. O(1).
+    /// Returns whether the line is the outline of one or several areas: at each joint as many
+    /// segments end as start, as in every [closed](Self::closed) line. O(1).
     ///
     /// If [`Self::set_vertices`] moves joined vertices apart, the line is no longer an outline.
     /// [`Self::encloses`] and [`Self::signed_distance`] compute what lies inside.
@@ -312,8 +313,8 @@ impl<N: Real> Polyline<N, 2> {
         self.is_cycle
     }
 
-    /// Makes the line one-sided: nothing touches it from its left, the solid side, as for an
-    /// outline that runs counter-clockwise.
+    /// Makes the line one-sided: no contact arises on its left, the solid side, as for an outline
+    /// that runs counter-clockwise.
     #[must_use]
     pub const fn one_sided(mut self) -> Self {
         self.front = Some(polyline_parts::right_of);
@@ -334,7 +335,7 @@ impl<N: Real> Polyline<N, 2> {
     /// to the shape.
     ///
     /// `TriMesh::try_solid` describes the meaning for each query, for meshes in 3D. The body lies
-    /// on the left of its segments; outlines that run clockwise are holes in others.
+    /// on the left of its segments; an outline that runs clockwise is a hole in another outline.
     ///
     /// # Errors
     /// - [`MeshError::NotClosed`] or [`MeshError::NotOriented`] if the line is not an
@@ -404,13 +405,13 @@ impl<N: Real> Polyline<N, 2> {
                 _ => return MeshError::NotOriented { part, edge: [vertex; 2] },
             }
         }
-        // Vertices that were moved to one position do not join: the joints are those of
-        // construction.
+        // The ends balance by position, but not by the joints of construction: vertices that were
+        // moved to one position do not join.
         MeshError::NotClosed { part: 0, edge: [self.segments[0][0]; 2] }
     }
 }
 
-/// Whether at each joint as many segments end as start.
+/// Returns whether at each joint as many segments end as start.
 fn is_cycle(vertices: usize, segments: &[[u32; 2]], joints: &Joints) -> bool {
     let mut surplus = vec![0_i64; vertices];
     for &[from, to] in segments {

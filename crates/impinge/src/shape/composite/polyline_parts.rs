@@ -1,4 +1,4 @@
-//! The implementation of composite shape for polylines: segments with the seams between them.
+//! Implementation of [`CompositeShape`] for polylines: the segments and the seams between them.
 
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{Point, Pose, Real, Space, Vector, max_component, perp, unit};
@@ -11,7 +11,7 @@ use crate::shape::{
     Revision, ScaleError, Shape, ShapeHandle, Sidedness, Surface, SurfaceAccess,
 };
 
-/// Returns the normal on the right of a direction.
+/// Returns the unit normal on the right of the unit vector `along`.
 pub(in crate::shape) fn right_of<N: Real>(along: &Vector<N, 2>) -> Vector<N, 2> {
     -perp(along)
 }
@@ -81,7 +81,7 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Polyline<N, D> {
     }
 }
 
-/// Both perpendiculars of a segment are its normals in 2D; in 3D a circle of perpendiculars.
+/// In 2D a segment has two unit normals; in 3D every unit vector perpendicular to it is a normal.
 impl<N: Real, const D: usize> Surface<N, D> for Polyline<N, D> {
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, D>) -> bool {
         if self.keeps_internal_edges {
@@ -135,8 +135,8 @@ impl<N: Real, const D: usize> Polyline<N, D> {
         front.map_or(N::ZERO, |front| front.dot(vector))
     }
 
-    /// Whether the joint admits `normal`: no segment that leaves the joint rises along it, and the
-    /// joint is not straight.
+    /// Returns whether the joint admits `normal`: no segment that leaves the joint rises along
+    /// `normal`, and the segments at the joint are not collinear.
     fn joint_admits(&self, part: u32, end: u32, normal: &Vector<N, D>) -> bool {
         let joint = self.joints.of(self.segments[part as usize][end as usize]);
         let own = self.along(part).unwrap_or_else(Vector::<N, D>::zeros);

@@ -2,7 +2,8 @@
 
 use core::fmt;
 
-/// Why a shape, or given numbers, have no mass properties. Values are given as `f64`, exactly.
+/// Why a shape has no mass properties, or why given values are not mass properties. Values are
+/// converted to `f64` without loss.
 ///
 /// `part` is the part index that queries use: 0 for a shape of one part. `path_to_part` of the
 /// shape converts it to a path in nested compounds.
@@ -45,7 +46,7 @@ pub enum MassError {
     /// front, an open polyline, a polyline in 3D, a height field, or a user's surface.
     NotClosed {
         /// For a triangle mesh, the index of the first triangle with an open side or a side in the
-        /// wrong direction; for others, the index of the first part.
+        /// wrong direction. For other shapes, the index of the first part.
         part: u32,
     },
 }

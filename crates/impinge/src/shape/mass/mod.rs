@@ -2,8 +2,8 @@
 //!
 //! This module has the type and its arithmetic; [`crate::query::mass_properties`] computes the
 //! properties of shapes. Arithmetic is in double precision for both scalars and is rounded once.
-//! Principal moments are stored instead of the tensor: a small moment keeps its digits beside a
-//! large one, and none becomes negative.
+//! Principal moments are stored instead of the tensor: a small moment keeps its relative precision
+//! next to a large one, and no moment becomes negative.
 
 mod error;
 mod moments;
@@ -22,7 +22,7 @@ use crate::math::{AbstractRotation, Isometry, Matrix, Point, Pose, Real, Vector}
 /// The mass of a rigid body, its centre of mass, and its inertia about that centre.
 ///
 /// All quantities are in the frame of the body. [`mass_properties`](crate::query::mass_properties)
-/// computes them from a shape and a density, `new` takes them as numbers. In 2D the inertia is a
+/// computes them from a shape and a density; `new` takes their values. In 2D the inertia is a
 /// number: the moment about the centre of mass and the axis out of the plane. In 3D it is a tensor,
 /// stored as its principal moments and axes.
 ///
@@ -32,8 +32,8 @@ use crate::math::{AbstractRotation, Isometry, Matrix, Point, Pose, Real, Vector}
 ///
 /// **Inverses.** A solver multiplies impulses by the inverses of the mass and the inertia. Here the
 /// inverse of zero is zero. So a body without mass does not move, and a body without inertia about
-/// an axis, such as a segment about itself, does not rotate about that axis, as if it were
-/// infinitely heavy. For a body that must not rotate or move, use zero as the inverse.
+/// an axis, such as a segment about its own line, does not rotate about that axis, as if its
+/// inertia were infinite. For a body that must not rotate or move, use zero as the inverse.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Vector};
@@ -84,8 +84,8 @@ impl<N: Real, const D: usize> MassProperties<N, D> {
         inverse(self.mass)
     }
 
-    /// Returns the centre of mass in the frame of the body; for a shape without mass some point of
-    /// the shape.
+    /// Returns the centre of mass in the frame of the body. For a shape without mass it is some
+    /// point of the shape.
     #[must_use]
     pub const fn center_of_mass(&self) -> &Point<N, D> {
         &self.center
@@ -120,8 +120,8 @@ impl<N: Real, const D: usize> MassProperties<N, D> {
         Self::of_moments(&self.moments().placed(&rotation, &translation))
     }
 
-    /// Returns the body with another mass and a proportional inertia. A body without mass becomes a
-    /// point mass.
+    /// Returns the body with the mass `mass` and a proportional inertia. A body without mass
+    /// becomes a point mass.
     ///
     /// # Errors
     /// If the mass is negative or not finite, or a moment is beyond the range of the scalar.

@@ -1,10 +1,10 @@
-//! Mass, centre of mass and principal moments in double precision, for every scalar of the body.
+//! Mass, centre of mass and principal moments in double precision, whatever the scalar of the body.
 
 use crate::math::eigen::symmetric_eigen;
 use crate::math::{Matrix, Vector};
 
-/// Moments below `THIN` times the largest moment are set to zero: they are the rounding error of
-/// the sums.
+/// Moments of at most this fraction of the largest moment are rounding errors of the sums, and
+/// become zero.
 const THIN: f64 = 16.0 * f64::EPSILON;
 
 /// The mass of a body, its centre of mass, and its principal moments, in the body's frame.
@@ -28,7 +28,8 @@ fn about<const D: usize>(offset: &Vector<f64, D>) -> Matrix<f64, D> {
 }
 
 /// Returns the tensor `tr(S) − S` of a matrix `S` of second moments. Each diagonal element is
-/// summed directly, without a difference from the trace, so that small elements keep their digits.
+/// summed directly, not as a difference from the trace, so that small elements keep their relative
+/// precision.
 fn tensor_of<const D: usize>(second: &Matrix<f64, D>) -> Matrix<f64, D> {
     Matrix::<f64, D>::from_fn(|row, column| {
         if row != column {
@@ -111,7 +112,8 @@ impl<const D: usize> Moments<D> {
         Self::of_tensor(mass, center, &tensor)
     }
 
-    /// Returns the body without `part`; without mass if `part` weighs at least as much.
+    /// Returns the body without `part`. The result has no mass if `part` weighs at least as much as
+    /// the body.
     pub(crate) fn minus(&self, part: &Self) -> Self {
         let mass = self.mass - part.mass;
         if mass <= 0.0 {

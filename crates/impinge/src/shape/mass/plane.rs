@@ -1,4 +1,4 @@
-//! The inertia of bodies in 2D: a single number.
+//! Mass properties in 2D, where the inertia is a single number.
 
 use super::{MassError, MassProperties, Moments, amount, finite, inverse};
 use crate::math::{Matrix, Point, Real, Vector};

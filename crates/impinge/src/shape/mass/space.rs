@@ -1,4 +1,4 @@
-//! The inertia of bodies in 3D: a tensor.
+//! Mass properties in 3D, where the inertia is a tensor.
 
 use super::{MassError, MassProperties, Moments, amount, finite, inverse};
 use crate::math::na::UnitQuaternion;

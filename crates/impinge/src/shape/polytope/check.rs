@@ -46,23 +46,24 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 }
 
-/// How far vertices may be in front of faces, as a part of the solid's size, where coarse damage is looked for.
+/// The maximum height of a vertex above a face that `is_roughly_convex` accepts, as a fraction of
+/// `reach`.
 #[cfg(feature = "serde")]
 const ROUGHLY: f64 = 1e-3;
 
 #[cfg(feature = "serde")]
 impl<N: Real, const D: usize> Polytope<N, D> {
-    /// No vertex is far in front of a face.
+    /// Returns whether no vertex is far above a face: the check of restored solids for damage.
     pub(in crate::shape) fn is_roughly_convex(&self) -> bool {
         let most = N::lit(ROUGHLY) * self.reach;
-        // False for NaN: lengths beyond the range of the scalar are no damage.
+        // A height that is NaN counts as convex: an overflow of lengths is no damage.
         let is_in_front = |face: &PolytopeFace<N, D>| {
             self.vertices.iter().any(|vertex| face.height_of(vertex) > most)
         };
         !self.faces.iter().any(is_in_front)
     }
 
-    /// Sides end at each vertex.
+    /// Returns whether at least `D` sides end at each vertex.
     pub(in crate::shape) fn has_all_fans(&self) -> bool {
         (0..self.vertices.len()).all(|vertex| self.fan(vertex).len() >= D)
     }

@@ -62,7 +62,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
-    /// Returns the id of the first of `vertices` within `2 tolerance` of a point; `None` if there
+    /// Returns the id of the first of `vertices` within `2 · tolerance` of a point; `None` if there
     /// is none.
     fn end_at(&self, vertices: &[u32], point: &Point<N, D>, tolerance: N) -> Option<FeatureId> {
         let near = N::lit(4.0) * tolerance * tolerance;
@@ -71,7 +71,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         vertices.iter().find(is_near).map(|&vertex| FeatureId::Vertex(vertex))
     }
 
-    /// Whether a point lies within `tolerance` of the line through a side.
+    /// Returns whether a point lies within `tolerance` of the line through a side.
     fn is_on_side(&self, side: u32, point: &Point<N, D>, tolerance: N) -> bool {
         let [a, b] = self.side(side).vertices.map(|end| self.vertices[end as usize]);
         let (along, arm) = (b - a, point - a);
@@ -79,8 +79,8 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         aside.norm_squared() <= tolerance * tolerance
     }
 
-    /// Returns the side at a vertex with the smallest slope along a direction, and the sine of that
-    /// slope.
+    /// Returns the side at a vertex with the smallest slope along the unit vector `direction`, and
+    /// the sine of that slope. `None` if no side ends at the vertex.
     fn flattest_side(&self, vertex: usize, direction: &Vector<N, D>) -> Option<(u32, N)> {
         let mut best: Option<(u32, N)> = None;
         for (side, along) in self.fan_along(vertex) {
@@ -157,8 +157,8 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         ends.map(|vertex| (FeatureId::Vertex(vertex), self.vertices[vertex as usize]))
     }
 
-    /// Returns the unit vector along the sum of the normals of some faces; the normal of face 0 if
-    /// the sum is zero.
+    /// Returns the unit vector along the sum of the normals of the given faces; the normal of face
+    /// 0 if the sum is zero.
     fn mean_normal(&self, faces: impl Iterator<Item = u32>) -> Vector<N, D> {
         let normals = faces.map(|face| self.faces[face as usize].normal);
         let first = self.faces[0].normal;
@@ -197,8 +197,8 @@ impl<N: Real> Polytope<N, 2> {
         SideOrVertex::vertex(FeatureId::Vertex(count32(vertex)), self.vertices[vertex])
     }
 
-    /// Implements [`Self::supporting`] for up to 8 vertices: the rule of [`Self::part_toward`],
-    /// computed from rows of coordinates and normals, without the lists of sides.
+    /// Implements [`Self::supporting`] for up to 8 vertices. Applies the rule of
+    /// [`Self::part_toward`] to rows of coordinates and normals, without the lists of sides.
     fn supporting_of_few(
         &self,
         [xs, ys]: &[[N; 8]; 2],
@@ -239,7 +239,7 @@ impl<N: Real> Polytope<N, 2> {
 }
 
 impl<N: Real> Polytope<N, 3> {
-    /// Returns the id of the [`SupportMap::core_feature`].
+    /// Returns the id of the feature that [`SupportMap::core_feature`] writes.
     #[inline]
     pub(crate) fn supporting_part(&self, direction: &Vector<N, 3>) -> FeatureId {
         Self::id_of(self.part_toward(direction, Tilt::default_limit()))

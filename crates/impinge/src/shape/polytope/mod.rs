@@ -65,13 +65,13 @@ pub struct Polytope<N: Real, const D: usize> {
     /// The vertices in packets of 4, for code without SIMD.
     pub(in crate::shape) quartets: Quartets<N, D>,
     pub(in crate::shape) faces: Vec<PolytopeFace<N, D>>,
-    /// The vertex indices of all faces, one loop after the other.
+    /// The vertex indices around each face, one loop after the other.
     pub(in crate::shape) loops: Vec<u32>,
     /// For each entry of `loops`, the edge (in 2D: the face) that leads to the next vertex.
     pub(in crate::shape) loop_sides: Vec<u32>,
     /// The edges of the solid; empty in 2D.
     pub(in crate::shape) edges: Vec<PolytopeEdge>,
-    /// The edges (in 2D: the faces) at each vertex, one vertex after the other.
+    /// The edges (in 2D: the faces) that end at each vertex, one vertex after the other.
     pub(in crate::shape) fans: Vec<u32>,
     /// For each vertex, the index in `fans` where its fan starts; the last entry is the length of
     /// `fans`.
@@ -82,8 +82,8 @@ pub struct Polytope<N: Real, const D: usize> {
     pub(in crate::shape) twin: Twin<N, D>,
 }
 
-/// A copy of the polytope for the caches of pairs, made on first use. Clones of the polytope made
-/// after that share the copy, so that a pair can recognize the polytope by the pointer.
+/// A copy of the polytope for the caches of pairs, made on first use. Later clones of the polytope
+/// share the copy, so that a pair recognizes the polytope by the pointer.
 #[derive(Clone, Default)]
 pub(in crate::shape) struct Twin<N: Real, const D: usize>(OnceLock<Arc<Polytope<N, D>>>);
 
@@ -161,7 +161,7 @@ pub struct PolytopeEdge {
 }
 
 impl<N: Real, const D: usize> Polytope<N, D> {
-    /// Returns a copy of the solid, made on first use, that later clones share.
+    /// Returns a copy of the solid. The copy is made on first use, and clones made later share it.
     pub(crate) fn twin(&self) -> &Arc<Self> {
         self.twin.0.get_or_init(|| Arc::new(self.clone()))
     }
@@ -227,7 +227,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         self.fan_starts[vertex] as usize..self.fan_starts[vertex + 1] as usize
     }
 
-    /// Returns an edge with its ends and its two faces. In 2D returns a face with its ends; both
+    /// Returns an edge with its ends and its two faces. In 2D returns a face as an edge; both
     /// entries of `faces` are then the face itself.
     pub(in crate::shape) fn side(&self, index: u32) -> PolytopeEdge {
         match self.edges.get(index as usize) {
@@ -244,9 +244,9 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         FeatureId::flat::<D>(1, index)
     }
 
-    /// Returns the index of the face over which `point` has the greatest signed height, the first
-    /// if there are several, and that height. The height is positive exactly if the point is
-    /// outside.
+    /// Returns the face over which `point` has the greatest signed height, and that height: the
+    /// index of the first such face. The height is positive if and only if the point is outside, up
+    /// to rounding.
     pub(crate) fn highest_face(&self, point: &Point<N, D>) -> (u32, N) {
         let highest = polytope_support::plane(Level::new(), &self.planes, point);
         (count32(highest), self.faces[highest].height_of(point))
@@ -284,7 +284,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
             .1
     }
 
-    /// Packs vertices in the layout of [`Self::blocks`] and of `quartets`.
+    /// Packs vertices in the layout of [`Self::blocks`] (`COUNT` is 8) or of `quartets` (4).
     pub(in crate::shape) fn blocks_of<Blocks, const COUNT: usize>(
         vertices: &[Point<N, D>],
     ) -> Blocks
@@ -347,7 +347,7 @@ fn heights<N: Real, const D: usize>(
     sums
 }
 
-/// Converts a count of vertices, edges or faces to its stored type.
+/// Converts a count or an index of vertices, edges or faces to its stored type.
 #[inline]
 pub(in crate::shape) fn count32(count: usize) -> u32 {
     u32::try_from(count).expect("a solid has fewer than 2³² parts")

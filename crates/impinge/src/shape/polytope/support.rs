@@ -1,4 +1,4 @@
-//! SIMD kernels of polytopes: the support vertex among more than a few vertices, and the face plane
+//! SIMD kernels of polytopes: the support vertex of a solid with many vertices, and the face plane
 //! over which a point has the greatest height.
 
 use crate::math::lanes::{dot, highest_lane, load, spread, with_lanes};
@@ -69,7 +69,7 @@ fn highest<S: Simd, N: Real, V: Wide<S, Scalar = N>, B>(
     heights: impl Fn(&B) -> V,
 ) -> usize {
     let mut highest = heights(&blocks[0]);
-    // Block indices are small enough to be exact in the scalar type.
+    // Block indices are exact in the scalar type, in `f32` up to 2²⁴ blocks.
     let (mut indices, mut index) = (V::all(simd, N::ZERO), N::ZERO);
     for block in &blocks[1..] {
         index += N::ONE;

@@ -1,4 +1,4 @@
-//! Meshes and polylines as data.
+//! Records of meshes and polylines in saved worlds.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,16 +8,17 @@ use crate::math::{Real, Space};
 use crate::shape::composite::joints::Joints;
 use crate::shape::{MeshByDimension, Polyline, Shape, TriMesh};
 
-/// A mesh of parts with `K` corners each.
+/// The record of a mesh or a polyline.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct MeshRecord<N: Real> {
     pub(in crate::shape) vertices: Numbers<N>,
-    /// The vertices of each part, one part after the other.
+    /// The vertex indices of each part, one part after the other.
     pub(in crate::shape) parts: Vec<u32>,
-    /// So many of the last parts are ghosts.
+    /// The number of ghosts; they are the last of `parts`.
     pub(in crate::shape) ghosts: u32,
-    /// The joint of each vertex, where vertices were moved: their positions do not tell then.
+    /// The joint of each vertex if vertices were moved after construction, else `None`. Joints of
+    /// unmoved vertices follow from the positions.
     pub(in crate::shape) joints: Option<Vec<u32>>,
     pub(in crate::shape) is_one_sided: bool,
     pub(in crate::shape) is_solid: bool,
@@ -25,14 +26,15 @@ pub(crate) struct MeshRecord<N: Real> {
 }
 
 impl<N: Real> MeshRecord<N> {
-    /// The vertices of each part.
+    /// Returns the `K` vertex indices of each part.
     pub(in crate::shape) fn parts<const K: usize>(&self) -> Result<Vec<[u32; K]>, Damage> {
         let (parts, rest) = self.parts.as_chunks::<K>();
         ensure(rest.is_empty(), "a part of a mesh lacks a corner")?;
         Ok(parts.to_vec())
     }
 
-    /// The joints of a mesh whose vertices were moved.
+    /// Checks and returns the joints of a mesh whose vertices were moved; `None` if they were not
+    /// moved.
     pub(in crate::shape) fn moved_joints<const K: usize>(
         &self,
         vertices: usize,
@@ -47,7 +49,7 @@ impl<N: Real> MeshRecord<N> {
     }
 }
 
-/// The composites with vertices.
+/// Returns the record of a polyline or a mesh; `None` for any other shape.
 pub(super) fn record<N: Space<D>, const D: usize>(
     shape: &dyn Shape<N, D>,
 ) -> Option<ShapeRecord<N>> {

@@ -1,8 +1,9 @@
-//! Shapes of saved worlds: each once, by number; those that others hold come before these.
+//! Shapes in saved worlds. Each shape is saved once and referred to by its number; a shape that
+//! another shape holds is saved before that shape.
 //!
-//! A shape is saved by what its constructor takes, or by what it is made of where the constructor would change that: a
-//! hull by its faces, a mesh whose vertices were moved by the joints that it was made with. What is derived is derived
-//! again, and has the same bits.
+//! The record of a shape is the input of its constructor, if the constructor restores the shape
+//! exactly. A hull is saved with its faces instead, and a mesh whose vertices were moved also with
+//! its joints. Derived data are not saved: they are computed again, with the same bits.
 
 mod mesh;
 mod plane;
@@ -73,72 +74,76 @@ pub struct SavedShape {
     pub data: Vec<u8>,
 }
 
-/// Why a shape cannot be saved.
+/// The reason why a shape cannot be saved.
 #[derive(Clone, Debug)]
 pub(crate) enum UnsavedShape {
-    /// It is of a user's type that says nothing of itself; printed with `Debug`.
+    /// The shape has a user's type, and [`Shape::saved`] returns `None`. The text is its `Debug`
+    /// output.
     Own(String),
-    /// Compounds hold the parts of others more often than is restored.
+    /// Compounds have more parts than [`PartLimit`] admits, or there are too many shapes for 32-bit
+    /// numbers.
     TooManyParts,
 }
 
-/// A shape as data.
+/// The record of a shape in a saved world.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) enum ShapeRecord<N: Real> {
     Ball(Numbers<N>),
-    /// The ends.
+    /// The coordinates of both ends.
     Segment(Numbers<N>),
-    /// The ends and the radius.
+    /// The coordinates of both ends, then the radius.
     Capsule(Numbers<N>),
     Triangle(Numbers<N>),
-    /// Half extents.
+    /// The half extents.
     Cuboid(Numbers<N>),
-    /// Half axes.
+    /// The half axes.
     Ellipsoid(Numbers<N>),
-    /// The ends and both radii.
+    /// The coordinates of both ends, then both radii.
     TaperedCapsule(Numbers<N>),
-    /// The normal, which is not normalised again.
+    /// The outward normal; it is not normalised again.
     HalfSpace(Numbers<N>),
     Rounded(u32, Numbers<N>),
     Compound(Vec<(u32, Numbers<N>)>),
     Polyline(MeshRecord<N>),
     TriMesh(MeshRecord<N>),
     HeightField(FieldRecord<N>),
-    /// The vertices.
+    /// The coordinates of the vertices.
     ConvexPolygon(Numbers<N>),
     ConvexHull {
         vertices: Numbers<N>,
-        /// By face.
+        /// The normal of each face.
         normals: Numbers<N>,
         faces: Vec<Vec<u32>>,
     },
-    /// Half the height, and the radius.
+    /// Half of the height, then the radius.
     Cylinder(Numbers<N>),
     Cone(Numbers<N>),
     Tetrahedron(Numbers<N>),
     Own(SavedShape),
 }
 
-/// A height field as data.
+/// The record of a height field.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct FieldRecord<N: Real> {
     pub(in crate::shape) columns: u32,
     pub(in crate::shape) heights: Numbers<N>,
     pub(in crate::shape) scale: Numbers<N>,
-    /// 0 forward, 1 backward, 2 in turn.
+    /// The rule of the diagonals: 0 for forward, 1 for backward, 2 for zigzag.
     pub(in crate::shape) diagonals: u8,
-    /// By cell, if any has one: holes in bits 0 and 1, another diagonal in bit 2, a ghost in bit 3.
+    /// The marks of each cell, or empty if no cell has any. Bits 0 and 1 mark holes, bit 2 a
+    /// diagonal that differs from the rule, bit 3 a ghost.
     pub(in crate::shape) marks: Vec<u8>,
     pub(in crate::shape) is_one_sided: bool,
     pub(in crate::shape) keeps_internal_edges: bool,
 }
 
-/// The shapes that are being saved.
+/// The records of the shapes saved so far.
 #[derive(Debug)]
 pub(crate) struct ShapeRecords<N: Real> {
-    /// By address, which is only looked up: that all shapes are alive makes it their identity.
+    /// The number of each saved shape, by its address. All shapes stay alive while they are saved,
+    /// so the address identifies a shape.
     numbers: BTreeMap<usize, u32>,
     limit: PartLimit,
     pub(crate) records: Vec<ShapeRecord<N>>,
@@ -149,7 +154,7 @@ impl<N: Real> ShapeRecords<N> {
         Self { numbers: BTreeMap::new(), limit: PartLimit::default(), records: Vec::new() }
     }
 
-    /// The number of a shape, which is saved if it was not before.
+    /// Returns the number of a shape, and saves the shape if it has no number yet.
     pub(crate) fn number<const D: usize>(
         &mut self,
         shape: &ShapeHandle<N, D>,
@@ -196,7 +201,8 @@ impl<N: Real> ShapeRecords<N> {
     }
 }
 
-/// The convex solids of both dimensions, and the half-space.
+/// Returns the record of a half-space, or of a convex solid that exists in both dimensions. `None`
+/// for any other shape.
 fn solid<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> Option<ShapeRecord<N>> {
     let ends = |segment: &Segment<N, D>| Numbers::of_points(&[*segment.a(), *segment.b()]);
     let and = |mut numbers: Numbers<N>, more: &[N]| {
@@ -223,7 +229,7 @@ fn solid<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> Option<ShapeRecord
     })
 }
 
-/// Makes shapes of their data; `own` makes those of the user's types.
+/// Restores all shapes from their records, in order; `own` restores shapes of a user's types.
 pub(crate) fn make_all<N: Space<D>, E: From<Damage>, const D: usize>(
     records: Vec<ShapeRecord<N>>,
     own: &mut dyn FnMut(&SavedShape) -> Result<ShapeHandle<N, D>, E>,
@@ -240,7 +246,7 @@ pub(crate) fn make_all<N: Space<D>, E: From<Damage>, const D: usize>(
     Ok(shapes)
 }
 
-/// Makes a shape of the library.
+/// Restores a shape of the library; `known` are the shapes restored before it.
 fn make<N: Space<D>, const D: usize>(
     record: &ShapeRecord<N>,
     known: &[ShapeHandle<N, D>],
@@ -266,7 +272,7 @@ fn make<N: Space<D>, const D: usize>(
     })
 }
 
-/// The shape of a number.
+/// Returns the shape with the number `number`.
 pub(crate) fn shape_of<N: Real, const D: usize>(
     shapes: &[ShapeHandle<N, D>],
     number: u32,
@@ -274,7 +280,7 @@ pub(crate) fn shape_of<N: Real, const D: usize>(
     shapes.get(number as usize).ok_or(Damage("there is no shape of a number".into()))
 }
 
-/// Makes what [`solid`] saved; `None` of other kinds.
+/// Restores a shape from a record that [`solid`] returned; `None` for any other record.
 fn make_solid<N: Real, const D: usize>(
     record: &ShapeRecord<N>,
 ) -> Result<Option<ShapeHandle<N, D>>, Damage> {
@@ -313,25 +319,26 @@ fn make_solid<N: Real, const D: usize>(
     }))
 }
 
-/// The shape, unless the constructor refused it.
+/// Moves the shape into a handle, or converts the constructor's error.
 fn made<N: Real, S: Shape<N, D>, E: core::fmt::Display, const D: usize>(
     result: Result<S, E>,
 ) -> Result<ShapeHandle<N, D>, Damage> {
     result.map(ShapeHandle::new).map_err(|error| Damage::found(&error))
 }
 
-/// Parts that compounds may have however few there are in the data.
+/// The number of parts that a compound may have in addition to the parts listed in the data.
 const FREE_PARTS: u64 = 1 << 20;
 
-/// How many parts a compound may have: those that are in the data, and some more. A few compounds that hold each other
-/// twice would have more parts than there is memory for their contacts.
+/// Limits the number of parts of a compound to [`FREE_PARTS`] more than the data list. A short
+/// chain of compounds that each hold the previous one twice could otherwise have more parts than
+/// there is memory for their contacts.
 #[derive(Debug, Default)]
 struct PartLimit {
     listed: u64,
 }
 
 impl PartLimit {
-    /// The shape has no more parts than is allowed.
+    /// Counts the parts that the record lists, and returns whether the shape is within the limit.
     fn admits<N: Real, const D: usize>(
         &mut self,
         record: &ShapeRecord<N>,

@@ -1,4 +1,4 @@
-//! The shapes of 2D as data.
+//! Records of the shapes that exist in 2D only.
 
 use super::{ShapeRecord, made};
 use crate::math::numbers::{Damage, Numbers, ensure};
@@ -7,12 +7,12 @@ use crate::shape::composite::polyline::Front;
 use crate::shape::composite::polyline_parts::right_of;
 use crate::shape::{ConvexPolygon, HeightField, Shape, ShapeHandle};
 
-/// On which side of a segment the front is, where it has one.
+/// Returns the function from the direction of a segment to the normal on its front.
 pub(crate) fn front2<N: Real>() -> Option<Front<N, 2>> {
     Some(right_of)
 }
 
-/// A shape of this dimension alone.
+/// Returns the record of a shape that exists in 2D only; `None` for any other shape.
 pub(crate) fn record2<N: Real>(shape: &dyn Shape<N, 2>) -> Option<ShapeRecord<N>> {
     if let Some(polygon) = shape.as_shape::<ConvexPolygon<N>>() {
         return Some(ShapeRecord::ConvexPolygon(Numbers::of_points(polygon.vertices())));
@@ -21,7 +21,7 @@ pub(crate) fn record2<N: Real>(shape: &dyn Shape<N, 2>) -> Option<ShapeRecord<N>
     Some(ShapeRecord::HeightField(field.record()))
 }
 
-/// Makes what [`record2`] saved.
+/// Restores a shape from a record that [`record2`] returned.
 pub(crate) fn make2<N: Real>(record: &ShapeRecord<N>) -> Result<ShapeHandle<N, 2>, Damage> {
     match record {
         ShapeRecord::ConvexPolygon(vertices) => Ok(ShapeHandle::new(polygon(vertices.points()?)?)),
@@ -34,8 +34,8 @@ pub(crate) fn make2<N: Real>(record: &ShapeRecord<N>) -> Result<ShapeHandle<N, 2
     }
 }
 
-/// The polygon of its vertices, which turn left about the first side of each: the constructor for users would leave
-/// out those that are on a line.
+/// Restores a polygon from its vertices, which must be counter-clockwise. Public constructors would
+/// drop vertices on the line between their neighbours.
 fn polygon<N: Real>(vertices: Vec<Point<N, 2>>) -> Result<ConvexPolygon<N>, Damage> {
     let is_finite = vertices.iter().flat_map(|point| point.iter()).all(|x| x.is_finite_number());
     ensure(is_finite && vertices.len() >= 3, "a polygon has too few vertices, or infinite ones")?;

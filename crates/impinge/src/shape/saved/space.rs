@@ -1,4 +1,4 @@
-//! The shapes of 3D as data.
+//! Records of the shapes that exist in 3D only.
 
 use super::{ShapeRecord, made};
 use crate::math::numbers::{Damage, NumberSource, Numbers, ensure};
@@ -6,12 +6,12 @@ use crate::math::{Point, Real, Vector, is_unit};
 use crate::shape::composite::polyline::Front;
 use crate::shape::{Cone, ConvexHull, Cylinder, HeightField, Shape, ShapeHandle, Tetrahedron};
 
-/// A segment in 3D has no front.
+/// Returns `None`: a segment in 3D has no front.
 pub(crate) const fn front3<N: Real>() -> Option<Front<N, 3>> {
     None
 }
 
-/// A shape of this dimension alone.
+/// Returns the record of a shape that exists in 3D only; `None` for any other shape.
 pub(crate) fn record3<N: Real>(shape: &dyn Shape<N, 3>) -> Option<ShapeRecord<N>> {
     if let Some(hull) = shape.as_shape::<ConvexHull<N>>() {
         let (vertices, faces) = (Numbers::of_points(hull.vertices()), hull.faces());
@@ -33,7 +33,7 @@ pub(crate) fn record3<N: Real>(shape: &dyn Shape<N, 3>) -> Option<ShapeRecord<N>
     Some(ShapeRecord::HeightField(field.record()))
 }
 
-/// Makes what [`record3`] saved.
+/// Restores a shape from a record that [`record3`] returned.
 pub(crate) fn make3<N: Real>(record: &ShapeRecord<N>) -> Result<ShapeHandle<N, 3>, Damage> {
     match record {
         ShapeRecord::ConvexHull { vertices, normals, faces } => {
@@ -62,7 +62,7 @@ pub(crate) fn make3<N: Real>(record: &ShapeRecord<N>) -> Result<ShapeHandle<N, 3
     }
 }
 
-/// The hull of its vertices and faces, which constructors for users would renumber.
+/// Restores a hull from its vertices and faces. Public constructors would renumber them.
 fn hull<N: Real>(
     vertices: Vec<Point<N, 3>>,
     normals: &[Point<N, 3>],

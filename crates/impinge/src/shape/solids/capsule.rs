@@ -10,8 +10,8 @@ use crate::shape::{
 
 /// The points within `radius` of a segment.
 ///
-/// Radius and length may be zero: a capsule without length is a ball, one without radius a segment.
-/// The vertices 0 and 1 are the round ends; the round side is `Edge(0)`, also in 2D.
+/// Radius and length may be zero: a capsule without length is a ball, a capsule without radius is a
+/// segment. The vertices 0 and 1 are the round ends; the round side is `Edge(0)`, also in 2D.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point};
@@ -62,7 +62,7 @@ impl<N: Real, const D: usize> Capsule<N, D> {
         Ok(Self { segment: Segment::try_new(a, b)?, radius })
     }
 
-    /// Returns half of the length of the core segment, as given to [`Self::new`].
+    /// Returns half of the length of the core segment.
     #[must_use]
     pub fn half_height(&self) -> N {
         self.segment.half_length()

@@ -20,8 +20,8 @@ use crate::shape::{
 ///
 /// As a feature the base is an inscribed octagon whose vertices and sides all have the id of the
 /// rim. The round side is its generating segment nearest to the direction, from the rim to the
-/// apex. A cone without height is a disk: its upper side is the octagon reversed, with the id
-/// `Face(1)`.
+/// apex. A cone without height is a disk: its upper side is the same octagon in reverse order, with
+/// the id `Face(1)`.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point};
@@ -84,9 +84,8 @@ impl<N: Real> Cone<N> {
         Point::<N, 3>::new(N::ZERO, self.half_height, N::ZERO)
     }
 
-    /// Returns the sine of the slope, along a unit vector, of the generating line nearest to that
-    /// vector: positive if the apex lies farther along it than the rim. `None` for a cone that is a
-    /// point.
+    /// Returns the component along `direction` of a unit vector from the rim to the apex, on the
+    /// generating line nearest to `direction`. `None` for a cone that is a point.
     fn sine(&self, direction: &Vector<N, 3>) -> Option<N> {
         let line = Vector::<N, 2>::new(-self.radius, N::TWO * self.half_height);
         let (line, _) = unit(&line)?;
@@ -114,8 +113,8 @@ impl<N: Real> Cone<N> {
 }
 
 impl<N: Real> Cone<N> {
-    /// Returns the supporting feature for a unit vector; `None` if it is the base, or either side
-    /// of a cone without height.
+    /// Returns the supporting feature for a unit vector. `None` if it is the base, or either side
+    /// of a cone without height: both are polygons.
     pub(crate) fn supporting_part(&self, direction: &Vector<N, 3>) -> Option<RoundPart<N>> {
         let is_axial = Tilt::default_limit().admits(radial_of(direction).norm_squared());
         if is_axial && (direction.y < N::ZERO || self.half_height == N::ZERO) {

@@ -17,7 +17,7 @@ use crate::shape::{
 /// Vertices: bit `i` of the index is set if coordinate `i` is positive. Faces: `2 · axis` on the
 /// positive side of an axis, `2 · axis + 1` on the negative side. Edges (in 3D): `4 · axis` for the
 /// axis along which the edge runs, plus two bits for the signs on the next two axes (x → y → z →
-/// x): 1 if the next coordinate is positive, 2 if the one after is.
+/// x): 1 if the next coordinate is positive, 2 if the coordinate after it is.
 ///
 /// The vertices of a face are counter-clockwise seen from outside; in 2D a face has the box on its
 /// left. So in 2D the counter-clockwise outline has faces 0, 2, 1, 3 and vertices 1, 3, 2, 0. A
@@ -100,7 +100,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
         (free != CuboidPart::<D>::ALL).then(|| part.id())
     }
 
-    /// Returns the id of a feature from `2 D` bits: the free axes, and above them the positive axes.
+    /// Returns the feature id for `2 · D` bits: the free axes, and above them the positive axes.
     #[inline]
     pub(crate) const fn id_of_bits(bits: u8) -> FeatureId {
         CuboidPart::<D>::IDS[bits as usize & ((1 << (2 * D)) - 1)]

@@ -74,8 +74,8 @@ impl<N: Real, const D: usize> Plane<N, D> {
 impl<N: Real, const D: usize> Plane<N, D> {
     /// Returns the box of the half-space with the outward normal `normal` and a boundary through
     /// `point`. The box is bounded on one side if the normal is exactly along an axis and `point`
-    /// is not NaN, else unbounded. The caller must not pass a normal that lies along an axis only
-    /// by rounding.
+    /// is not NaN; otherwise it is unbounded. The caller must not pass a normal that lies along an
+    /// axis only by rounding.
     fn aabb_of(normal: &Vector<N, D>, point: &Vector<N, D>) -> Aabb<N, D> {
         let (mut mins, mut maxs) = (*Aabb::unbounded().mins(), *Aabb::unbounded().maxs());
         for axis in 0..D {

@@ -79,8 +79,8 @@ impl<N: Real> Disk<N> {
     }
 
     /// Returns the half extents, along each outer axis, of the disk about the origin under a
-    /// rotation. They are computed from the two columns that span the disk: computed from the axis,
-    /// a small tilt would lose half of its digits.
+    /// rotation. They are computed from the two columns that span the disk. Computed from the axis
+    /// instead, the extent at a small tilt would lose half of its significant digits.
     pub(in crate::shape) fn extents(self, rotation: &Matrix<N, 3>) -> Vector<N, 3> {
         Vector::<N, 3>::from_fn(|axis, _| {
             let spans = Vector::<N, 2>::new(rotation[(axis, 0)], rotation[(axis, 2)]);
@@ -93,8 +93,8 @@ impl<N: Real> Disk<N> {
     }
 
     /// Writes the disk as an inscribed octagon, whose normal points to the side of the y axis on
-    /// which `direction` lies. The first vertex is towards `direction`, or towards x if that is
-    /// lost in rounding. A disk without radius is written as a point.
+    /// which `direction` lies. The first vertex is towards `direction`, or towards x if `direction`
+    /// is along the y axis up to rounding. A disk without radius is written as a point.
     pub(in crate::shape) fn fill_polygon(
         self,
         face: FeatureId,
@@ -120,8 +120,8 @@ impl<N: Real> Disk<N> {
     }
 }
 
-/// Returns the unit vector of a direction's component across the axis; x if the component is lost
-/// in rounding.
+/// Returns the unit vector of a direction's component across the y axis; the x axis if that
+/// component is only rounding error.
 fn first_sample<N: Real>(direction: &Vector<N, 3>) -> Vector<N, 2> {
     let fallback = Vector::<N, 2>::new(N::ONE, N::ZERO);
     match unit(&radial_of(direction)) {

@@ -15,7 +15,7 @@ use crate::shape::{
 /// The solid is *larger* than the shape by the radius on all sides. The radius may be zero. The
 /// features are those of the shape: a surface point nearest to `Edge(3)` of a box is on `Edge(3)`
 /// of the rounded box, which is a piece of a cylinder there. Every distance to the solid, also from
-/// inside, is the distance to the shape minus the radius, with the accuracy of that distance.
+/// inside, is the distance to the shape minus the radius, and as accurate.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -80,19 +80,20 @@ impl<N: Real, const D: usize> Rounded<N, D> {
         &self.shape
     }
 
-    /// Returns the distance by which the solid extends beyond the inner shape.
+    /// Returns the distance by which the solid extends beyond the inner shape on all sides.
     #[inline]
     #[must_use]
     pub const fn radius(&self) -> N {
         self.radius
     }
 
-    /// Whether both solids share one inner shape and have equal radii.
+    /// Returns whether both solids share one inner shape and have equal radii.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         self.shape.is_same(&other.shape) && self.radius == other.radius
     }
 
-    /// Returns the inner shape as queries treat it.
+    /// Returns the kind of the inner shape on which queries dispatch, with a reference to the
+    /// shape.
     pub(crate) fn inner(&self) -> Geometry<'_, N, D> {
         self.shape.geometry()
     }
@@ -161,7 +162,7 @@ impl<N: Real, const D: usize> Shape<N, D> for Rounded<N, D> {
         self.depth
     }
 
-    /// Returns an error if the magnitudes of the factors differ.
+    /// Requires factors of equal magnitude; otherwise returns an error.
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
         let radius = self.radius * Scale::try_new(scale)?.uniform()?;
         Ok(ShapeHandle::new(Self::try_from_handle(self.shape.scaled(scale)?, radius)?))

@@ -68,8 +68,8 @@ impl<N: Real, const D: usize> Segment<N, D> {
         &self.b
     }
 
-    /// Returns half of the length. Halves the coordinates first: the difference of large ones may
-    /// overflow.
+    /// Returns half of the length. The coordinates are halved first, as the difference of large
+    /// coordinates may overflow.
     pub(in crate::shape) fn half_length(&self) -> N {
         length_of(&(self.b.coords * N::HALF - self.a.coords * N::HALF))
     }
@@ -78,7 +78,8 @@ impl<N: Real, const D: usize> Segment<N, D> {
 /// Returns the length of a vector, also if its square overflows or underflows.
 #[inline]
 pub(in crate::shape) fn length_of<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
-    // Squares in this range lose no digits; beyond it `unit` scales the vector first.
+    // Squares in this range keep their relative precision; outside it `unit` scales the vector
+    // first.
     let squared = v.norm_squared();
     if squared > N::MIN_POSITIVE.sqrt() && squared < N::MAX.sqrt() {
         return squared.sqrt();
@@ -91,8 +92,8 @@ pub(in crate::shape) fn farther<N: Real, const D: usize>(a: &Point<N, D>, b: &Po
     max(length_of(&a.coords), length_of(&b.coords))
 }
 
-/// Returns the box around a few points of a solid placed at `pose`; rounded outwards, and unbounded
-/// on overflow.
+/// Returns the box around a few points of a solid placed at `pose`. The box is rounded outwards,
+/// and unbounded if a coordinate overflows.
 pub(in crate::shape) fn box_at<N: Real, const D: usize, const K: usize>(
     pose: &Pose<N, D>,
     points: [&Point<N, D>; K],

@@ -14,13 +14,13 @@ use crate::shape::{
 /// The convex hull of two balls around the ends of a segment.
 ///
 /// Radii and length may be zero, and one ball may contain the other; the solid is then the larger
-/// ball. With equal radii it is a capsule, with one radius of zero a cone with a round base, with
-/// two a segment. The vertices 0 and 1 are the round ends; the side, part of a cone, is `Edge(0)`,
+/// ball. With equal radii it is a capsule. If one radius is zero it is a cone with a round base, if
+/// both are zero a segment. The vertices 0 and 1 are the round ends; the conical side is `Edge(0)`,
 /// also in 2D.
 ///
 /// The rounding radius is the smaller radius. The core is the hull of a point and of a ball whose
-/// radius is the difference. As a feature the side is its generating segment nearest to the
-/// direction.
+/// radius is the difference of the radii. As a feature the side is its generating segment nearest
+/// to the direction.
 ///
 /// ```
 /// use impinge::dim3::math::Isometry;
@@ -75,7 +75,7 @@ impl<N: Real, const D: usize> TaperedCapsule<N, D> {
         Ok(Self { segment, radii })
     }
 
-    /// Returns half of the distance between the centres of the balls, as given to [`Self::new`].
+    /// Returns half of the distance between the centres of the balls.
     #[must_use]
     pub fn half_height(&self) -> N {
         self.segment.half_length()
@@ -135,9 +135,9 @@ pub(crate) struct Taper<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Taper<N, D> {
-    /// Returns the unit vector away from the axis that is nearest to `direction`, and the component
-    /// of `direction` along it. If `direction` is along the axis, up to rounding, returns some
-    /// perpendicular of the axis and zero.
+    /// Returns the unit vector perpendicular to the axis that is nearest to `direction`, and the
+    /// component of `direction` along it. If `direction` is along the axis, up to rounding, returns
+    /// an arbitrary perpendicular of the axis and zero.
     fn away(&self, direction: &Vector<N, D>) -> (Vector<N, D>, N) {
         let radial = direction - self.along * direction.dot(&self.along);
         let known = unit(&radial).filter(|&(_, length)| length > N::lit(16.0) * N::EPSILON);
@@ -165,7 +165,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for TaperedCapsule<N, D> {
     ) -> Option<CurvedSupport<N, D>> {
         let large = self.larger_end();
         let (center, radius) = (self.end(large), self.core_radii()[large]);
-        // The core's feature at the smaller ball is the centre of that ball, a vertex.
+        // The smaller ball of the core is a point, a vertex without curvature.
         let to_corner = (point - self.end(1 - large)).norm();
         if to_corner < ((point - center).norm() - radius).abs() {
             return None;
@@ -203,8 +203,8 @@ impl<N: Real, const D: usize> SupportMap<N, D> for TaperedCapsule<N, D> {
             let end = usize::from(sine > N::ZERO);
             return out.set_point(ids[end], self.core_support(direction));
         }
-        // The end on the larger ball: the support point, or the end of the side if the support
-        // point is on the smaller ball.
+        // On the larger ball the feature ends at the support point; or, if the support point is on
+        // the smaller ball, at the point where the side touches the larger ball.
         let is_on_large = (sine > N::ZERO) == (large == 1);
         let side = away * taper.cosine + taper.along * taper.sine;
         let toward = if is_on_large { *direction } else { side };

@@ -28,9 +28,9 @@ pub(in crate::shape) const EDGES: [[u32; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2
 /// to 5 join the vertices 0 1, 0 2, 0 3, 1 2, 1 3 and 2 3.
 ///
 /// A tetrahedron without volume (a height of at most 4096 epsilon times its size) is still the hull
-/// of its corners, and distances to it are as accurate. Its features are then the whole flat side,
-/// with the id of one of the faces there, and the edges of its outline. If the corners lie on a
-/// line, the only feature is the longest edge; if they coincide, the first vertex.
+/// of its corners, and distances to it are as accurate. Its features are then the whole outline,
+/// with the id of one of the faces, and the edges and vertices of the outline. If the corners lie
+/// on a line, the only feature is the longest edge; if they coincide, the first vertex.
 ///
 /// ```
 /// use impinge::dim3::math::Point;
@@ -47,7 +47,7 @@ pub struct Tetrahedron<N: Real> {
     /// The vertices, edges and faces. If the tetrahedron is flat, only the vertices and ids are
     /// valid; the faces overlap.
     polytope: Polytope<N, 3>,
-    /// The outline of a flat tetrahedron; `None` for one with a volume.
+    /// The outline of a flat tetrahedron; `None` for a tetrahedron with a volume.
     flat: Option<FlatOutline<N>>,
 }
 
@@ -129,8 +129,8 @@ impl TetrahedronExtent {
 /// size.
 pub(in crate::shape) fn scaled<N: Real>(corners: &[Point<N, 3>; 4]) -> [Vector<f64, 3>; 4] {
     let corners = corners.map(|corner| corner.coords.map(N::as_f64));
-    // Scales twice: the difference of two large corners may overflow, and that of two close corners
-    // is small.
+    // Scales twice: first, because the difference of two large corners may overflow; then, because
+    // the difference of two close corners is small.
     let unit = power_of_two_below(&corners) * 2.0;
     let from_first = corners.map(|corner| corner / unit - corners[0] / unit);
     let unit = power_of_two_below(&from_first);
@@ -158,8 +158,8 @@ fn polytope<N: Real>(corners: [Point<N, 3>; 4], is_mirrored: bool) -> Polytope<N
     let faces = FACES.map(|[a, b, c]| if is_mirrored { [a, c, b] } else { [a, b, c] });
     let faces = faces.into_iter().map(|face| {
         let [a, b, c] = face.map(|corner| &positions[corner as usize]);
-        // Computed from rounded sides, the normal would have a relative error of epsilon times
-        // length over height.
+        // Computed from rounded sides, the normal would have a relative error of epsilon times the
+        // ratio of length to height.
         let normal = area_vector(a, b, c).try_normalize(0.0);
         let normal = normal.unwrap_or_else(Vector::<f64, 3>::y).map(N::lit);
         (unit(&normal).map_or(normal, |(normal, _)| normal), face)

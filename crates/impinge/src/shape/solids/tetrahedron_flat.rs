@@ -8,8 +8,8 @@ use crate::shape::{Feature, FeatureId};
 /// Corners closer to a line than `STRAIGHT` epsilon times the size are treated as on the line.
 const STRAIGHT: f64 = 4096.0;
 
-/// The corners of the outline, counter-clockwise seen from where `normal` points; two for a
-/// segment, one for a point.
+/// The corners of the outline, counter-clockwise seen from the side to which `normal` points; two
+/// corners for a segment, one for a point.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::shape) struct FlatOutline<N: Real> {
     ring: Vec<u32>,
@@ -85,8 +85,8 @@ impl<N: Real> FlatOutline<N> {
         out.set_segment(self.edge_id(side), [with_id(side), with_id(self.next(side))]);
     }
 
-    /// Writes the whole outline, with the id of the face opposite to the last corner that is not in
-    /// the outline, or to the last corner if all are in it.
+    /// Writes the whole outline with the id of a face: the face opposite to the last corner that is
+    /// not in the outline, or opposite to corner 3 if all corners are in the outline.
     fn fill_face(&self, normal: Vector<N, 3>, is_back: bool, out: &mut Feature<N, 3>) {
         let left_out = (0..4).rev().find(|corner| !self.ring.contains(corner)).unwrap_or(3);
         out.clear();
@@ -113,8 +113,8 @@ fn widest_normal(positions: &[Vector<f64, 3>; 4]) -> Option<(Vector<f64, 3>, f64
     widest.try_normalize(0.0).map(|normal| (normal, widest.norm()))
 }
 
-/// Returns the corners of the outline, counter-clockwise around the normal: no corner lies outside
-/// a side by more than `tolerance`.
+/// Returns the corners of the outline, counter-clockwise around the normal. No corner lies outside
+/// a side of the outline by more than `tolerance`.
 fn ring(positions: &[Vector<f64, 3>; 4], normal: &Vector<f64, 3>, tolerance: f64) -> Vec<u32> {
     let is_left = |a: usize, b: usize, c: usize| {
         let side = positions[b] - positions[a];
@@ -160,7 +160,7 @@ fn index32(corner: usize) -> u32 {
     u32::try_from(corner).expect("one of four")
 }
 
-/// Returns the two corners that are farthest apart; only the first corner if all coincide.
+/// Returns the two corners that are farthest apart; only the first corner if all corners coincide.
 fn ends(positions: &[Vector<f64, 3>; 4]) -> Vec<u32> {
     let apart = |[a, b]: [u32; 2]| (positions[a as usize] - positions[b as usize]).norm();
     let [a, b] = EDGES

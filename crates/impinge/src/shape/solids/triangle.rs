@@ -95,8 +95,8 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Triangle<N, D> {
         let [a, b, c] = &self.corners;
         let most = max(a.coords.norm_squared(), b.coords.norm_squared());
         let most = max(most, c.coords.norm_squared());
-        // The square root of the largest square is the largest length; for squares out of this
-        // range see `length_of`.
+        // The square root of the largest square is the largest length. `length_of` computes lengths
+        // whose squares are outside this range.
         if most > N::MIN_POSITIVE.sqrt() && most < N::MAX.sqrt() {
             return most.sqrt();
         }

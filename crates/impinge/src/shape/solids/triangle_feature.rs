@@ -1,5 +1,5 @@
 //! The features of triangles, in any dimension: the supporting feature for a direction, and the
-//! winding of its loop.
+//! order of its vertices.
 
 use crate::math::{Matrix, Point, Real, Vector, cross, max, max_component, unit, unit_or};
 use crate::shape::solids::segment::length_of;
@@ -29,25 +29,25 @@ impl<N: Real, const D: usize> TriangleSpan<N, D> {
         let longest = longer(longer(0, 1), 2);
         let (along, length) = unit(&side(longest))?;
         let to_opposite = corners[(longest + 2) % 3] - corners[longest];
-        // Below this height, the difference of coordinates may be rounding error alone.
+        // Up to this height, the difference of coordinates may be rounding error alone.
         let tolerance = N::lit(16.0) * N::EPSILON * length;
         let rise = unit(&without(&to_opposite, &along));
         let rise = rise.filter(|&(_, height)| height > tolerance);
-        // A second projection makes the vector perpendicular to the last digit, however flat the
+        // A second projection makes the vector perpendicular up to rounding, even for a nearly flat
         // triangle.
         let rise = rise.map(|(rise, _)| unit_or(&without(&rise, &along), rise));
         Some(Self { longest, along, rise })
     }
 
-    /// Returns the squared component of a direction in the plane; `None` if the corners lie on a
-    /// line.
+    /// Returns the squared length of the component of the unit vector `direction` in the plane: the
+    /// squared sine of its angle to the normal. `None` if the corners lie on a line.
     fn squared_sine(&self, direction: &Vector<N, D>) -> Option<N> {
         let (along, rise) = (self.along.dot(direction), self.rise?.dot(direction));
         Some(along * along + rise * rise)
     }
 
-    /// Returns the unit normal of the plane on the side of a direction. `None` if the direction
-    /// lies in the plane, or the corners lie on a line.
+    /// Returns the unit normal of the plane on the side to which `direction` points. `None` if
+    /// `direction` lies in the plane, or the corners lie on a line.
     fn normal_toward(&self, direction: &Vector<N, D>) -> Option<Vector<N, D>> {
         let rise = self.rise?;
         let rest = |v: &Vector<N, D>| without(&without(v, &self.along), &rise);
@@ -61,7 +61,8 @@ fn without<N: Real, const D: usize>(v: &Vector<N, D>, along: &Vector<N, D>) -> V
     v - along * along.dot(v)
 }
 
-/// Whether the determinant of `D` columns is negative, by Gaussian elimination with row exchanges.
+/// Returns whether the determinant of `D` columns is negative, by Gaussian elimination with row
+/// exchanges.
 fn is_left_handed<N: Real, const D: usize>(mut columns: Matrix<N, D>) -> bool {
     let mut is_negative = false;
     for at in 0..D {
@@ -85,8 +86,8 @@ fn is_left_handed<N: Real, const D: usize>(mut columns: Matrix<N, D>) -> bool {
 }
 
 impl<N: Real, const D: usize> Triangle<N, D> {
-    /// Returns the corner indices in counter-clockwise order seen from where `direction` points; in
-    /// 2D seen from above.
+    /// Returns the corner indices in counter-clockwise order, in 3D seen from the side to which
+    /// `direction` points.
     fn ring(&self, direction: &Vector<N, D>) -> [usize; 3] {
         let [a, b, c] = self.corners();
         let mut columns = Matrix::<N, D>::zeros();
@@ -122,9 +123,9 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         }
     }
 
-    /// Returns the id of the corner, side or face on which a surface point lies, up to `tolerance`;
-    /// the face is the one that the unit vector `direction` points out of. `None` if the corners
-    /// lie on a line, and in 2D for a point inside.
+    /// Returns the id of the corner, side or face on which a surface point lies, up to `tolerance`.
+    /// In 3D the face is the one on the side to which the unit vector `direction` points. `None` if
+    /// the corners lie on a line, and in 2D for a point inside.
     pub(crate) fn part_at(
         &self,
         point: &Point<N, D>,
@@ -216,8 +217,8 @@ impl<N: Real, const D: usize> Triangle<N, D> {
     }
 
     /// Returns the normal of a vertex or a side. If the corners lie on a line, the normal of a
-    /// vertex is the direction from the centre to it, and the normal of a side is any
-    /// perpendicular.
+    /// vertex is the direction from the centre to the vertex, and the normal of a side is an
+    /// arbitrary perpendicular of the line.
     fn thin_normal(&self, id: FeatureId) -> Vector<N, D> {
         let outward = |index: usize| unit(&(self.corners()[index] - self.center()));
         let normal = match id {
@@ -306,8 +307,9 @@ pub(crate) const THIN_SQUARED: f64 = 1.0 / 1024.0;
 pub(crate) const CLEAR: f64 = 1.0 / 1024.0;
 
 impl<N: Real> Triangle<N, 3> {
-    /// Returns the id of the [`SupportMap::core_feature`] for a unit vector, computed by products
-    /// alone. `None` for thin triangles, and where rounding decides.
+    /// Returns the id of the feature that [`SupportMap::core_feature`] writes for a unit vector,
+    /// computed without square roots. `None` for thin triangles, and if the decision is within the
+    /// margin [`CLEAR`].
     pub(crate) fn supporting_part(&self, direction: &Vector<N, 3>) -> Option<FeatureId> {
         let [a, b, c] = self.corners();
         let sides = [b - a, c - b, a - c];
@@ -456,7 +458,7 @@ impl<N: Real> ConvexPolyhedron<N, 3> for Triangle<N, 3> {
     }
 }
 
-/// Whether `id` is `Face(1)`.
+/// Returns whether `id` is `Face(1)`.
 #[track_caller]
 fn is_second_face(id: FeatureId) -> bool {
     assert!(matches!(id, FeatureId::Face(0 | 1)), "a triangle has no face named {id:?}");

@@ -36,8 +36,8 @@ pub(in crate::shape) enum BendShape {
 }
 
 impl<N: Real> Bend<N> {
-    /// Classifies the edge by the corners of its triangles and their unit normals; `None` where
-    /// these do not decide.
+    /// Classifies the edge by the corners of its triangles and their unit normals; `None` if these
+    /// do not decide.
     pub(in crate::shape) fn new(
         corners: [&[Point<N, 3>; 3]; 2],
         fronts: [Vector<N, 3>; 2],
@@ -58,8 +58,9 @@ impl<N: Real> Bend<N> {
         self.shape
     }
 
-    /// Whether the edge admits the unit vector `normal`, which must differ from both face normals.
-    /// `None` close to a limit, and for a vector that is not on the same side of both faces.
+    /// Returns whether the edge admits the unit vector `normal`, which must differ from both face
+    /// normals. `None` close to a limit, and for a vector that is not on the same side of both
+    /// faces.
     pub(in crate::shape) fn admits(
         &self,
         normal: &Vector<N, 3>,
@@ -73,9 +74,9 @@ impl<N: Real> Bend<N> {
         }
         match (self.shape, is_front) {
             (BendShape::Flat, _) => {
-                // Between coplanar faces only the face normal is admitted. From √2 times
-                // `FLAT_SINE` on, the tilt along the edge or the tilt across it exceeds the limit;
-                // in between the rule of `seam` decides.
+                // Between coplanar faces only the face normal is admitted. If the sine of the tilt
+                // exceeds √2 times `FLAT_SINE`, the tilt along the edge or the tilt across it
+                // exceeds the limit. In between, the rule of `seam` decides.
                 let squared_sine = (N::ONE - along1 * along1) / N::lit(FLAT_SINE * FLAT_SINE);
                 let is_face_normal = squared_sine < N::lit(1.0 - CLOSE);
                 let is_tilted = squared_sine > N::lit(2.0 * (1.0 + CLOSE));
@@ -89,8 +90,8 @@ impl<N: Real> Bend<N> {
         }
     }
 
-    /// Whether the vector lies between the two front normals, or between their opposites, and is
-    /// perpendicular to the edge. `None` close to a limit.
+    /// Returns whether the vector lies between the two front normals, or between their opposites,
+    /// and is perpendicular to the edge. `None` close to a limit.
     fn is_between(&self, normal: &Vector<N, 3>, [along1, along2]: [N; 2]) -> Option<bool> {
         // The components of the vector across each front normal and towards the other front normal,
         // times the sine of the angle between the fronts.
@@ -120,7 +121,8 @@ impl BendShape {
         fronts: &[Vector<N, 3>; 2],
     ) -> Option<Self> {
         let cosine = fronts[0].dot(&fronts[1]);
-        // False for NaN. If the fronts are more than 90° apart, the rule of `seam` decides.
+        // The comparison is false for NaN. If the fronts are more than 90° apart, the rule of
+        // `seam` decides.
         let is_certain = cosine > N::ZERO && corners.iter().all(|corners| is_well_shaped(corners));
         if !is_certain {
             return None;
@@ -155,8 +157,8 @@ fn height_of<N: Real>(
     })
 }
 
-/// Whether the triangle is not thin, its sides are longer than 4096 epsilon times its coordinates,
-/// and its squared area does not underflow.
+/// Returns whether the triangle is not thin, its sides are longer than 4096 epsilon times its
+/// coordinates, and its squared area does not underflow.
 fn is_well_shaped<N: Real>(corners: &[Point<N, 3>; 3]) -> bool {
     let [a, b, c] = corners;
     let (ab, ac) = (b - a, c - a);

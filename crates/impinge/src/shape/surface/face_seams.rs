@@ -1,4 +1,4 @@
-//! The front normals of a triangle of a 3D surface and of its three neighbours, cached beside the
+//! The front normals of a triangle of a 3D surface and of its three neighbours, cached with the
 //! triangle's corners.
 //!
 //! ```text
@@ -21,7 +21,7 @@ pub(crate) struct FaceSeams<N: Real> {
     /// The unit normal on the front, in the frame of the surface.
     pub(in crate::shape) front: Vector<N, 3>,
     pub(in crate::shape) across: [Vector<N, 3>; 3],
-    /// The shape of each edge; `None` at a rim, and where [`Bend`] does not decide.
+    /// The shape of each edge; `None` at a rim, and if [`Bend`] does not decide.
     pub(in crate::shape) bends: [Option<BendShape>; 3],
     pub(in crate::shape) is_one_sided: bool,
     /// Whether each neighbour is known to have its front on the same side of the surface as this
@@ -31,9 +31,9 @@ pub(crate) struct FaceSeams<N: Real> {
 
 impl<N: Real> FaceSeams<N> {
     /// Computes the seams of a triangle from its front normal. `bend(side)` returns the edge at a
-    /// side, with the front of this triangle before that of its neighbour. `is_rim(side)` is called
-    /// where `bend` returns `None`; it returns whether the side has no neighbour, or one with its
-    /// front on the same side.
+    /// side, with the front of this triangle before the front of its neighbour. `is_rim(side)` is
+    /// called if `bend` returns `None`. It returns whether the side has no neighbour, or a
+    /// neighbour with its front on the same side.
     pub(in crate::shape) fn new(
         front: Vector<N, 3>,
         is_one_sided: bool,
@@ -50,8 +50,8 @@ impl<N: Real> FaceSeams<N> {
         Self { front, across, bends, is_one_sided, is_oriented }
     }
 
-    /// Whether `face` is the normal on the front and all neighbours have their fronts on the same
-    /// side. If this holds for all faces in contact, none hides another.
+    /// Returns whether `face` is the normal on the front and all neighbours have their fronts on
+    /// the same side. If this holds for all faces in contact, none hides another.
     pub(crate) fn is_front(&self, face: &Vector<N, 3>) -> bool {
         self.is_oriented && self.front.dot(face) > N::ZERO
     }
@@ -66,22 +66,22 @@ impl<N: Real> FaceSeams<N> {
         KnownFace { seams: self, surface, corner }
     }
 
-    /// Whether a neighbour across one of the two sides at a corner is known not to be coplanar with
-    /// this triangle.
+    /// Returns whether a neighbour across one of the two sides at a corner is known not to be
+    /// coplanar with this triangle.
     pub(in crate::shape) fn is_bent_at(&self, corner: usize) -> bool {
         let is_bent = |bend: Option<BendShape>| bend.is_some_and(|bend| bend != BendShape::Flat);
         is_bent(self.bends[corner]) || is_bent(self.bends[(corner + 2) % 3])
     }
 
-    /// Whether a side admits a unit vector other than the normal of the face; `None` where only the
-    /// surface can decide.
+    /// Returns whether a side admits a unit vector other than the normal of the face; `None` if
+    /// only the surface can decide.
     fn side_admits(&self, side: usize, normal: &Vector<N, 3>) -> Option<bool> {
         let bend = Bend::of(self.bends[side]?, [self.front, self.across[side]]);
         bend.admits(normal, self.is_one_sided)
     }
 }
 
-/// One triangle of a surface: uses its cached seams where they decide, else the surface.
+/// One triangle of a surface. Its cached seams decide if they can, else the surface decides.
 ///
 /// Queried normals must differ from the face's own normal by more than rounding.
 pub(crate) struct KnownFace<'a, N: Real> {

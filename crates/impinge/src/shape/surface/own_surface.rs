@@ -1,4 +1,5 @@
-//! Methods of the library's own surfaces beyond [`Surface`]: faster ways to the same contacts.
+//! Additional methods of the library's own surfaces. They make contacts faster to compute and do
+//! not change them.
 
 use core::fmt;
 
@@ -44,29 +45,30 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
         None
     }
 
-    /// Whether the part bounds a body. A solid that overlaps such a part touches its front,
-    /// whichever side of the surface the centre of the solid is on.
+    /// Returns whether the part bounds a body. A solid that overlaps such a part has contacts on
+    /// the front of the part, whichever side of the surface the centre of the solid is on.
     fn is_body(&self, part: u32) -> bool {
         let _ = part;
         false
     }
 
-    /// Whether a ghost is adjacent to the part. A solid that overlaps the part only near the ghost
-    /// touches the neighbouring surface that the ghost represents.
+    /// Returns whether a ghost is adjacent to the part. If a solid overlaps the part only near the
+    /// ghost, its contact belongs to the neighbouring surface that the ghost represents.
     fn is_beside_ghost(&self, part: u32) -> bool {
         let _ = part;
         false
     }
 
-    /// Whether, in 3D, parts are adjacent exactly where they have corners at one position, and a
-    /// seam admits no normal along which a direction into an adjacent part rises.
+    /// Returns whether a surface in 3D has two properties. Parts are adjacent if and only if they
+    /// have corners at one position. A seam admits no normal along which a direction into an
+    /// adjacent part rises.
     fn has_regular_seams(&self) -> bool {
         false
     }
 }
 
-/// The surface of a composite for the algorithms of the library: a user's surface, or one of the
-/// library with faster ways to the same contacts.
+/// The surface of a composite for the algorithms of the library. A surface of the library also has
+/// the methods of `OwnSurface`; a user's surface has only those of [`Surface`].
 ///
 /// Public only because a hidden method returns it; users can neither construct nor use one.
 #[derive(Clone, Copy)]

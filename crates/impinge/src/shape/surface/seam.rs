@@ -32,18 +32,19 @@ pub(in crate::shape) fn slack<N: Real>() -> N {
     N::lit(8.0) * N::EPSILON
 }
 
-/// Whether an angle between pieces of one surface is treated as zero, given its sine.
+/// Returns whether an angle between pieces of one surface is treated as zero, given its sine.
 pub(in crate::shape) fn is_flat<N: Real>(sine: N) -> bool {
     sine.abs() <= N::lit(FLAT_SINE)
 }
 
-/// Whether two lines are treated as parallel, given the scalar product of unit vectors along them.
+/// Returns whether two lines are treated as parallel, given the scalar product of unit vectors
+/// along them.
 fn are_parallel<N: Real>(cosine: N) -> bool {
     N::ONE - cosine * cosine <= N::lit(FLAT_SINE * FLAT_SINE)
 }
 
-/// Whether a unit vector is perpendicular to an edge, within `FLAT_SINE`. The tolerance is large
-/// because the vector may be the result of an iteration, and an edge has no other normals to
+/// Returns whether a unit vector is perpendicular to an edge, within `FLAT_SINE`. The tolerance is
+/// large because the vector may be the result of an iteration, and an edge has no other normals to
 /// replace it. True for an edge without length.
 pub(in crate::shape) fn is_across<N: Real, const D: usize>(
     edge: &Vector<N, D>,
@@ -80,14 +81,14 @@ impl<'a, N: Real, const D: usize> CornerEdges<'a, N, D> {
         self.has_perpendicular |= !is_clear;
     }
 
-    /// Whether a side rises, so that more sides cannot change the result.
+    /// Returns whether a side rises, so that more sides cannot change the result.
     pub(in crate::shape) const fn is_refused(&self) -> bool {
         self.has_rising
     }
 
-    /// Whether the corner admits the normal, after all its sides were added; `None` where the faces
-    /// decide. `own` is the unit normal of a face at the corner; `is_bent` is true if another face
-    /// there is known not to be coplanar with that face.
+    /// Returns whether the corner admits the normal, after all its sides were added; `None` if the
+    /// faces decide. `own` is the unit normal of a face at the corner; `is_bent` is true if another
+    /// face there is known not to be coplanar with that face.
     pub(in crate::shape) fn admit(
         &self,
         (own, is_bent): (&Vector<N, D>, bool),
@@ -204,9 +205,9 @@ impl<N: Real, const D: usize> Seam<N, D> {
         }
     }
 
-    /// Whether the whole surface admits the normal at the seam. Between coplanar pieces only the
-    /// face normals are admitted. At a rim, where all pieces lie on one side, the normals that tilt
-    /// to the open side are admitted, however many pieces there are.
+    /// Returns whether the whole surface admits the normal at the seam. Between coplanar pieces
+    /// only the face normals are admitted. At a rim, where all pieces lie on one side, the normals
+    /// that tilt to the open side are admitted, however many pieces there are.
     pub(in crate::shape) const fn admits(&self, is_one_sided: bool) -> bool {
         let is_flat = self.is_flat && self.is_hemmed;
         self.is_in_cone && !is_flat && (self.is_front || !is_one_sided)

@@ -1,5 +1,5 @@
-//! The normals that a segment of a 2D chain admits, computed from its ends and those of adjacent
-//! segments.
+//! The normals that a segment of a 2D chain admits, computed from the ends of the segment and of
+//! adjacent segments.
 
 use smallvec::SmallVec;
 
@@ -16,9 +16,9 @@ pub(crate) struct Sidedness {
     /// Whether the front is on the left of a segment, looking from its first end to its second.
     pub(in crate::shape) is_left: bool,
     pub(in crate::shape) is_one_sided: bool,
-    /// How to choose the side of a vector. If true, the sign of its component along the front
-    /// decides, and 0 means the front. If false, its own perpendicular component decides, which may
-    /// be too small to give a side.
+    /// Selects how the side of a vector is chosen. If true, the sign of the component along the
+    /// front decides, and zero counts as the front. If false, the vector's own perpendicular
+    /// component decides, which may be too small to give a side.
     pub(in crate::shape) follows_front: bool,
     pub(in crate::shape) keeps_internal_edges: bool,
     pub(in crate::shape) joining: Joining,
@@ -32,13 +32,13 @@ pub(in crate::shape) enum Joining {
     /// The second end of each segment is joined to the first end of the segment with the next
     /// index, and to no other.
     InRow,
-    /// Only the surface can decide.
+    /// The cached segments cannot decide: the surface is queried.
     Unknown,
 }
 
 /// A set of segments of a chain that contains all segments in some box.
 pub(crate) trait KnownSegments<N: Real>: Sync {
-    /// Whether the set contains all segments with an end at `point`.
+    /// Returns whether the set contains all segments with an end at `point`.
     fn are_all_at(&self, point: &Point<N, 2>) -> bool;
 
     /// Calls `visit` with the index and both ends of each segment that has an end at `point`, in
@@ -71,20 +71,20 @@ impl Sidedness {
     }
 }
 
-/// A segment of a chain as a surface: uses its ends and neighbours where these decide, without a
-/// call of the chain's surface.
+/// A segment of a chain as a surface. The ends of the segment and of its neighbours decide if they
+/// can, else the surface of the chain decides.
 pub(crate) struct KnownSegment<'a, N: Real> {
     surface: SurfaceAccess<'a, N, 2>,
     sidedness: Option<Sidedness>,
     /// The segments of the chain near this one, including the adjacent ones.
     others: &'a dyn KnownSegments<N>,
     ends: [Point<N, 2>; 2],
-    /// The unit vector from the first end to the second; `None` without length.
+    /// The unit vector from the first end to the second; `None` for a segment without length.
     along: Option<Vector<N, 2>>,
 }
 
 impl<'a, N: Real> KnownSegment<'a, N> {
-    /// Returns a segment by its ends, whose coordinates must be exactly those that the surface has.
+    /// Returns a segment by its ends, whose coordinates must equal exactly those in the surface.
     pub(crate) fn new(
         surface: SurfaceAccess<'a, N, 2>,
         sidedness: Option<Sidedness>,
@@ -125,8 +125,8 @@ impl<'a, N: Real> KnownSegment<'a, N> {
         seam.admits(sidedness.is_one_sided)
     }
 
-    /// Whether a normal is perpendicular to the segment within rounding; `None` if the segment has
-    /// no length.
+    /// Returns whether a normal is perpendicular to the segment within rounding; `None` if the
+    /// segment has no length.
     fn is_own(&self, normal: &Vector<N, 2>) -> Option<bool> {
         self.along.map(|along| along.dot(normal).abs() <= slack())
     }

@@ -12,12 +12,13 @@ use crate::world::bodies::{WorldBody, grown};
 use crate::world::entries;
 use crate::world::{CollisionObject, CollisionWorld};
 
-/// Shape casts: a solid moves through the world along a straight line, without rotating, while the
+/// Shape casts: a solid moves through the world along a straight line, without rotation, while the
 /// objects of the world are at rest.
 ///
-/// An [`Impact`] is in the world frame, at its time; its first solid is the moving one. The rules
-/// for contacts at time zero are those of [`impact`]: a solid that does not approach an object does
-/// not hit it. A position or velocity that is not finite hits nothing.
+/// An [`Impact`] is in the world frame, with both solids at the time of impact; its first solid is
+/// the moving one. Contacts at time zero follow the rules of [`impact`]: a solid that does not
+/// approach an object does not hit it. If a number of the position or velocity is not finite,
+/// nothing is hit.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns the object that a moving solid hits first, and the impact; at equal times the object
     /// with the smallest handle. `None` if it hits nothing by the maximum time of `options`.
@@ -70,8 +71,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         found.map(|(object, _, impact)| (object, impact))
     }
 
-    /// Returns all objects that a moving solid would hit if none of them stopped it, each with its
-    /// first impact, in ascending order of time, then of handle. See [`Self::cast_shape`] for the
+    /// Returns all objects on the path of a moving solid that no object stops, each with its first
+    /// impact, in ascending order of time, then of handle. See [`Self::cast_shape`] for the
     /// arguments.
     #[must_use]
     pub fn cast_shape_all(

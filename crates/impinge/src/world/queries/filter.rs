@@ -1,4 +1,4 @@
-//! Filters of queries, which select objects.
+//! Filters that select the objects of a query.
 
 use core::fmt;
 
@@ -63,8 +63,8 @@ impl<'a, N: Space<D>, const D: usize, T> QueryFilter<'a, N, D, T> {
         Self { groups: Some(groups), ..self }
     }
 
-    /// Excludes another object, such as the one for which the query runs. A stale handle excludes
-    /// nothing. To exclude more than a few objects, a predicate is faster.
+    /// Excludes one more object, such as the object for which the query runs. A stale handle
+    /// excludes nothing. To exclude more than a few objects, a predicate is faster.
     #[must_use]
     pub fn exclude(mut self, handle: CollisionObjectHandle) -> Self {
         self.excluded.push(handle);

@@ -1,8 +1,9 @@
-//! Queries among all objects of a world: with rays, points, boxes, and solids at rest or in motion.
+//! Queries among all objects of a world: with rays, points, boxes, solids at rest and moving
+//! solids.
 //!
-//! The broad phase proposes objects as of the last update, and a tree of dirty objects proposes
-//! those whose boxes changed since, so every change is visible at once. Each proposed object is
-//! then tested exactly by the queries for one or two solids.
+//! The broad phase proposes objects with their boxes as of the last update. A tree of dirty objects
+//! proposes the objects whose boxes have changed since, so that queries respect every change at
+//! once. Each proposed object is then tested exactly by the queries for one or two solids.
 
 pub(super) mod cast;
 mod filter;
@@ -71,9 +72,9 @@ impl<N: Space<D>, const D: usize, T> fmt::Debug for NearObject<'_, N, D, T> {
 
 /// Functions shared by all queries.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Returns the objects that the filter allows and whose boxes have a key of at most `limit`,
-    /// each once, in order of their handles. A few others may be among them, so the caller must
-    /// test each object exactly.
+    /// Returns the objects that the filter allows and whose boxes have a key ([`WorldProbe`]) of at
+    /// most `limit`, each once, in order of their handles. A few objects with a larger key may be
+    /// included, so the caller must test each object exactly.
     fn matching<'a>(
         &'a self,
         probe: &WorldProbe<N, D>,
@@ -90,9 +91,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         objects.into_iter()
     }
 
-    /// Returns `true` if `passes` accepts one of the objects whose boxes have a key of at most
-    /// `limit`. `passes` may also be called for a few other objects. It is called at most once for
-    /// each object, and not again after it has returned `true`.
+    /// Returns `true` if `passes` returns `true` for an object whose box has a key ([`WorldProbe`])
+    /// of at most `limit`. `passes` may also be called for a few objects with a larger key. It is
+    /// called at most once for each object, and not again after it has returned `true`.
     fn any_matching<'a>(
         &'a self,
         probe: &WorldProbe<N, D>,
@@ -112,7 +113,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Returns the objects that the filter allows and whose boxes may overlap `aabb`, in order of
-    /// their handles; the caller must test each exactly.
+    /// their handles. The caller must test each object exactly.
     fn overlapping_aabb<'a>(
         &'a self,
         aabb: &Aabb<N, D>,

@@ -10,7 +10,8 @@ use crate::world::bodies::WorldBody;
 use crate::world::entries;
 use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 
-/// Point queries, in the world frame. A point that is not finite is in no object and near none.
+/// Point queries, in the world frame. No object contains a point with a coordinate that is not
+/// finite, and none is near it.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns the objects that contain a point, boundary included, in order of their handles.
     /// Considers the objects that may interact with `groups`.

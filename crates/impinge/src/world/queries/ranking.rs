@@ -1,7 +1,7 @@
-//! The best results of a ranked query.
+//! The best results of a query that ranks objects by a key.
 //!
-//! Results are ordered by (key, handle), in whatever order objects are proposed. A box is skipped
-//! only if its key proves that its object has no better result.
+//! Results are ordered by (key, handle), whatever the order in which objects are proposed. A box is
+//! skipped only if its key proves that its object has no better result.
 
 use core::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -9,8 +9,8 @@ use std::collections::BinaryHeap;
 use crate::math::{Real, max};
 use crate::narrow_phase::CollisionObjectHandle;
 
-/// The results with the least keys, at equal keys with the smallest handles: at most `count`, with
-/// keys of at most `limit`.
+/// The best results so far: those with the smallest keys and, at equal keys, the smallest handles.
+/// Has at most `count` results, with keys of at most `limit`.
 #[derive(Debug)]
 pub(super) struct Ranking<N: Real, A> {
     count: usize,
@@ -19,7 +19,7 @@ pub(super) struct Ranking<N: Real, A> {
     heap: BinaryHeap<Ranked<N, A>>,
 }
 
-/// A result for an object, and its key: a time or a distance, zero or more.
+/// A result for an object, and its key: a time or a distance, not negative.
 #[derive(Debug)]
 pub(super) struct Ranked<N: Real, A> {
     pub(super) key: N,
@@ -27,12 +27,12 @@ pub(super) struct Ranked<N: Real, A> {
     pub(super) answer: A,
 }
 
-/// A collection of the best results so far, which limits the keys of further results.
+/// The best results so far, which limit the keys of further results.
 pub(super) trait Rank<N: Real, A> {
-    /// Returns the largest key with which a result can still be among the best.
+    /// Returns the largest key that a further result among the best can have.
     fn limit(&self) -> N;
 
-    /// Keeps the result if it is among the best. A result with a NaN key is dropped.
+    /// Keeps the result if it is among the best. Drops a result with a NaN key.
     fn offer(&mut self, ranked: Ranked<N, A>);
 
     /// Returns the largest key of a box whose object may still have a result among the best.
@@ -47,7 +47,7 @@ pub(super) trait Rank<N: Real, A> {
     }
 }
 
-/// The number of requested results, and their largest key.
+/// The number of requested results, and the largest key that they may have.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RankRange<N: Real> {
     pub(super) count: usize,

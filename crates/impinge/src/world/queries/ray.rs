@@ -12,11 +12,11 @@ use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 
 /// Ray queries.
 ///
-/// Times are in units of the length of the ray's direction, and normals are in the world frame.
-/// Each object is hit at most once: where the ray first meets it.
+/// The point at time `t` is `origin + t * direction`. Normals are in the world frame. Each object
+/// is hit at most once: at the point at which the ray first hits it.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Returns the objects that a ray meets, each with its first intersection, in order of their
-    /// handles. There is no maximum time, and a ray that starts inside an object meets it at time
+    /// Returns the objects that a ray hits, each with its first intersection, in order of their
+    /// handles. There is no maximum time, and a ray that starts inside an object hits it at time
     /// zero. Considers the objects that may interact with `groups`.
     pub fn interferences_with_ray<'a>(
         &'a self,
@@ -29,9 +29,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             .filter_map(move |object| Some((object, cast(&object.body, &ray, N::INFINITY, true)?)))
     }
 
-    /// Returns the object that a ray meets first, and the intersection; see
-    /// [`Self::first_ray_hit`]. There is no maximum time, and a ray that starts inside an object
-    /// meets it at time zero. Considers the objects that may interact with `groups`.
+    /// Returns the object that a ray hits first, and the intersection; see [`Self::first_ray_hit`].
+    /// There is no maximum time, and a ray that starts inside an object hits it at time zero.
+    /// Considers the objects that may interact with `groups`.
     #[must_use]
     pub fn first_interference_with_ray(
         &self,
@@ -41,12 +41,12 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.first_ray_hit(ray, N::INFINITY, true, &groups.into())
     }
 
-    /// Returns the object that a ray meets first, and the intersection; at equal times the object
-    /// with the smallest handle. `None` if the ray meets no object at or before `max_time`.
+    /// Returns the object that a ray hits first, and the intersection; at equal times the object
+    /// with the smallest handle. `None` if the ray hits no object at or before `max_time`.
     ///
-    /// If `solid` is `true`, a ray that starts inside an object meets it at time zero, otherwise
-    /// where the ray leaves the object. A ray that is not finite meets nothing. No ray meets
-    /// anything if `max_time` is negative or NaN.
+    /// If `solid` is `true`, a ray that starts inside an object hits it at time zero; otherwise it
+    /// hits the object where it leaves the object. A ray with a number that is not finite hits
+    /// nothing. Nothing is hit if `max_time` is negative or NaN.
     ///
     /// Costs a tree search, and a ray cast against a few objects.
     ///
@@ -93,12 +93,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Casts many rays: `hits[i]` becomes the handle and the intersection that
-    /// [`Self::first_ray_hit`] finds for `batch.rays[i]`, to the bit. The caller can keep the
+    /// [`Self::first_ray_hit`] finds for `batch.rays[i]`, bit for bit. The caller can reuse the
     /// memory of `hits` from frame to frame.
     ///
-    /// Runs on the calling thread, whatever the features, since the data of the user need not be
-    /// `Sync`. A world that is `Sync` may be queried by several threads, each with a part of the
-    /// rays.
+    /// Runs on the calling thread, also with the feature `parallel`, since the user's data need not
+    /// be `Sync`. Several threads may query a world that is `Sync`, each with a part of the rays.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -135,7 +134,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         });
     }
 
-    /// Returns the objects that a ray meets at or before `max_time`, each with its first
+    /// Returns the objects that a ray hits at or before `max_time`, each with its first
     /// intersection, in ascending order of time, then of handle. See [`Self::first_ray_hit`] for
     /// the arguments.
     #[doc(alias = "interferences_with_ray")]
@@ -165,8 +164,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 }
 
-/// Returns the first intersection of a ray and an object, with the normal in the world frame;
-/// `None` if that is after time `latest`.
+/// Returns the first intersection of a ray and an object, with the normal in the world frame.
+/// `None` if there is none by time `latest`.
 fn cast<N: Space<D>, const D: usize>(
     body: &WorldBody<N, D>,
     ray: &Ray<N, D>,

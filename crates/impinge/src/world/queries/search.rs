@@ -1,5 +1,5 @@
-//! The search that all ranked queries share: objects by the keys of their boxes, near ones first,
-//! as long as a box may have a result.
+//! The search that all ranked queries share. It visits objects roughly in ascending order of the
+//! keys of their boxes, and ends when no box can have a better result.
 
 use crate::world::entries;
 use core::cell::Cell;
@@ -15,15 +15,16 @@ use crate::partitioning::Sweep;
 use crate::world::bodies::WorldBody;
 use crate::world::{CollisionObject, CollisionWorld, DirtyTree, DirtyVisitor, WorldBroadPhase};
 
-/// The probe of a query. It defines the key of a box: a time or a distance.
+/// The ray, box or moving box with which a query searches. It defines the key of a box of an
+/// object: a time or a distance.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum WorldProbe<N: Real, const D: usize> {
     /// The key is the time at which the ray enters the box.
     Ray(Ray<N, D>),
-    /// The key is the distance between the two boxes.
+    /// The key is the distance between this box and the box of the object.
     Near(Aabb<N, D>),
-    /// The key is the time at which the moving box first touches the box. Its velocity is the
-    /// second field.
+    /// The key is the time at which this moving box first touches the box of the object. The second
+    /// field is its velocity.
     Cast(Aabb<N, D>, Vector<N, D>),
 }
 
@@ -120,10 +121,12 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Calls `visit` with each object whose box may have a key of at most `limit`, and possibly
-    /// with a few others, each once and roughly near ones first. `visit` receives the present limit
-    /// of keys and returns the new one; a negative limit ends the search.
+    /// with a few objects with a larger key. Visits each object once, roughly in ascending order of
+    /// keys. `visit` receives the present limit of keys and returns the new one; a negative limit
+    /// ends the search.
     ///
-    /// Dirty objects come from their own tree; proposals of the broad phase for them are dropped.
+    /// Dirty objects come from the tree of dirty objects; proposals of the broad phase for them are
+    /// dropped.
     pub(super) fn propose<'a>(
         &'a self,
         probe: &WorldProbe<N, D>,
@@ -156,11 +159,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         });
     }
 
-    /// Returns the object of a proposal of the broad phase; `None` if it does not exist or is
-    /// dirty.
+    /// Returns the object of a proposal of the broad phase; `None` if the object does not exist or
+    /// is dirty.
     ///
-    /// Usually the uid of the proxy leads to the object, so that the record of the broad phase need
-    /// not be loaded: a uid that belongs to a living object identifies that object.
+    /// Usually the uid of the proxy identifies the object, so that the data of the proxy need not
+    /// be loaded: a uid that belongs to a present object identifies that object.
     #[inline]
     fn clean_proposal(
         &self,
@@ -189,8 +192,8 @@ fn answer<'a, N: Space<D>, const D: usize, T, A>(
     (object, ranked.key, answer)
 }
 
-/// Loads the objects of a group of proposals before any of them is tested. They are scattered in
-/// memory, and independent loads overlap.
+/// Finds the objects of a group of proposals before any of them is tested. The objects are
+/// scattered in memory, and the cache misses of independent loads overlap.
 #[inline]
 fn gathered<P, A: Copy>(group: &[P], find: impl Fn(&P) -> Option<A>) -> [Option<A>; GROUP] {
     let mut found = [None; GROUP];

@@ -1,4 +1,4 @@
-//! Queries for the objects near or overlapping a solid.
+//! Queries for the objects that are near a solid or overlap it.
 
 use super::ranking::RankRange;
 use super::search::WorldProbe;
@@ -17,9 +17,9 @@ use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 /// Queries with solids and boxes, in the world frame.
 ///
 /// The solid of a query is not an object of the world: it may be any shape at any position. `&*`
-/// converts a [`ShapeHandle`](crate::shape::ShapeHandle) to its shape. A position that is not
-/// finite is near nothing. Distances are those of [`crate::query::distance`]: zero for solids that
-/// touch or overlap.
+/// converts a [`ShapeHandle`](crate::shape::ShapeHandle) to its shape. If a number of the position
+/// is not finite, nothing is near. Distances are those of [`crate::query::distance`]: zero for
+/// solids that touch or overlap.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns the objects whose boxes overlap or touch `aabb`, in order of their handles; see
     /// [`Self::objects_in_aabb`]. Considers the objects that may interact with `groups`.
@@ -133,7 +133,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Returns all objects at most `distance` from a solid, in ascending order of distance, then of
-    /// handle; see [`Self::nearest_objects`] for the fields.
+    /// handle. [`Self::nearest_objects`] describes the fields.
     #[must_use]
     pub fn objects_within(
         &self,

@@ -1,4 +1,4 @@
-//! Queries of a single object, whose generic code is compiled in this crate.
+//! Queries of a single object. Their generic code is compiled in this crate.
 
 use crate::math::{Point, Space};
 use crate::query::point::{holds, is_surely_beyond, project};
@@ -6,8 +6,8 @@ use crate::query::{PointProjection, Ray, RayIntersection, cast_on, surely_misses
 use crate::world::WorldBody;
 
 impl<N: Space<D>, const D: usize> WorldBody<N, D> {
-    /// Returns the first point at which a ray meets the object, with the normal in the world frame;
-    /// `None` if that is after time `latest`.
+    /// Returns the first intersection of a ray and the object, with the normal in the world frame;
+    /// `None` if there is none by time `latest`.
     pub(crate) fn cast_ray(
         &self,
         ray: &Ray<N, D>,

@@ -1,11 +1,11 @@
-//! Why a world cannot be saved or restored.
+//! Errors of saving and restoring a world.
 
 use core::fmt;
 
 use crate::math::numbers::Damage;
 use crate::shape::saved::UnsavedShape;
 
-/// Why a world cannot be saved.
+/// The reason why a world cannot be saved.
 ///
 /// ```
 /// use impinge::dim2::narrow_phase::{DefaultContactDispatcher, DefaultNarrowPhase, PairProximityDetector};
@@ -33,16 +33,19 @@ use crate::shape::saved::UnsavedShape;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SaveError {
-    /// The broad phase, or the one that is to take over, is of the user's own, or was used outside of the world.
+    /// The present broad phase, or its replacement for the next update, is not the library's own;
+    /// or objects were added to the replacement before the world received it.
     BroadPhase,
-    /// The narrow phase, or the one that is to take over, is of the user's own, or has dispatchers that are.
+    /// The present narrow phase, or its replacement for the next update, is not the library's own,
+    /// or has a custom dispatcher.
     NarrowPhase,
-    /// A shape of a user's type says nothing of itself: see [`Shape::saved`](crate::shape::Shape::saved).
+    /// [`Shape::saved`](crate::shape::Shape::saved) returned `None` for a shape of a user's type.
     OwnShape {
-        /// The shape, as `Debug` prints it.
+        /// The `Debug` output of the shape.
         shape: String,
     },
-    /// Compounds hold the parts of others again and again, more than 2^20 parts beyond those that are in the data.
+    /// A compound has too many parts: more than 2^20 in addition to the parts listed in the data.
+    /// Nested compounds that share children can have exponentially many parts.
     TooManyParts,
 }
 
@@ -70,7 +73,7 @@ impl fmt::Display for SaveError {
 
 impl std::error::Error for SaveError {}
 
-/// Why data makes no world.
+/// The reason why a world cannot be restored from data.
 ///
 /// ```
 /// use impinge::dim2::world::{CollisionWorld, Registry, RestoreError, SavedWorld};
@@ -82,30 +85,30 @@ impl std::error::Error for SaveError {}
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RestoreError {
-    /// The data is of another version of the format.
+    /// The data has another version of the format.
     Version {
-        /// The version of the data.
+        /// The version in the data.
         found: u32,
     },
-    /// The world has another scalar.
+    /// The data belongs to a world with another scalar type.
     Scalar {
-        /// The bits of a number in the data.
+        /// The number of bits of a scalar in the data.
         found: u8,
     },
-    /// The world has another dimension.
+    /// The data belongs to a world of another dimension.
     Dimension {
-        /// The dimension of the data.
+        /// The dimension in the data.
         found: u8,
     },
-    /// The registry has no shapes of this name.
+    /// The registry has no shape type of this name.
     UnknownShape(String),
-    /// The registry makes no shape of this name of the data.
+    /// The function that the registry has for this shape type returned `None` for the data.
     RefusedShape(String),
     /// The registry has no pair filter of this name.
     UnknownFilter(String),
-    /// No world was saved as this data.
+    /// The data is invalid: it is incomplete or contradicts itself.
     Damaged {
-        /// The defect, in words.
+        /// A description of the defect.
         what: String,
     },
 }

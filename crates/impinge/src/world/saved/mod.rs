@@ -1,17 +1,18 @@
-//! Worlds as data: the state that determines all later answers of a world.
+//! Saved worlds: the state that determines all later results of a world.
 //!
 //! | state | how it is saved |
 //! |---|---|
-//! | objects, with data, skins, predictions and what changed since the last update | record by record |
-//! | shapes | each once, by what its constructor takes ([`crate::shape::saved`]) |
-//! | rows of objects with pairs | where they differ from the objects |
-//! | boxes, proxies, what waits for them | as they are; trees are made again, whose order decides about time alone |
+//! | objects, with data, skins, predictions and changes since the last update | one record for each object |
+//! | shapes | each once, as the input of its constructor ([`crate::shape::saved`]) |
+//! | rows of objects with pairs | only rows that differ from the objects |
+//! | boxes, proxies, waiting changes of boxes | unchanged; trees are built again, since their order affects only time |
 //! | contacts and proximities | in the order in which they are read ([`crate::narrow_phase::saved`]) |
-//! | events, and the removed objects that they name | as they are |
+//! | events, and the removed objects whose handles they have | unchanged |
 //! | pair filters | by name |
 //!
-//! It is what [`mark`](CollisionWorld::mark) keeps; marks themselves are not saved. What follows from the rest is computed
-//! again, and data that contradicts itself is refused: whatever bytes are read, a world is valid or there is none.
+//! A mark ([`CollisionWorld::mark`]) restores the same state; marks themselves are not saved.
+//! Derived data are computed again. Data that contradicts itself is refused: a world restored from
+//! arbitrary bytes is valid, or there is an error.
 
 mod error;
 mod objects;
@@ -42,13 +43,14 @@ use crate::shape::saved::{ShapeRecord, ShapeRecords, make_all};
 use crate::world::filter::Filters;
 use crate::world::removed::RemovedObjects;
 
-/// The version of the data; others are refused.
+/// The version of the format; data of any other version is refused.
 const VERSION: u32 = 1;
 
-/// The data of a saved world, before it becomes a world: read, but not checked.
+/// The data of a saved world that has been read but not validated.
 ///
-/// Deserialize this type instead of a [`CollisionWorld`] if the world needs a [`Registry`], if errors shall have a type,
-/// or if the world is a field of a larger saved state. Every format of serde keeps all bits.
+/// Deserialize this type instead of a [`CollisionWorld`] if the world needs a [`Registry`], if
+/// errors should have the type [`RestoreError`], or if the world is a field of a larger saved
+/// state. Numbers keep all their bits in every format of serde.
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;
@@ -83,21 +85,21 @@ pub struct SavedWorld<N: Real, const D: usize, T> {
     record: Option<WorldRecord<N, T>>,
 }
 
-/// The first element of the data, which all versions read.
+/// The first element of the data. It is the same in all versions of the format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Header {
     version: u32,
-    /// Bits of a number.
+    /// Number of bits of a scalar: 32 or 64.
     scalar: u8,
     dimension: u8,
 }
 
-/// The world's parts.
+/// The second element of the data: all parts of the world.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound(serialize = "N: Real, T: Serialize", deserialize = "N: Real, T: Deserialize<'de>"))]
 struct WorldRecord<N: Real, T> {
     shapes: Vec<ShapeRecord<N>>,
-    /// By handle index: how many objects there were before.
+    /// By handle index: the number of objects that had this index before.
     generations: Vec<u16>,
     vacant: Vec<u32>,
     objects: Vec<ObjectRecord<N, T>>,
@@ -105,7 +107,8 @@ struct WorldRecord<N: Real, T> {
     substeps: Vec<SubstepRecord<N>>,
     broad_phase: BroadRecord<N>,
     narrow_phase: NarrowRecord<N>,
-    /// The margin of the one that takes over at the next update.
+    /// The margin of the broad phase that replaces the present one at the next update, if there is
+    /// one.
     next_broad_phase: Option<Numbers<N>>,
     next_narrow_phase: Option<PhaseRecord<N>>,
     filters: Vec<String>,
@@ -128,7 +131,7 @@ impl EventsRecord {
         Self { contacts, proximities }
     }
 
-    /// The events, of objects of another table.
+    /// Restores the events, with handles of the table whose first generation is `first`.
     fn restore(self, first: Generation) -> Events {
         let mut events = Events::default();
         for event in self.contacts {
@@ -151,7 +154,7 @@ impl Header {
         Self { version: VERSION, scalar, dimension: u8::try_from(D).unwrap_or(0) }
     }
 
-    /// The data is of worlds as `own` says.
+    /// Returns an error unless version, scalar and dimension equal those of `own`.
     fn check(self, own: Self) -> Result<(), RestoreError> {
         let Self { version, scalar, dimension } = self;
         if version != own.version {
@@ -166,7 +169,8 @@ impl Header {
     }
 }
 
-/// Data that was read need not make a world: its errors have no type here; see [`SavedWorld`].
+/// Deserializes and restores a world that needs no [`Registry`]. Errors of the data become errors
+/// of the format; [`SavedWorld`] has typed errors.
 impl<'de, N: Space<D>, const D: usize, T: Deserialize<'de>> Deserialize<'de>
     for CollisionWorld<N, D, T>
 {
@@ -175,7 +179,7 @@ impl<'de, N: Space<D>, const D: usize, T: Deserialize<'de>> Deserialize<'de>
     }
 }
 
-/// Fails where a part of the world cannot be saved: see [`SaveError`].
+/// Fails if a part of the world cannot be saved; see [`SaveError`].
 impl<N: Space<D>, const D: usize, T: Serialize> Serialize for CollisionWorld<N, D, T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.saved().map_err(S::Error::custom)?.serialize(serializer)
@@ -202,7 +206,7 @@ impl<'de, N: Real, const D: usize, T: Deserialize<'de>> Deserialize<'de> for Sav
 }
 
 struct WorldVisitor<N, T, const D: usize> {
-    /// Whether the format allows to skip a value of unknown type.
+    /// Whether the format can skip a value of unknown type.
     can_skip: bool,
     world: PhantomData<(N, T)>,
 }
@@ -228,21 +232,21 @@ impl<'de, N: Real, const D: usize, T: Deserialize<'de>> Visitor<'de> for WorldVi
     }
 }
 
-/// Saving.
+/// Saving a world.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Returns the data of the world, which borrows the user's data. Serializing the world itself does the same, but its
-    /// errors have no type.
+    /// Returns the data of the world, which borrows the user's data. Serializing the world itself
+    /// has the same result, but without typed errors.
     ///
-    /// The restored world gives the same bits as this one after the same calls: contacts with their ids, events,
-    /// pending events included, and handles of new objects. Marks are not saved. The restored world has
-    /// [handles](CollisionObjectHandle) of its own: [`Self::counterpart`] translates handles from before, also deserialized
-    /// ones.
+    /// After the same calls the restored world has the same results as this world, bit for bit:
+    /// contacts with their ids, events (also queued ones), and handles of new objects. Marks are
+    /// not saved. The restored world has its own [handles](CollisionObjectHandle):
+    /// [`Self::counterpart`] translates handles of the saved world, also deserialized handles.
     ///
     /// Costs a copy of the saved data.
     ///
     /// # Errors
-    /// If a phase, a dispatcher or a shape of your own is part of the world, unless the shape implements
-    /// [`Shape::saved`](crate::shape::Shape::saved).
+    /// If the world has a custom phase, a custom dispatcher, or a shape of a user's type that does
+    /// not implement [`Shape::saved`](crate::shape::Shape::saved).
     pub fn saved(&self) -> Result<SavedWorld<N, D, &T>, SaveError> {
         Ok(SavedWorld { header: Header::of::<N, D>(), record: Some(self.record()?) })
     }
@@ -301,11 +305,11 @@ fn default_narrow_phase<N: Space<D>, const D: usize, T>(
 }
 
 impl<N: Space<D>, const D: usize, T> SavedWorld<N, D, T> {
-    /// Makes the world, with filters and shapes of your own from the registry.
+    /// Restores the world. The registry provides the pair filters and the shapes of users' types.
     ///
     /// # Errors
-    /// If the data has another version, scalar or dimension; if the registry lacks a name or rejects a shape; if the
-    /// data is damaged.
+    /// If the data has another version, scalar or dimension; if the registry lacks a name or
+    /// rejects a shape; or if the data is invalid.
     pub fn restore(
         self,
         registry: &Registry<N, D, T>,
@@ -360,7 +364,7 @@ impl<N: Real, T> WorldRecord<N, T> {
     }
 }
 
-/// The broad phase of a margin.
+/// Creates an empty broad phase with this margin.
 fn new_broad_phase<N: Space<D>, const D: usize>(
     margin: &Numbers<N>,
 ) -> Result<Box<WorldBroadPhase<N, D>>, Damage> {
@@ -369,7 +373,7 @@ fn new_broad_phase<N: Space<D>, const D: usize>(
     Ok(Box::new(phase))
 }
 
-/// The filters of some names.
+/// Registers the filters with these names, which must ascend.
 fn registered<N: Space<D>, const D: usize, T>(
     registry: &Registry<N, D, T>,
     names: &[String],
@@ -385,7 +389,8 @@ fn registered<N: Space<D>, const D: usize, T>(
 }
 
 impl CollisionObjectHandle {
-    /// The handle of the same index and count in another table.
+    /// Returns the handle with the same index and generation in the table whose first generation is
+    /// `first`.
     fn of(self, first: Generation) -> Self {
         Self::new(self.index(), first.with_count(self.generation().count()))
     }

@@ -1,4 +1,4 @@
-//! Objects of saved worlds.
+//! The objects of a saved world.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +18,7 @@ use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType, ObjectRow};
 use crate::shape::ShapeHandle;
 use crate::shape::saved::{ShapeRecords, UnsavedShape, shape_of};
 
-/// An object as the user left it.
+/// The record of an object in its present state.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound(serialize = "N: Real, T: Serialize", deserialize = "N: Real, T: Deserialize<'de>"))]
 pub(super) struct ObjectRecord<N: Real, T> {
@@ -27,14 +27,15 @@ pub(super) struct ObjectRecord<N: Real, T> {
     groups: CollisionGroups,
     is_fixed: bool,
     predicted: Option<Numbers<N>>,
-    /// Since the last update.
+    /// The kinds of changes since the last update; `None` if there are none.
     changes: Option<BodyChanges>,
-    /// State at the last update, for an object with pairs that has changed since.
+    /// The row of the object table, which has the state of the last update. `None` if the object
+    /// has no row, or if its row equals the present state.
     table: Option<RowRecord<N>>,
     data: T,
 }
 
-/// The properties of an object that the narrow phase reads.
+/// The record of the properties of an object that the narrow phase reads.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 struct RowRecord<N: Real> {
@@ -44,7 +45,7 @@ struct RowRecord<N: Real> {
     skin: Option<Numbers<N>>,
 }
 
-/// A query type.
+/// The record of a query type: both predictions, or the margin.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 enum QueryRecord<N: Real> {
@@ -52,17 +53,18 @@ enum QueryRecord<N: Real> {
     Proximity(Numbers<N>),
 }
 
-/// An object that was removed, as an event names it.
+/// The record of a removed object whose handle is in an event.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound(serialize = "N: Real, T: Serialize", deserialize = "N: Real, T: Deserialize<'de>"))]
 pub(super) struct RemovedRecord<N: Real, T> {
     generation: u16,
-    /// The index and the generation.
+    /// The index and the generation of the handle in the broad phase.
     proxy: (u32, u16),
     object: ObjectRecord<N, T>,
 }
 
-/// Rows of the table, by handle index, for objects that changed since.
+/// By handle index: the row of the object table and the skin at the last update, for an object with
+/// pairs that has changed since.
 pub(super) type RestoredRows<N, const D: usize> = Vec<Option<(ObjectRow<N, D>, N)>>;
 
 impl<N: Real> RowRecord<N> {
@@ -85,7 +87,7 @@ impl<N: Real> RowRecord<N> {
         Self { shape, position: Numbers::of_isometry::<D>(position), query, skin }
     }
 
-    /// The row and the skin.
+    /// Returns the row and the skin.
     fn restore<const D: usize>(
         &self,
         handle: CollisionObjectHandle,
@@ -125,7 +127,7 @@ fn usable_isometry<N: Space<D>, const D: usize>(
 }
 
 impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
-    /// The objects as data, in order of their indices.
+    /// Returns the records of the objects, in order of their handle indices.
     pub(super) fn records(
         &self,
         shapes: &mut ShapeRecords<N>,
@@ -153,7 +155,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         Ok(record)
     }
 
-    /// Handles without objects.
+    /// Creates a table of handles without objects, from the generations by index and the free
+    /// indices.
     pub(super) fn restored(generations: Vec<u16>, free: Vec<u32>) -> Result<Self, Damage> {
         ensure(generations.len() <= MAX_CHANGES as usize, "there are too many handles")?;
         let mut objects = Self::new();
@@ -163,7 +166,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         Ok(objects)
     }
 
-    /// Brings all objects to their handles. Answers the rows that the table has of those that changed since.
+    /// Adds all objects under their handles. Returns the rows at the last update of the objects
+    /// that have changed since.
     pub(super) fn put_all(
         &mut self,
         records: Vec<ObjectRecord<N, T>>,
@@ -214,7 +218,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         Ok(())
     }
 
-    /// Gives an object the handle of its proxy.
+    /// Stores the handle of an object's proxy in the object, and returns the object's handle.
     pub(super) fn take_proxy(
         &mut self,
         index: u32,
@@ -228,7 +232,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         Ok(body.handle)
     }
 
-    /// Gives the table the rows of the objects of pairs.
+    /// Writes the rows of the objects of all pairs to the object table, and marks the objects that
+    /// have a pair with themselves. Fails if an object has no proxy, or a pair has no object.
     pub(super) fn lend_all(
         &mut self,
         pairs: &[PairRecord<N>],
@@ -261,7 +266,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         Ok(())
     }
 
-    /// The boxes of the broad phase are those of objects that have not changed.
+    /// Checks that the broad phase has the right volume for each object that is not dirty.
     pub(super) fn check_boxes(&self, broad_phase: &DefaultBroadPhase<N, D>) -> Result<(), Damage> {
         let is_right = |body: &WorldBody<N, D>| {
             let is_dirty = self.changes.is_dirty(body);
@@ -270,7 +275,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         ensure(self.bodies().all(is_right), "the box of an object is another one's")
     }
 
-    /// The proxies of pairs of two objects, which there are.
+    /// Iterates over the proxies of each pair of two different objects. Omits pairs whose objects
+    /// do not exist.
     pub(super) fn proxies_of<'a>(
         &'a self,
         pairs: &'a [PairRecord<N>],
@@ -280,10 +286,10 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     }
 }
 
-/// The proxy of an object that has none yet.
+/// The proxy of an object whose proxy has not been restored yet.
 const NOT_YET: ProxyHandle = ProxyHandle::new(u32::MAX, u16::MAX);
 
-/// The row of an object, as the user left it.
+/// Returns the record of the present properties of an object.
 fn row<N: Space<D>, const D: usize>(
     body: &WorldBody<N, D>,
     skin: N,
@@ -293,7 +299,7 @@ fn row<N: Space<D>, const D: usize>(
     Ok(RowRecord::of::<D>(shape, &body.isometry, body.query.get(), skin))
 }
 
-/// An object, without what stands beside it.
+/// Returns the record of an object without its prediction, its changes and its row.
 fn described<N: Space<D>, const D: usize, T>(
     object: &CollisionObject<N, D, T>,
     row: RowRecord<N>,
@@ -312,7 +318,7 @@ fn described<N: Space<D>, const D: usize, T>(
 }
 
 impl<N: Real, T> ObjectRecord<N, T> {
-    /// The object, without what stands beside it, and its skin.
+    /// Restores the object, without its prediction, changes and row. Returns it with its skin.
     fn restore<const D: usize>(
         self,
         handle: CollisionObjectHandle,
@@ -332,7 +338,7 @@ impl<N: Real, T> ObjectRecord<N, T> {
 }
 
 impl<N: Space<D>, const D: usize, T> RemovedObjects<N, D, T> {
-    /// The removed objects as data.
+    /// Returns the records of the removed objects, in order of their handles.
     pub(super) fn records<'a>(
         &'a self,
         shapes: &mut ShapeRecords<N>,
@@ -347,7 +353,7 @@ impl<N: Space<D>, const D: usize, T> RemovedObjects<N, D, T> {
         self.objects.values().map(record).collect()
     }
 
-    /// Keeps removed objects, whose handles are of another table.
+    /// Restores removed objects, with handles of the table whose first generation is `first`.
     pub(super) fn restore(
         &mut self,
         records: Vec<RemovedRecord<N, T>>,
@@ -364,7 +370,7 @@ impl<N: Space<D>, const D: usize, T> RemovedObjects<N, D, T> {
 }
 
 impl<N: Real> RowRecord<N> {
-    /// The two are equal to the bit.
+    /// Returns `true` if both records are equal, and their positions have the same bits.
     fn has_bits_of(&self, other: &Self) -> bool {
         let bits = |numbers: &Numbers<N>| numbers.clone().into_vec().into_iter().map(Real::bits);
         self == other && bits(&self.position).eq(bits(&other.position))

@@ -1,4 +1,5 @@
-//! The registry of what a saved world names instead of holding: filters, and shapes of the user.
+//! The registry of code that a saved world refers to by name: pair filters, and shapes of users'
+//! types.
 
 use core::fmt;
 use std::collections::BTreeMap;
@@ -12,25 +13,26 @@ use crate::math::Space;
 use crate::shape::{SavedShape, ShapeHandle};
 use crate::world::{BroadPhasePairFilter, CollisionWorld};
 
-/// Makes a shape of its data.
+/// Creates a shape from its data; `None` if the data is invalid.
 type MakeShape<N, const D: usize> = dyn Fn(&[u8]) -> Option<ShapeHandle<N, D>> + Send + Sync;
 
-/// Shapes of the user's own types and pair filters, by name: what is code, and not data. See [`SavedWorld`] and
-/// [`SavedShape`] for examples.
+/// Pair filters and shapes of users' types, by name. A saved world refers to them by name, because
+/// code cannot be saved. See [`SavedWorld`] and [`SavedShape`] for examples.
 pub struct Registry<N: Space<D>, const D: usize, T> {
     shapes: BTreeMap<String, Box<MakeShape<N, D>>>,
     filters: BTreeMap<String, Arc<dyn BroadPhasePairFilter<N, D, T>>>,
 }
 
 impl<N: Space<D>, const D: usize, T> Registry<N, D, T> {
-    /// Names nothing.
+    /// Creates an empty registry.
     #[must_use]
     pub const fn new() -> Self {
         Self { shapes: BTreeMap::new(), filters: BTreeMap::new() }
     }
 
-    /// Names a type of shapes: `make` gets the data of [`Shape::saved`](crate::shape::Shape::saved), which may come from
-    /// anywhere, and returns the shape, or `None` where the data is of none.
+    /// Registers a shape type. `make` receives the data of
+    /// [`Shape::saved`](crate::shape::Shape::saved), which may come from an untrusted source, and
+    /// returns the shape; `None` if the data is invalid.
     #[must_use]
     pub fn with_shape<F>(mut self, name: &str, make: F) -> Self
     where
@@ -40,8 +42,10 @@ impl<N: Space<D>, const D: usize, T> Registry<N, D, T> {
         self
     }
 
-    /// Names a pair filter, as [`register_broad_phase_pair_filter`](CollisionWorld::register_broad_phase_pair_filter)
-    /// does. A filter that answers otherwise than it did makes pairs other ones once they are filtered again.
+    /// Registers a pair filter under a name, as
+    /// [`register_broad_phase_pair_filter`](CollisionWorld::register_broad_phase_pair_filter) does.
+    /// If its results differ from those of the saved world's filter, pairs change when they are
+    /// filtered again.
     #[must_use]
     pub fn with_filter<F>(mut self, name: &str, filter: F) -> Self
     where
@@ -51,10 +55,11 @@ impl<N: Space<D>, const D: usize, T> Registry<N, D, T> {
         self
     }
 
-    /// Reads a world: in one call [`SavedWorld`] and [`SavedWorld::restore`].
+    /// Deserializes and restores a world, with [`SavedWorld`] and [`SavedWorld::restore`].
     ///
     /// # Errors
-    /// If the format does not find the fields of a world, or they make none; the latter as a text.
+    /// If the data does not have the format of a saved world, or if [`SavedWorld::restore`] fails.
+    /// In the second case the error has only the text of the [`RestoreError`].
     pub fn restore<'de, De: Deserializer<'de>>(
         &self,
         deserializer: De,

@@ -1,9 +1,10 @@
-//! Tests that the maps for contributors name only files that exist, and stay short.
+//! Tests that `ARCHITECTURE.md` and `CONTRIBUTING.md` name only files that exist, and that
+//! `ARCHITECTURE.md` stays short.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Greatest number of lines of a map; nobody reads a longer one to the end.
+/// The largest number of lines of `ARCHITECTURE.md`, so that contributors read all of it.
 const MAX_LINES: usize = 150;
 
 /// Returns the root folder of the repository.

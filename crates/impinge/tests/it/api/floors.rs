@@ -1,8 +1,8 @@
 //! Tests the layering of the modules and the rules for sources, by reading the sources.
 //!
-//! Modules lie on floors. A module imports only from lower floors, or from itself. Exceptions:
-//! `tables/` is a hook that reaches upwards, `lib.rs` names the modules, and tests may import
-//! anything.
+//! The modules form layers, which are called floors. A module imports only from lower floors, or
+//! from itself. There are three exceptions: lower floors reach higher ones through `tables/`,
+//! `lib.rs` declares all modules, and tests may import anything.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -249,7 +249,8 @@ macro_rules! programs {
                 world
             }
 
-            /// Returns a rotation by a tenth of a radian in the plane of the first two axes.
+            /// Returns a rotation by about a tenth of a radian, from the first axis towards the
+            /// second.
             fn tilted<N: Real>() -> Isometry<N> {
                 let (from, to) = (Vector::x(), Vector::x() + Vector::y() * N::lit(0.1));
                 let turn = Rotation::rotation_between(&from, &to);

@@ -15,7 +15,8 @@ use super::scene::{Scene, assert_number, assert_point, on_threads, scene2, scene
 /// Limits at which some pairs of a scene have a result and others have none.
 const LIMITS: [f64; 4] = [0.0, 0.5, f64::INFINITY, -0.25];
 
-/// Calls a generic function with scenes of both dimensions and scalars, near the origin and 1e6 away from it.
+/// Calls a generic function with scenes of both dimensions and scalars, near the origin and 1e6
+/// away from it.
 macro_rules! everywhere {
     ($check:ident) => {
         $check(&scene2::<f32>(0.0));

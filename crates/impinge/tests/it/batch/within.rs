@@ -176,7 +176,7 @@ fn distances_that_are_none_are_refused() {
     assert!(matches!(error, BatchError::Distance { value } if value.is_nan()), "{error}");
 }
 
-/// Every two shapes are placed side by side along an axis, so that the gap of their boxes is their
+/// Places every two shapes side by side along an axis, so that the gap of their boxes is their
 /// distance up to rounding. The tree must propose each pair at exactly the distance of the single
 /// call, in whichever direction that was rounded.
 fn at_their_own_distance<N: Space<D>, R: AbstractRotation<N, D> + Copy + Sync, const D: usize>(

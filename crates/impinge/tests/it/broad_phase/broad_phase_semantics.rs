@@ -27,8 +27,8 @@ fn events<N: Real, BV: BoundingVolume<N>>(
     events
 }
 
-/// The example of the user guide: four balls form six pairs. Two balls are removed, and five pairs
-/// end with them.
+/// Runs the example of the user guide: four balls form six pairs. Two balls are removed, and five
+/// pairs end with them.
 fn guide<N: Space<D>, const D: usize>() {
     let mut broad_phase = DBVTBroadPhase::<N, Aabb<N, D>, u32>::new(N::lit(0.2));
     let centers = [[0.0, 0.0, 0.0], [0.0, 0.5, 0.0], [0.5, 0.0, 0.0], [0.5, 0.5, 0.0]];

@@ -1,5 +1,5 @@
-//! Prints the times of a step; asserts nothing. Run with `cargo test --release --test
-//! broad_phase_timing -- --ignored --nocapture`.
+//! Prints the times of a step; asserts nothing. Run with
+//! `cargo test --release -p impinge --test it broad_phase_timing -- --ignored --nocapture`.
 
 use std::time::Instant;
 

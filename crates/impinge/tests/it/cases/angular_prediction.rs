@@ -169,8 +169,8 @@ fn corners_of_tilted_box<N: Space<3, Isometry = Isometry3<N>>>(
     count
 }
 
-/// Corners beyond the prediction have contacts if a rotation by the angular prediction brings them
-/// within it.
+/// Tests that corners beyond the prediction have contacts if a rotation by the angular prediction
+/// brings them within it.
 fn corners_that_turning_brings_near<N: Space<3, Isometry = Isometry3<N>>>() {
     let one = Vector::<N, 3>::repeat(N::ONE);
     let corner =
@@ -207,8 +207,8 @@ fn corners_that_turning_brings_near_are_contacts() {
     corners_that_turning_brings_near::<f64>();
 }
 
-/// Boxes on a box, which the library computes in batches. The pairs of a batch have different
-/// angular predictions.
+/// Pairs of a box on a wider box, which the library computes in batches. The pairs of a batch have
+/// different angular predictions.
 #[test]
 fn corners_of_boxes_in_batches() {
     type V = Vector<f64, 3>;

@@ -1,5 +1,6 @@
-//! Tests how many points the manifolds of the corpus's boxes have, and which share of the overlap of two faces these
-//! points span. If there are more than four points, the library keeps four.
+//! Tests the number of points in the manifolds of the corpus's boxes, and the area that the points
+//! of two faces span, relative to the overlap of the faces. If there are more than four points, the
+//! library keeps four.
 
 use crate::support::query_support;
 
@@ -204,8 +205,8 @@ fn floor<N: Space<3>>(random: &mut Random, scale: f64) -> Flat<N> {
 
 type Make<N> = fn(&mut Random, f64) -> Flat<N>;
 
-/// A solid that rests on another one: the overlap of their ends seen from above, and the index of its deepest corner;
-/// `None` if several are equally deep.
+/// Two solids, one resting on the other. `overlap` is the overlap of their touching ends seen from
+/// above; `deepest` is the index of its deepest corner, `None` if several are equally deep.
 struct Rest<N: Space<3>> {
     solids: [(ShapeHandle<N, 3>, N::Isometry); 2],
     overlap: Outline,
@@ -226,7 +227,8 @@ impl<N: Space<3, Isometry = Isometry<N, UnitQuaternion<N>, 3>>> Rest<N> {
         let (at, angle) = ([0.0; 2].map(|_| 1.5 * scale * random.signed()), TAU * random.signed());
         let axis = TAU * random.signed();
         let (sine, cosine) = (axis.sin(), axis.cos());
-        // The touching end is `0.5 scale` below the axis of the tilt, so the tilt moves that end aside.
+        // The touching end is `0.5 scale` below the axis of the tilt, so the tilt shifts that end
+        // sideways.
         let slide = 0.5 * scale * tilt.sin();
         let upper = turned(&high.outline, angle, [at[0] + slide * sine, at[1] - slide * cosine]);
         let overlap = overlap(&upper, &low.outline);
@@ -250,8 +252,9 @@ impl<N: Space<3, Isometry = Isometry<N, UnitQuaternion<N>, 3>>> Rest<N> {
     }
 }
 
-/// Returns two lists of shares, one of each rest: the area that its points span, relative to the best area of four
-/// corners that include the deepest one, and relative to the best area of any four corners.
+/// Returns two lists with a fraction for each of `rests`: the area that its contact points span,
+/// relative to the best area of four corners that include the deepest one, and relative to the best
+/// area of any four corners.
 fn shares<N: Space<3, Isometry = Isometry<N, UnitQuaternion<N>, 3>>>(
     rests: &[Rest<N>],
     scale: f64,

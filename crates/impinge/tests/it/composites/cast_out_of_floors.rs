@@ -16,8 +16,9 @@ fn v<N: Real>(x: f64, y: f64, z: f64) -> Vector<N, 3> {
     Vector::<N, 3>::new(N::lit(x), N::lit(y), N::lit(z))
 }
 
-/// Directions out of the floor (steep, slanting and almost along it), and directions into it.
+/// Directions out of the floor: steep, oblique and almost parallel to it.
 const OUT: [[f64; 3]; 4] = [[0.0, 1.0, 0.0], [1.0, 1.0, 0.0], [-0.7, 0.2, 0.9], [3.0, 0.05, -2.0]];
+/// Directions into the floor.
 const INTO: [[f64; 3]; 3] = [[0.0, -1.0, 0.0], [2.0, -0.1, 1.0], [-0.3, -0.4, 0.2]];
 
 /// Asserts that every solid can be cast out of a floor at y = 0 without a hit, and hits it when

@@ -111,8 +111,8 @@ fn pseudonormal(mesh: &Mesh, point: &P3) -> f64 {
     (point - nearest.point).normalize().dot(&sum.normalize())
 }
 
-/// Returns a random point: around the mesh, close to its surface, or level with a corner along an
-/// axis.
+/// Returns a random point: around the mesh, close to its surface, or on a line through a corner
+/// parallel to an axis.
 fn asked(random: &mut Random, mesh: &Mesh) -> P3 {
     let part = u32::try_from(random.bits() % u64::from(mesh.num_parts())).expect("few");
     let corners = *mesh.triangle(part).corners();
@@ -175,7 +175,7 @@ fn signs_are_those_of_solid_angles_and_pseudonormals() {
 }
 
 /// Compares a union of boxes with its closed form at all points of a grid. The grid contains the
-/// corners, so many points are level with corners or equally near to several faces.
+/// corners, so many points share coordinates with corners or are equally near to several faces.
 fn check_grid<N: Real>(bodies: &[([f64; 3], [f64; 3])], offset: f64) {
     let moved = |corner: [f64; 3]| corner.map(|x| x + offset);
     let all: Vec<_> = bodies.iter().map(|&(low, high)| cuboid(moved(low), moved(high))).collect();
@@ -267,8 +267,7 @@ fn what_is_not_closed_encloses_nothing() {
         assert!(!mesh.is_volume(), "no volume");
         assert_eq!((mesh.encloses(&middle), mesh.signed_distance(&middle)), (None, None));
     }
-    // Adds a triangle with a repeated corner, and two that pass that corner, as at the poles of a
-    // globe.
+    // Adds a triangle with a repeated corner, as in meshes of spheres at the poles.
     let mut filled = triangles;
     let [a, b, _] = filled[0];
     filled.push([a, b, b]);
@@ -277,7 +276,7 @@ fn what_is_not_closed_encloses_nothing() {
 
 #[test]
 fn parted_corners_open_a_mesh() {
-    // The vertices of meshes from `procedural` repeat where normals differ.
+    // Each triangle has its own three vertices; vertices at the same position are one.
     let (corners, triangles) = cuboid([-1.0; 3], [1.0; 3]);
     let soup: Vec<P3> = triangles.iter().flatten().map(|&at| corners[at as usize]).collect();
     let names = (0..).take(triangles.len()).map(|part| [3 * part, 3 * part + 1, 3 * part + 2]);

@@ -87,7 +87,7 @@ fn laws_over_hills<N: Real + Space<3, Isometry = Isometry3<N>>>(floor: &dyn Shap
             // A depth along the normal of a slope may exceed the lift straight up, but by no more
             // than half.
             let lift = lift(floor, solid, &pose);
-            // The middle of a solid that is deeper may be below the hills, and then it is pushed
+            // The centre of a solid that is deeper may be below the surface, which then pushes it
             // out downwards.
             if lift > N::lit(0.15) {
                 continue;
@@ -122,8 +122,8 @@ fn laws_hold_over_hills_with_one_side() {
     laws_over_hills::<f64>(&hills::<f64>(Pattern::Zigzag).one_sided());
 }
 
-/// Laws for any two shapes. Overlap, a distance of zero, and a contact with prediction zero occur
-/// together; a single contact and the manifolds agree; swapping the shapes flips the contact.
+/// Tests laws for any two shapes. Overlap, a distance of zero, and a contact with prediction zero
+/// occur together; a single contact and the manifolds agree; swapping the shapes flips the contact.
 fn laws_of_pairs<N: Real + Space<3, Isometry = Isometry3<N>>>(
     label: &str,
     shapes: [&dyn Shape<N, 3>; 2],

@@ -178,7 +178,7 @@ fn against_each_other() {
     assert!((60..260).contains(&overlaps), "{overlaps} of 320 overlap");
 }
 
-/// Against a half-space, the result is that of the deepest part.
+/// Compares composites with half-spaces: the distance is the least signed distance of all parts.
 fn against_planes<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     maker: &Maker<N, R, D>,
 ) {
@@ -206,7 +206,7 @@ fn against_half_spaces() {
     against_planes(&space);
 }
 
-/// A composite of one part, in that part's own frame, has the result of the part.
+/// Tests that a composite of one part, in the frame of that part, has the result of the part.
 fn wrapped<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(maker: &Maker<N, R, D>) {
     for seed in 0..60 {
         let random = &mut Random(seed, false);

@@ -243,7 +243,8 @@ where
     true
 }
 
-/// Returns the surface of a screw thread of pitch 1 around the second axis: its radius varies by 0.25 along a helix.
+/// Returns the surface of a screw thread of pitch 1 around the y axis: its radius varies by 0.25
+/// along a helix.
 fn thread<N: Space<3>>(radius: f64, pitches: u32) -> Pieces<N, 3> {
     let (around, rows) = (24, 8 * pitches);
     let mut points = Vec::new();
@@ -265,7 +266,8 @@ fn thread<N: Space<3>>(radius: f64, pitches: u32) -> Pieces<N, 3> {
     Pieces::mesh(&points, &triangles)
 }
 
-/// A screw turns in its nut and rises by almost the pitch of each turn, so that flanks slide along flanks.
+/// Tests a screw that rotates in its nut and rises by approximately one pitch per turn, so that
+/// flanks slide along flanks.
 fn screw_in_nut<N: Space<3, Isometry = Isometry3<N>>>()
 where
     ConstantVelocities<N, 3>: RigidMotion<N, 3>,
@@ -284,7 +286,8 @@ where
     assert!(hits >= 2, "{hits}");
 }
 
-/// A round outline of segments spins within another one, and drifts toward it much more slowly.
+/// Tests a round outline of segments that spins within a slightly larger one, and drifts toward it
+/// much more slowly.
 fn spins_in_ring<N: Space<2, Isometry = Isometry2<N>>>()
 where
     ConstantVelocities<N, 2>: RigidMotion<N, 2>,
@@ -378,7 +381,8 @@ where
     found.is_finite_number()
 }
 
-/// Patches that lie close to each other. Both rotate, each about its own centre, or only one does.
+/// Tests patches that lie close to each other. Both rotate, each about its own centre, or only the
+/// first one does.
 fn patches_that_turn<N: Space<2, Isometry = Isometry2<N>> + Space<3, Isometry = Isometry3<N>>>() {
     let (random, mut hits) = (&mut Random(31, false), [0, 0]);
     for round in 0..40 {

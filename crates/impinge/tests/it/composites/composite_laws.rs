@@ -19,7 +19,8 @@ use impinge::shape::{
 use query_support::random::Random;
 use query_support::samples::{SPACE, sample3};
 
-/// Returns a ball of radius 1 as a closed mesh, and the greatest depth of the mesh inside the ball.
+/// Returns a ball of radius 1 as a closed mesh, and the greatest distance between the sphere and
+/// the plane of a triangle.
 fn ball_mesh<N: Real>(subdivisions: u32) -> (TriMesh<N, 3>, N) {
     let surface = surfaces::ball(&Ball::new(N::ONE), subdivisions);
     let inside = |corners: [Point<N, 3>; 3]| {

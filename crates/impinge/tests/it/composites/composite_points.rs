@@ -1,5 +1,5 @@
-//! Tests queries of points against composites: the result is that of the nearest part, or of the
-//! part in which the point lies deepest.
+//! Tests point queries on composites: the result comes from the nearest part, or from the part in
+//! which the point lies deepest.
 
 use crate::support::composite_support;
 use crate::support::query_support;

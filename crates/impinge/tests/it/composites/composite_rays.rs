@@ -1,5 +1,5 @@
-//! Tests rays against composites: no ray passes between adjacent parts, and the hits are the hits
-//! of the parts.
+//! Tests rays against composites: no ray passes between adjacent parts, and the hits equal those of
+//! the single parts.
 
 use crate::support::composite_support;
 use crate::support::query_support;

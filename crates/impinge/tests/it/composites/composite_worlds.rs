@@ -151,8 +151,8 @@ fn names_last_while_parts_and_features_do() {
     assert!(ids(&stage).iter().all(|id| !before.contains(id)), "new contacts have new names");
 }
 
-/// Returns a surface of two planes with these slopes, which meet along z: a roof, a valley or a
-/// cliff.
+/// Returns a surface of two half-planes that meet along z and rise outwards with these slopes: a
+/// valley, or a roof for negative slopes.
 fn fold(left: f64, right: f64) -> TriMesh<f64, 3> {
     let slope = move |x: f64, _: f64| if x < 0.0 { -x * left } else { x * right };
     grid::<f64>(12, 0.5, [0.0; 3], Pattern::Zigzag, slope)
@@ -211,7 +211,7 @@ fn a_ball_rolls_over_a_ridge_without_a_jump() {
     }
 }
 
-/// Returns a table top with a wall down to the floor: two right angles, one convex and one concave.
+/// Returns a plateau with a wall down to the floor: two right angles, one convex and one concave.
 fn cliff() -> TriMesh<f64, 3> {
     let mesh = grid::<f64>(16, 0.5, [0.0; 3], Pattern::Zigzag, |_, _| 0.0);
     let profile = |x: f64| -> [f64; 2] {

@@ -270,7 +270,8 @@ fn surfaces_and_neighbours_are_those_of_the_child() {
     assert_eq!(compound.child_of_part(6), (2, 1), "the same");
 }
 
-/// Returns a solid and one of its corners. Coordinates are small, and whole in half of the cases.
+/// Returns a solid and one of its corners; for a ball, a point of its surface. Coordinates are
+/// multiples of 1 or of 1/1024.
 fn cornered<N: Real, const D: usize>(random: &mut Poses) -> (ShapeHandle<N, D>, Vector<N, D>) {
     let grid = N::lit([1.0, 1.0 / 1024.0][usize::from(random.bits() & 1 == 0)]);
     let mut corner = || random.vector::<N, D>().map(|x| (x * N::lit(4.0) / grid).round() * grid);
@@ -305,6 +306,7 @@ fn with_corner_at_origin<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>
 }
 
 /// Asserts that a distance of zero, an intersection, and a contact occur together, in either order.
+/// Returns whether the shapes touch.
 fn check_one_fact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,

@@ -44,14 +44,16 @@ fn are_same_up_to(room: f64, [one, other]: [Option<f64>; 2]) -> bool {
 /// Index of the sheet that is cut along the other diagonal.
 const OTHER_CUT: usize = 4;
 
-/// A sheet in which each triangle is listed once has the same contacts as the other sheets.
+/// Tests that a sheet in which each triangle is listed once has the same contacts as the other
+/// sheets.
 fn rims<N: Space<3, Isometry = Isometry3<N>>>() {
     let random = &mut Random(41, false);
     let (mut met, mut at_rim) = (0, 0);
     let sheets = SHEETS.map(|triangles| mesh::<N>(&SQUARE, triangles));
     let one_sided = sheets.each_ref().map(|sheet| sheet.clone().one_sided());
     for round in 0..400 {
-        // Positions around the rim; solids are almost level, or rotated at random.
+        // Positions around the rim; solids are tilted about z by up to 0.6 radians, or rotated at
+        // random.
         let angle = [0.25, 0.0, 0.004, -0.6][round % 4];
         let turn =
             if round % 3 == 0 { v(0.0, 0.0, angle) } else { random.turn3::<N>().scaled_axis() };
@@ -121,7 +123,8 @@ fn the_rim_above_a_floor_is_touched() {
     }
 }
 
-/// A ball whose centre is slightly beyond the rim of a sheet has a normal close to the face normal.
+/// Tests that a ball whose centre is slightly beyond the rim of a sheet has a normal close to the
+/// face normal.
 fn shallow<N: Space<3, Isometry = Isometry3<N>>>() {
     for (index, sheet) in SHEETS.map(|triangles| mesh::<N>(&SQUARE, triangles)).iter().enumerate() {
         for (x, z) in [(0.004, 0.0), (0.004, 0.004), (0.0, 0.004)] {
@@ -144,7 +147,7 @@ fn rims_have_normals_close_to_that_of_the_face() {
     shallow::<f64>();
 }
 
-/// Lines in 2D whose segments are listed twice keep the contacts at their ends.
+/// Tests that lines in 2D whose segments are listed twice keep the contacts at their ends.
 fn lines<N: Space<2, Isometry = Isometry2<N>>>() {
     let p = |x: f64, y: f64| Point::<N, 2>::new(N::lit(x), N::lit(y));
     let corners = || vec![p(2.0, 0.0), p(0.0, 0.0), p(-2.0, 1.0)];
@@ -184,8 +187,8 @@ fn lines_that_are_listed_twice_keep_their_ends() {
     lines::<f64>();
 }
 
-/// A triangle without area that extends beyond a shared edge has the same contact there as it has
-/// on its own, even if the solid also touches a floor below.
+/// Tests that a triangle without area that extends beyond a shared edge has the same contact there
+/// as on its own, even if the solid also touches a floor below.
 fn sticking_out<N: Space<3, Isometry = Isometry3<N>>>() {
     let mut corners = SQUARE.to_vec();
     corners.push([1.0, 0.0, 3.0]);

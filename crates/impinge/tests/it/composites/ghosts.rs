@@ -1,6 +1,6 @@
-//! Tests ghosts: the cells and triangles around a tile of terrain. A solid that slides over the
-//! seam of two tiles has the normals of a single surface, whether the tiles are two objects or one
-//! compound.
+//! Tests ghost cells and ghost triangles, which surround a tile of terrain. A solid that slides
+//! over the seam of two tiles has the normals of a single surface, whether the tiles are two
+//! objects or one compound.
 
 use impinge::math::{Isometry2, Isometry3, Point, Real, Vector};
 use impinge::narrow_phase::{ContactPrediction, contact_manifolds};

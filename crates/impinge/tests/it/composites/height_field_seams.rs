@@ -1,5 +1,5 @@
-//! Tests the internal edges of height fields by hand, and against meshes and polylines of the same
-//! parts.
+//! Compares the internal edges of height fields with results computed by hand, and with meshes and
+//! polylines of the same parts.
 
 use crate::support::part_search;
 
@@ -17,7 +17,7 @@ fn v(x: f64, y: f64, z: f64) -> Vector<f64, 3> {
     Vector::<f64, 3>::new(x, y, z).normalize()
 }
 
-/// A field of three rows and columns of points, whose height depends on the row only.
+/// Returns a field of three rows and columns of points, whose height depends on the row only.
 fn folded(rows: [f64; 3]) -> Field {
     let heights = rows.iter().flat_map(|&height| [height; 3]).collect();
     Field::new(3, 3, heights, Vector::<f64, 3>::new(2.0, 1.0, 2.0))

@@ -1,5 +1,5 @@
 //! Tests that solids that slide over flat floors of many parts have only the normal of the floor,
-//! with no contact at an inner edge.
+//! and no contact at an internal edge.
 
 use crate::support::slides;
 

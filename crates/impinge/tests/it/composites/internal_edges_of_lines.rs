@@ -49,7 +49,8 @@ fn slide_all<N: Real + Space<2, Isometry = Isometry2<N>>>(
                 let height = -lowest(solid.as_ref(), turn) - N::lit(depth);
                 let start = random.unit();
                 let side = if random.below(2) == 0 { N::ONE } else { -N::ONE };
-                // For a solid below the floor the whole scene is rotated by half a turn.
+                // For a solid below the floor, its poses and the expected normal are rotated by
+                // half a turn.
                 let half = if is_below { N::pi() } else { N::ZERO };
                 let flip = Isometry2::rotation(half);
                 let middle = Isometry2::translation(N::lit(center), N::ZERO);

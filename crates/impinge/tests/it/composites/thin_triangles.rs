@@ -34,7 +34,7 @@ fn on_segment<const D: usize>(ends: [&Vector<D>; 2], p: &Vector<D>) -> Vector<D>
     between(ends, fraction(ends, p))
 }
 
-/// Returns the distance of a point from a triangle, with a proof: a point of the triangle is at
+/// Returns the distance of a point from a triangle, and proves it. A point of the triangle is at
 /// that distance, and a plane at that distance separates the triangle from the point.
 fn exact_distance(corners: &[[f64; 3]; 3], p: &[f64; 3]) -> f64 {
     let (corners, p) = (corners.map(|corner| exact(&corner)), exact(p));
@@ -159,7 +159,7 @@ impl Worst {
     }
 }
 
-/// A scene with exact numbers, and with numbers of the scalar scaled by `factor`.
+/// A triangle and a point, in `f64` and in the scalar type scaled by `factor`.
 struct Scene<N: Real> {
     corners: [[f64; 3]; 3],
     point: [f64; 3],

@@ -57,8 +57,8 @@ fn quaternion<N: Real>(random: &mut Random) -> [f64; 4] {
     }
 }
 
-/// Returns the worst error of the signed distance and of the separation along the normal, relative
-/// to the size of the scene, over pairs with at least one curved solid; also the case.
+/// Returns the worst error of the signed distance, relative to the size of the scene, over pairs
+/// with at least one curved solid, and the description of its case.
 fn worst<N: Space<3>>(seed: u64, rounds: usize) -> (f64, String) {
     let (mut random, mut worst) = (Random::new(seed), (0.0, String::new()));
     for (kind1, kind2, round) in pairs(rounds) {
@@ -67,8 +67,8 @@ fn worst<N: Space<3>>(seed: u64, rounds: usize) -> (f64, String) {
         let [q1, q2] = [(); 2].map(|()| quaternion::<N>(&mut random));
         let pose1 = Pose::from_quaternion([0.0; 3], q1);
         let mut at2 = scale(&random.unit_vector(), 8.0);
-        // The second solid is moved along the normal: near, or shallow. Every third pair has almost
-        // equal centres.
+        // Moves the second solid along the normal to a small gap or a shallow overlap. In every
+        // third pair the centres almost coincide.
         let truth = signed_distance(&solid1, &pose1, &solid2, &Pose::from_quaternion(at2, q2));
         let gap = [random.magnitude(1e-3, 8), -random.magnitude(1e-3, 6)][round % 2];
         let way = gap - truth.distance.to_f64();
@@ -182,8 +182,10 @@ impl Coaxial {
         }
     }
 
-    /// Returns the error in units: the amount by which the best separation exceeds that of the
-    /// contact, or by which the contact's normal separates less than its depth says.
+    /// Returns the error in units of `EPSILON` times the size of the pair. It is the largest of
+    /// three: the error of the normal, by which the separation of the reference exceeds that along
+    /// the contact's normal; the excess of the reference over the distance of the contact; and the
+    /// difference between that distance and the separation along the contact's normal.
     fn units<N: Space<3>>(&self) -> f64 {
         let ((shape1, solid1), (shape2, solid2)) = (self.solid::<N>(0), self.solid::<N>(1));
         let pose1 = Pose::from_quaternion([0.0; 3], self.turns[0]);

@@ -81,7 +81,8 @@ fn contacts_of<N: Play<D>, const D: usize>(
     manifolds.iter().flat_map(|manifold| manifold.contacts()).copied().collect()
 }
 
-/// Returns a box and a half-space, both with their upper face at height zero.
+/// Returns a box of half height 2 and a half-space. Placed at height -2, the upper face of the box
+/// is at height 0, and the surface of the half-space at height -2.
 fn floors<N: Play<D>, const D: usize>() -> [ShapeHandle<N, D>; 2] {
     let mut half = [20.0; D];
     half[1] = 2.0;
@@ -91,7 +92,8 @@ fn floors<N: Play<D>, const D: usize>() -> [ShapeHandle<N, D>; 2] {
     [cuboid(half), ShapeHandle::new(high)]
 }
 
-/// Contact ids persist for a thousand steps while the cube slides, sinks and rises, and rotates.
+/// Asserts that contact ids persist for a thousand steps while the cube slides, sinks and rises,
+/// and rotates.
 fn names_last<N: Play<D>, const D: usize>(turn: impl Fn(f64) -> ([f64; 3], f64)) {
     for (index, shape) in floors::<N, D>().iter().enumerate() {
         // The origin of the half-space is on its surface; the origin of the box is 2 below its
@@ -129,7 +131,7 @@ fn names_outlast_a_thousand_steps() {
     names_last::<f64, 2>(rocking);
     names_last::<f32, 3>(rocking);
     names_last::<f64, 3>(rocking);
-    // Rotates slowly by half a turn. In 2D there is no rotation about the vertical.
+    // Rotates slowly by 143 degrees. In 2D there is no rotation about the vertical.
     let spinning = |step: f64| (UP, 0.003 * step);
     names_last::<f32, 3>(spinning);
     names_last::<f64, 3>(spinning);
@@ -158,7 +160,8 @@ fn names_outlast_shapes<N: Play<D>, const D: usize>() {
     assert!(!first.contains(&round[0]), "which is no corner");
 }
 
-/// Contacts that begin again have new ids, even if other queries of the pair ran in between.
+/// Asserts that contacts that begin again have new ids, even if other queries of the pair ran in
+/// between.
 fn names_end_with_contacts<N: Play<D>, const D: usize>() {
     let [floor, _] = floors::<N, D>();
     let mut scene = Floor::<N, D>::new(&floor, false);
@@ -211,7 +214,7 @@ fn names_follow_features_and_touch() {
 
 type Pair = (CollisionObjectHandle, CollisionObjectHandle);
 
-/// A contact id belongs to one pair and never returns after its contact ended.
+/// Asserts that a contact id belongs to one pair and never returns after its contact ended.
 fn names_are_unique<N: Play<D>, const D: usize>() {
     for scene in [spawn_and_despawn(400), mixed_shapes(300), pile(100)] {
         let mut player = Player::<N, D>::new(scene, 1.0);
@@ -413,11 +416,11 @@ fn kinematics_predict_in_space<N: Move<3>>() {
             .check_exact(256.0 * N::EPSILON.as_f64());
         let poses = [at(0.0, 0.0, (ACROSS, 1.0)), at(0.0, 0.48, ([1.0, 0.0, 0.0], 0.8))];
         let shapes = [cylinder.clone(), cylinder.clone()];
-        // The search finds the contact on both solids to half of the digits.
+        // The search determines contact points on curved solids to half of the digits.
         let loss = 8.0 * N::EPSILON.as_f64().sqrt();
         Case { name: "crossed cylinders", shapes, poses, motions }.check_exact(loss);
-        // The solids lean on their rims, and the lowest point of a rim moves around as the solid
-        // rotates.
+        // The solids stand tilted on their rims. The lowest point of a rim moves along it as the
+        // solid rotates.
         for (name, shape) in [("rim of a cylinder", &cylinder), ("rim of a cone", &cone)] {
             let poses = [at(0.0, 0.0, (ACROSS, 0.0)), at(0.0, 0.55, (ACROSS, 0.2))];
             let shapes = [plane.clone(), shape.clone()];

@@ -17,11 +17,12 @@ use impinge::world::{CollisionGroups, CollisionWorld};
 use impinge_scenes::{Scene, SceneQuery, mixed_shapes, pile};
 use scene_stage::{Digest, Play, Player, assert_views_agree, digest_state};
 
-/// Prediction for objects of size 1, and the distance below which a pair's contacts are reused.
+/// Sum of the linear predictions of two objects of size 1.
 const PREDICTION: f64 = 0.02;
+/// Movement up to which the contacts of a pair are reused.
 const TOLERANCE: f64 = 0.002;
 
-/// The scene slowed down, so that the fastest objects need ten to a hundred steps to move by the
+/// Slows a scene down, so that the fastest objects need ten to a hundred steps to move by the
 /// tolerance.
 fn slow<const D: usize>(mut scene: Scene<D>) -> Scene<D> {
     for object in &mut scene.objects {
@@ -39,7 +40,7 @@ fn reusing<N: Play<D>, const D: usize>(scene: Scene<D>, tolerance: f64) -> Playe
     player
 }
 
-/// Depth of each pair with contacts.
+/// Returns the greatest depth of each pair with contacts.
 fn depths<N: Play<D>, const D: usize>(player: &Player<N, D>) -> BTreeMap<(usize, usize), f64> {
     let mut depths = BTreeMap::new();
     for (object1, object2, manifold) in player.world.contact_manifolds() {
@@ -54,8 +55,9 @@ fn depths<N: Play<D>, const D: usize>(player: &Player<N, D>) -> BTreeMap<(usize,
     depths
 }
 
-/// Plays a scene in both worlds; returns how many depths differed, of how many. Differing depths
-/// show that contacts were reused.
+/// Plays a scene in a world that computes all contacts anew and in a world that reuses them.
+/// Returns the number of differing depths and of all depths; depths differ only if contacts were
+/// reused.
 fn compare<N: Play<D>, const D: usize>(scene: &Scene<D>, steps: u32) -> (usize, usize) {
     let mut exact = Player::<N, D>::new(scene.clone(), 1.0);
     let mut kept = reusing::<N, D>(scene.clone(), TOLERANCE);
@@ -152,7 +154,7 @@ fn at<N: Real>(place: [f64; 3], turn: f64) -> Isometry3<N> {
     Isometry3::from_parts(place, UnitQuaternion::from_scaled_axis(v(0.0, turn, 0.0)))
 }
 
-/// A world that reuses contacts, with an object on a ground body.
+/// A world that reuses contacts, with an object on a floor.
 struct Stage<N: Real> {
     world: World<N>,
     ground: CollisionObjectHandle,
@@ -194,7 +196,7 @@ impl<N: Real> Stage<N> {
     }
 }
 
-/// A square of 4 by 4 in the plane of x and z, made of two triangles.
+/// Returns a square of 4 by 4 at y = 0, made of two triangles.
 fn floor<N: Real>() -> ShapeHandle<N, 3> {
     let corners = [(-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (-2.0, 2.0)];
     let corners = corners.map(|(x, z)| Point::from(v::<N>(x, 0.0, z))).to_vec();
@@ -214,8 +216,8 @@ fn solids<N: Real>() -> Vec<ShapeHandle<N, 3>> {
     ]
 }
 
-/// A solid on a ground body, near the origin or far from it, is lowered and rotated a little.
-/// Depths measured along the old normal are exact while the normal stays the same.
+/// Lowers and slightly rotates solids on a floor, near the origin or far from it. Depths measured
+/// along the old normal are exact as long as the normal stays the same.
 fn sinks<N: Real>(ground: &ShapeHandle<N, 3>, height: f64, far: f64, noise: f64) {
     for solid in solids::<N>() {
         let place = |depth: f64| [far, height + 0.5 - depth, -far];
@@ -229,7 +231,7 @@ fn sinks<N: Real>(ground: &ShapeHandle<N, 3>, height: f64, far: f64, noise: f64)
             let off = found.iter().map(|x| (x - depth).abs()).fold(0.0, f64::max);
             assert!(off <= noise, "{off} off a depth of {depth}, {far} away");
         }
-        // Beyond the tolerance all contacts are found anew, also when the solid is lifted off.
+        // Beyond the tolerance all contacts are computed anew, also when the solid is lifted off.
         assert!(stage.moved(place(-0.5), 0.0).is_empty(), "nothing is kept of what is gone");
         assert_eq!(stage.moved(place(0.001), 0.7).len(), before, "turned");
     }
@@ -263,8 +265,8 @@ fn another_shape_or_question_is_answered_anew() {
     assert!(stage.depths().is_empty(), "without a floor there is nothing to stand on");
 }
 
-/// The x coordinate of the deepest contact of a capsule on a ground body, step by step, while the
-/// capsule leans over.
+/// Returns the x coordinate of the deepest contact of a capsule on a floor for each step, while the
+/// tilt of the capsule increases.
 fn leaning(tolerance: f64, ground: &ShapeHandle<f64, 3>) -> Vec<f64> {
     let capsule = ShapeHandle::new(Capsule::<f64, 3>::new(0.5, 0.3));
     let lean =
@@ -332,8 +334,9 @@ fn what_was_fast_and_slows_down_is_kept_again() {
     assert!(kept >= 10, "kept {kept} times");
 }
 
-/// Depths of the contacts of capsules that lie on capsules. The upper ones lean less and less until
-/// both of their ends are near; in some steps all of them move, in others only one.
+/// Returns, for each step, the contact depths of capsules that lie on capsules. The tilt of the
+/// upper ones decreases until both of their ends are within the prediction. Every third step moves
+/// all of them, the other steps only one.
 fn capsules(narrow_phase: DefaultNarrowPhase<f64, 3>) -> Vec<Vec<f64>> {
     let capsule = ShapeHandle::<f64, 3>::new(Capsule::new(0.5, 0.3));
     let (mut world, groups) = (World::<f64>::new(0.05), CollisionGroups::new());
@@ -378,7 +381,7 @@ fn it_is_of_no_account_whether_few_or_all_are_updated() {
 
 #[test]
 fn an_overlap_is_never_missed() {
-    // The prediction, zero, is less than the tolerance for movement.
+    // The prediction is zero, less than the tolerance for movement.
     let ball = || ShapeHandle::new(Cylinder::new(0.5_f64, 0.5));
     let mut world = World::<f64>::new(0.05);
     let narrow_phase = DefaultNarrowPhase::<f64, 3>::new().reusing(0.01);

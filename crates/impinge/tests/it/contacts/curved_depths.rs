@@ -26,7 +26,7 @@ fn rounds() -> u64 {
     samples(30) as u64
 }
 
-/// The number rounded to the scalar.
+/// Returns `x` rounded to the scalar type.
 fn single<N: Space<3>>(x: f64) -> f64 {
     N::lit(x).as_f64()
 }
@@ -52,7 +52,7 @@ impl Maker {
         Self { random, thin, scale }
     }
 
-    /// A random size that the scalar represents exactly.
+    /// Returns a random size that the scalar represents exactly.
     fn size<N: Space<3>>(&mut self) -> f64 {
         let is_thin = self.random.below(self.thin) == 0;
         let size = if is_thin { *self.random.pick(&THIN) } else { self.random.range(0.1, 1.0) };
@@ -94,8 +94,8 @@ impl Maker {
         }
     }
 
-    /// A hull of random points, of points on an ellipsoid, on a grid or on a prism; some hulls are
-    /// nearly flat.
+    /// Returns a hull of random points, of points on an ellipsoid, on a grid or on a prism; some
+    /// hulls are nearly flat.
     fn hull<N: Space<3>>(&mut self) -> Solids<N> {
         loop {
             let sizes = self.sizes::<N>();
@@ -137,8 +137,8 @@ impl Maker {
         }
     }
 
-    /// A random quaternion that is aligned, nearly aligned or arbitrary; its length is not
-    /// normalized.
+    /// Returns a random unit quaternion that is aligned, nearly aligned or arbitrary. Its
+    /// components are rounded to the scalar, so its length is 1 only up to rounding.
     fn turn<N: Space<3>>(&mut self) -> [f64; 4] {
         const STRAIGHT: [[f64; 4]; 5] = [
             [0.0, 0.0, 0.0, 1.0],
@@ -158,7 +158,7 @@ impl Maker {
         mixed.map(|x| single::<N>(x / length))
     }
 
-    /// A position at which solids with this reach probably overlap.
+    /// Returns a position at which solids with the bounding radius `reach` probably overlap.
     fn place<N: Space<3>>(&mut self, reach: f64) -> [f64; 3] {
         let at = match self.random.below(5) {
             0 => [0.0; 3],
@@ -171,7 +171,7 @@ impl Maker {
     }
 }
 
-/// A pose for the library and for the reference.
+/// Returns a pose for the library and for the reference.
 fn placed<N: Space<3>>(at: [f64; 3], turn: [f64; 4]) -> (Isometry3<N>, Pose<3>) {
     let [i, j, k, w] = turn.map(N::lit);
     let quaternion = UnitQuaternion::new_normalize(Quaternion::new(w, i, j, k));
@@ -179,8 +179,9 @@ fn placed<N: Space<3>>(at: [f64; 3], turn: [f64; 4]) -> (Isometry3<N>, Pose<3>) 
     (isometry, Pose::from_quaternion(at, turn))
 }
 
-/// Error of the depth of a pair and of the separation along its normal relative to the size, and
-/// the error allowed; `None` unless the cores overlap.
+/// Returns the error relative to the size of the pair, the error allowed, and a description; `None`
+/// unless the cores overlap. The error is the larger of two: that of the depth against the
+/// reference, and the difference between the depth and the separation along the normal.
 fn error<N: Space<3>>(seed: u64, kind: usize, accuracy: f64) -> Option<(f64, f64, String)> {
     let mut maker = Maker::new(seed);
     let ((shape1, solid1), (shape2, solid2)) = (maker.flat::<N>(kind), maker.round::<N>());
@@ -198,8 +199,8 @@ fn error<N: Space<3>>(seed: u64, kind: usize, accuracy: f64) -> Option<(f64, f64
     let normal = found.normal.into_inner().map(Real::as_f64).into();
     let own = separation_along(&solid1, &pose1, &solid2, &pose2, &normal);
     let error = truth.error_of(distance).max((own - distance).abs()) / size;
-    // Where all normals of a ring are nearly equally good, the general search may end before it has
-    // converged; it also handles needles and disks.
+    // If the separation is nearly the same along a circle of normals, the general search may stop
+    // before it converges. It also handles needles and disks.
     let is_ring = truth.upper - truth.lower > 1e-10 * size;
     let is_thin = matches!(solid2, Solid::Cylinder { half_height, radius }
         | Solid::Cone { half_height, radius } if half_height.min(radius) < 1e-6 * size);

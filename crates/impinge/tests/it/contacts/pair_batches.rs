@@ -11,8 +11,8 @@ use impinge_scenes::{Scene, SceneQuery, mixed_shapes, sparse_drift, spawn_and_de
 use scene_stage::{Digest, Play, Player, digest_state};
 use std::hash::Hasher;
 
-/// The default narrow phase behind the provided `handle_interactions`, which passes the pairs one
-/// by one.
+/// Wraps the default narrow phase but keeps the provided `handle_interactions` of the trait, which
+/// handles the pairs one by one.
 #[derive(Clone)]
 struct OneByOne<N: Space<D>, const D: usize>(DefaultNarrowPhase<N, D>);
 
@@ -89,7 +89,7 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for OneByOne<N, D> {
     }
 }
 
-/// The scene with every third object as a sensor.
+/// Makes every third object of a scene a sensor.
 fn asking_for_both<const D: usize>(mut scene: Scene<D>) -> Scene<D> {
     for object in scene.objects.iter_mut().step_by(3) {
         object.query = SceneQuery::Proximity { margin: 0.02 };
@@ -97,11 +97,12 @@ fn asking_for_both<const D: usize>(mut scene: Scene<D>) -> Scene<D> {
     scene
 }
 
-/// Plays a scene in both ways; returns how many contacts and proximities changed.
+/// Plays a scene with pairs handled in batches and one by one, and asserts equal digests. Returns
+/// the number of contact and proximity events.
 fn compare<N: Play<D>, const D: usize>(scene: &Scene<D>, steps: u32) -> usize {
     let mut together = Player::<N, D>::new(scene.clone(), 1.0);
     let mut one_by_one = Player::<N, D>::new(scene.clone(), 1.0);
-    // Both worlds exchange their narrow phase, after which proxies have new indices.
+    // Both worlds replace their narrow phase, after which proxies have new indices.
     together.world.set_narrow_phase(Box::new(DefaultNarrowPhase::new()));
     one_by_one.world.set_narrow_phase(Box::new(OneByOne(DefaultNarrowPhase::new())));
     let mut events = 0;

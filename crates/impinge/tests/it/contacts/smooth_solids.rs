@@ -1,5 +1,6 @@
-//! Compares ellipsoids and tapered capsules, including needles and thin disks, with searches written for them. The
-//! iterations of the general algorithm do not converge for these solids by themselves.
+//! Compares ellipsoids and tapered capsules, including needles and thin disks, with searches
+//! written for this test. The iterations of the general algorithm alone do not converge for these
+//! solids.
 
 use crate::support::query_support;
 
@@ -11,8 +12,9 @@ use impinge::query::{PointQuery, contact};
 use impinge::shape::{Ellipsoid, Segment, Shape, TaperedCapsule};
 use query_support::random::Random;
 
-/// Separation of two ellipsoids along a unit normal, its gradient and its Hessian. The ellipsoids lie at the origin and
-/// at `away`, and are given by the matrices of their squared support functions.
+/// Returns the separation of two ellipsoids along a unit normal, its gradient and its Hessian. The
+/// ellipsoids lie at the origin and at `away`, and are represented by the matrices of their squared
+/// support functions.
 fn height(
     normal: &Vector3<f64>,
     solids: &[Matrix3<f64>; 2],
@@ -29,8 +31,8 @@ fn height(
     (height, gradient, hessian)
 }
 
-/// The largest separation reached from a start normal by Newton's method with a line search, going uphill along each
-/// principal direction.
+/// Returns the largest separation that Newton's method with a line search reaches from a start
+/// normal. Each step is uphill along every principal direction.
 fn climbed(mut normal: Vector3<f64>, solids: &[Matrix3<f64>; 2], away: &Vector3<f64>) -> f64 {
     let (mut best, mut gradient, mut hessian) = height(&normal, solids, away);
     for _ in 0..200 {
@@ -59,7 +61,7 @@ fn turn(random: &mut Random) -> UnitQuaternion<f64> {
     UnitQuaternion::new_normalize(q)
 }
 
-/// The matrix whose quadratic form is the squared support function.
+/// Returns the matrix whose quadratic form is the squared support function.
 fn squared_support(turn: &UnitQuaternion<f64>, half_axes: &Vector3<f64>) -> Matrix3<f64> {
     let turn = turn.to_rotation_matrix().into_inner();
     turn * Matrix3::from_diagonal(&half_axes.component_mul(half_axes)) * turn.transpose()
@@ -98,7 +100,7 @@ fn ellipsoids_are_as_far_apart_as_the_best_normal_says() {
     assert!(deep > 400 && apart > 200, "{deep} overlap, {apart} do not");
 }
 
-/// Least distance over a segment by ternary search: the distance is convex along it.
+/// Returns the least distance along a segment by ternary search; the distance is convex along it.
 fn least(distance: impl Fn(f64) -> f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..120 {
@@ -142,7 +144,8 @@ fn segments_are_as_far_as_their_nearest_point() {
     assert!(apart > 2000, "{apart} of 6000 are apart");
 }
 
-/// Distance of a point from an ellipse: the best of many angles, then a ternary search around it.
+/// Returns the distance of a point from an ellipse: the best of many angles, refined by ternary
+/// search.
 fn nearest_by_angle(half_axes: &Vector2<f64>, point: &Vector2<f64>) -> f64 {
     const PARTS: i32 = 720;
     let step = core::f64::consts::FRAC_PI_2 / f64::from(PARTS);

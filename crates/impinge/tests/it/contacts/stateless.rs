@@ -30,7 +30,7 @@ impl<N: Space<D>, const D: usize> Setting<'_, N, D> {
         ContactPrediction::new(prediction + prediction, angular_prediction, angular_prediction)
     }
 
-    /// The manifolds that a new world computes.
+    /// Returns the manifolds that a new world computes.
     fn by_world(&self) -> Manifolds<N, D> {
         let mut world = CollisionWorld::<N, D, ()>::new(N::lit(0.25));
         if let Some(max_points) = self.max_points {
@@ -46,7 +46,7 @@ impl<N: Space<D>, const D: usize> Setting<'_, N, D> {
         world.contact_manifolds().map(|(_, _, manifold)| manifold.clone()).collect()
     }
 
-    /// The manifolds that a new generator computes.
+    /// Returns the manifolds that a new generator computes.
     fn by_generator(&self) -> Manifolds<N, D> {
         let mut generator =
             self.max_points.map_or_else(PairManifoldGenerator::default, PairManifoldGenerator::new);
@@ -76,7 +76,7 @@ fn assert_same<N: Real, const D: usize>(
     }
 }
 
-/// Tests every two shapes in both orders at several positions.
+/// Tests every pair of shapes in both orders at several poses.
 fn every_pair<N, R, const D: usize>(shapes: &Shapes<N, D>, turn: fn(&mut Random) -> R)
 where
     N: Space<D, Isometry = Isometry<N, R, D>>,

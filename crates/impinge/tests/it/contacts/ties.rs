@@ -1,7 +1,7 @@
-//! Tests searches with many equal results: of things at equal distance, or hit at the same time,
-//! the one with the least index is the result, whatever order the search visits them in.
+//! Tests searches with many ties. Among candidates at equal distance, or hit at the same time, the
+//! result is the one with the least index, in whatever order the search visits them.
 //!
-//! The expected results come from scans of all things with the same test of each thing.
+//! The expected results come from scans of all candidates with the same test for each.
 
 use impinge::bounding_volume::{Aabb, Ray};
 use impinge::dim3;
@@ -13,7 +13,7 @@ use impinge::shape::ShapeHandle;
 use impinge::world::{CollisionGroups, QueryFilter};
 use impinge_reference::random::Random;
 
-/// Cells along each axis of the grid; few enough that each holds many things.
+/// Cells along each axis of the grid; few enough that cells hold several objects.
 const SIDE: usize = 6;
 
 fn cell<const D: usize>(random: &mut Random) -> [f64; D] {
@@ -24,7 +24,7 @@ fn vector<N: Real, const D: usize>(v: [f64; D]) -> Vector<N, D> {
     Vector::<N, D>::from_fn(|axis, _| N::lit(v[axis]))
 }
 
-/// The first index with the least key.
+/// Returns the first index with the least key, and that key.
 fn first<N: Real>(keys: impl Iterator<Item = Option<N>>) -> Option<(usize, N)> {
     let mut best: Option<(usize, N)> = None;
     for (index, key) in keys.enumerate() {
@@ -35,7 +35,8 @@ fn first<N: Real>(keys: impl Iterator<Item = Option<N>>) -> Option<(usize, N)> {
     best
 }
 
-/// Boxes of half a cell or of size zero, at random cells of size `unit` from `offset` on.
+/// Returns boxes of half a cell or of size zero, at random cells of size `unit` that start at
+/// `offset`.
 fn boxes<N: Real, const D: usize>(
     random: &mut Random,
     count: usize,
@@ -90,7 +91,7 @@ fn of_equal_boxes_the_first_by_index_answers() {
 
 type World = dim3::world::CollisionWorld<f32, usize>;
 
-/// Balls and cubes of one size, several in each cell.
+/// Creates a world of balls and cubes of one size at random cells. They interact with nothing.
 fn world(random: &mut Random, count: usize) -> World {
     let mut world = World::new(0.02);
     let mut nobody = CollisionGroups::new();
@@ -111,7 +112,8 @@ fn place(random: &mut Random) -> dim3::math::Isometry<f32> {
     dim3::math::Isometry::translation(at.x, at.y, at.z)
 }
 
-/// Compares queries of the world with scans of its objects.
+/// Compares queries of the world with scans of its objects. Returns the number of ties for the
+/// nearest object.
 fn ask(world: &World, random: &mut Random) -> usize {
     let (all, reach) = (QueryFilter::new(), 4.0_f32);
     let objects: Vec<_> = world.collision_objects().collect();
@@ -192,8 +194,8 @@ fn of_equal_objects_the_first_by_handle_answers() {
     assert!(ties > 500, "{ties} ties");
 }
 
-/// Triangles around the whole numbers of a plane, in random order: above a vertex, six of them are
-/// equally near, and the least index is the result.
+/// Triangles of a regular grid, in random order. Up to six triangles have the vertex that is
+/// nearest to a point above it; the one with the least index is the result.
 #[test]
 fn of_equal_triangles_the_first_by_number_answers() {
     let side = 12_u32;

@@ -1,5 +1,5 @@
-//! Tests that every case of the corpus of bugs is run: each kind of query has a test listed here, which counts its
-//! cases itself.
+//! Tests that every case of the corpus of bugs is run: each kind of query has a test listed here,
+//! which counts its cases itself.
 
 use crate::support::query_support;
 
@@ -9,7 +9,8 @@ use std::path::Path;
 
 use query_support::corpus::{narrow_phase, regression};
 
-/// By kind of query: the file that runs all its cases with both scalars, and their number.
+/// For each kind of query, the file that runs all of its cases with both scalars, and the number of
+/// cases.
 const RUN: [(&str, &str, usize); 12] = [
     ("convex_hull", "queries/hull/corpus.rs", 8),
     ("linear_cast", "queries/query_corpus.rs", 27),

@@ -47,7 +47,8 @@ fn half_spaces_without_a_direction_panic() {
     let _ = HalfSpace::<f32, 3>::new(Unit::new_normalize(Vector::<f32, 3>::zeros()));
 }
 
-/// Compounds and worlds refuse a position whose rotation is not a unit one, and report its length.
+/// Asserts that compounds and worlds refuse a position whose rotation does not have unit length,
+/// and report that length.
 fn positions<N: Space<D>, const D: usize>(good: N::Isometry, bad: N::Isometry, expected: f64) {
     let ball = || ShapeHandle::<N, D>::new(Ball::new(N::ONE));
     let refused = Compound::<N, D>::try_new(vec![(good, ball()), (bad, ball())]);

@@ -24,7 +24,7 @@ type World<N, const D: usize> = CollisionWorld<N, D, ()>;
 
 const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
-/// Digest of the complete visible state of a world.
+/// Returns the digest of the complete visible state of a world.
 fn state<N: Stage<D>, const D: usize>(world: &World<N, D>) -> u64 {
     let mut digest = Digest::new();
     digest_state(world, &mut digest);
@@ -40,7 +40,7 @@ fn state<N: Stage<D>, const D: usize>(world: &World<N, D>) -> u64 {
     digest.finish()
 }
 
-/// The call panics with a message that explains the reason.
+/// Asserts that `call` panics with a message that explains the reason.
 #[track_caller]
 fn panics<R>(call: impl FnOnce() -> R, what: &str) {
     let outcome = catch_unwind(AssertUnwindSafe(|| drop(call())));
@@ -99,8 +99,8 @@ fn bad_shapes_are_refused<N: Stage<D>, const D: usize>() {
     panics(|| DBVTBroadPhase::<N, Aabb<N, D>, ()>::new(N::lit(f64::NAN)), "margin");
 }
 
-/// Refused: too few points, coinciding points, points on a line, and coordinates that are not
-/// finite.
+/// Asserts that hulls of too few points, of coinciding points, of points on a line, and of
+/// coordinates that are not finite are refused.
 fn bad_hulls_are_refused<N: Real>() {
     let flat = |points: &[[f64; 2]]| {
         let points: Vec<_> = points.iter().map(|p| Point::from(vector::<N, 2>(*p))).collect();
@@ -130,7 +130,8 @@ fn hulls_of_bad_points() {
     bad_hulls_are_refused::<f64>();
 }
 
-/// A world with three objects in contact, one of them a sensor, and a stale handle.
+/// Returns a world with three objects in contact, one of them a sensor, and the handles, the last
+/// of which is stale.
 fn busy<N: Stage<D>, const D: usize>() -> (World<N, D>, [CollisionObjectHandle; 4]) {
     let mut world = World::<N, D>::new(N::lit(0.02));
     let handles = [
@@ -261,7 +262,7 @@ fn sizes_of_zero<N: Stage<D>, const D: usize>() {
     assert!(stopped.iter().all(|event| matches!(event, ContactEvent::Stopped(..))), "stopped");
 }
 
-/// Sizes and positions whose squares, or which themselves, exceed the range of the scalar.
+/// Tests sizes and positions near the limit of the scalar, whose squares overflow.
 fn enormous<N: Stage<D>, const D: usize>() {
     let huge = N::MAX.as_f64() / 4.0;
     let mut world = World::<N, D>::new(N::lit(0.02));
@@ -285,7 +286,7 @@ fn enormous<N: Stage<D>, const D: usize>() {
     assert!(hits > 0, "the enormous ones");
 }
 
-/// Very many objects with the same centre: each touches all others, and all contacts end with one
+/// Adds many objects with the same centre: each touches all others, and all contacts end with one
 /// removal.
 fn coincident<N: Stage<D>, const D: usize>(count: usize) {
     let mut world = World::<N, D>::new(N::lit(0.02));

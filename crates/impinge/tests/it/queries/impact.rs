@@ -45,7 +45,8 @@ fn onto_with(
 
 #[test]
 fn an_impact_names_points_and_normal_in_the_world() {
-    // The box is turned by a quarter and moves too, so that the world frame is neither local frame.
+    // The box is rotated by a quarter turn and moves too, so that the world frame is neither local
+    // frame.
     let (cuboid, ball) = (Cuboid::new(V2::new(0.5, 2.0)), Ball::new(1.0));
     let quarter = Isometry2::new(V2::new(-1.0, 10.0), std::f64::consts::FRAC_PI_2);
     let cuboid = Moving::new(&quarter, &V2::new(1.0, -2.0), &cuboid);
@@ -100,7 +101,8 @@ fn the_longest_time_is_included() {
     assert_eq!((touching(0.0), touching(-1.0)), (Some(0.0), None), "the start is a moment");
 }
 
-/// A maximum time that is negative or NaN gives no impact, whatever the start and the speed.
+/// Asserts that a maximum time that is negative or NaN gives no impact, whatever the start and the
+/// speed.
 #[test]
 fn there_is_no_time_before_the_start() {
     let ball = Ball::new(1.0_f64);
@@ -230,7 +232,7 @@ fn only_differences_count() {
     assert_eq!(cast(0.0, 1e6), Some(6.75), "both fast");
 }
 
-/// A mover that narrowly passes, and one that narrowly hits.
+/// Tests a solid that narrowly passes, and one that narrowly hits.
 #[test]
 fn grazing_passes() {
     let (ball, square) = (Ball::new(1.0), Cuboid::new(V2::new(1.0, 1.0)));
@@ -246,8 +248,8 @@ fn grazing_passes() {
     }
 }
 
-/// Every two kinds, overlapping at the start: a motion along the normal separates them or is an
-/// impact at time 0.
+/// Tests all pairs of kinds, overlapping at the start: a motion along the normal separates them or
+/// is an impact at time 0.
 fn overlapping_starts<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     kinds: &[ShapeKind],
     sample: Sample<N, D>,

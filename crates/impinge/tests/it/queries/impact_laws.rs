@@ -58,7 +58,7 @@ where
         let away = random.direction::<N, D>() * N::lit(5.0);
         let places =
             [origin, origin + away].map(|at| Isometry::from_parts(at.into(), (self.turn)(random)));
-        // One body is sent at the other one or past it, and both drift.
+        // One body moves towards the other or past it, and both drift.
         let drift = random.vector::<N, D>() * N::lit(0.5);
         let aim = away + random.vector::<N, D>() * N::lit(2.0);
         let velocities = [drift + aim, drift + random.vector::<N, D>() * N::lit(0.25)];
@@ -168,7 +168,7 @@ where
         max(N::EPSILON * N::lit(1024.0), N::lit(1e-9)) * self.extent()
     }
 
-    /// Tests the laws for bodies that rotate too; `told` wraps their motions.
+    /// Tests the laws for bodies that also rotate; `told` converts their motions.
     fn turning(&self, setting: &Setting, told: Told<N, D>) -> Option<ImpactStatus> {
         let [one, two] = self.motions.map(told);
         let [shape1, shape2] = &self.shapes;

@@ -1,4 +1,5 @@
-//! Tests impacts of rotating bodies: values by hand, brute force, custom motions, starts in contact, and bad input.
+//! Tests impacts of rotating bodies: values by hand, brute force, custom motions, starts in
+//! contact, and bad input.
 
 use crate::support::query_support;
 
@@ -104,7 +105,7 @@ fn a_rod_swings_against_a_wall() {
 
 #[test]
 fn the_centre_of_a_turn_may_be_anywhere() {
-    // The same rod, given once from its middle and once from a frame far away from it.
+    // One segment in two frames: with its midpoint at the origin, and far away from the origin.
     let wall = half_plane(0.0, -1.0);
     let wall = (&Turning2::still(at(7.0, 2.0_f64.sqrt())) as &dyn RigidMotion<f64, 2>, &wall as _);
     for shift in [1.0, -40.0] {
@@ -155,7 +156,7 @@ fn first_touch(one: Body<'_, f64, 2>, two: Body<'_, f64, 2>, end: f64) -> f64 {
 
 #[test]
 fn a_rod_that_whirls_a_thousand_times_on_its_way() {
-    // The rod is as thin as possible and rotates by 0.1 while it moves by 0.0001.
+    // The segment has no thickness, and rotates by 0.1 radians while it moves by 0.0001.
     let (rod, ball) = (rod(-1.0, 1.0), Ball::new(0.01));
     let whirls = Turning2::<f64>::new(turned(3.0, 0.3, 0.7), V2::new(-1.0, 0.0), 1000.0);
     let still = Turning2::still(at(0.0, 0.0));
@@ -315,16 +316,16 @@ fn what_rests_rolls_or_spins_on_a_floor_does_not_hit_it() {
 
 #[test]
 fn starts_in_contact_count_by_the_motion_of_the_points() {
-    // The end of a rod at 60 degrees touches a wall.
+    // The end of a segment that is rotated by 60 degrees touches a half-plane.
     let (rod, wall) = (rod(0.0, 2.0), half_plane(-1.0, 0.0));
     let still = Turning2::still(at(1.0, 0.0));
     let swings = |angular| spins(turned(0.0, 0.0, FRAC_PI_3), angular);
     assert_eq!(toi((&swings(-1.0), &rod), (&still, &wall), &FOR_EVER), 0.0, "into the wall");
-    // Swinging away from the wall, the rod comes back from below.
+    // A segment that rotates away from the half-plane reaches it again from below.
     let back = toi((&swings(1.0), &rod), (&still, &wall), &FOR_EVER);
     assert_near(back, 2.0 * TAU / 3.0);
     assert_eq!(both((&swings(1.0), &rod), (&still, &wall), &until(4.0)), None, "not yet");
-    // At a right angle to the wall the end only slides, and touches again after a full turn.
+    // At a right angle to the half-plane the end only slides, and touches again after a full turn.
     let straight = Turning2::still(at(2.0, 0.0));
     let back = toi((&spins(at(0.0, 0.0), 1.0), &rod), (&straight, &wall), &FOR_EVER);
     assert!(back <= TAU + 1e-9 && back > TAU - 1e-6, "{back}");
@@ -360,7 +361,7 @@ fn overlapping_starts() {
 
 #[test]
 fn a_search_without_end_says_so() {
-    // The rod circles the ball without touching it.
+    // The segment circles the ball without touching it.
     let (rod, ball) = (rod(1.0, 2.0), Ball::new(0.5));
     let (turns, still) = (spins(at(0.0, 0.0), 1.0), Turning2::still(at(0.0, 0.0)));
     assert_eq!(both((&turns, &rod), (&still, &ball), &until(20.0)), None, "three times round");
@@ -414,7 +415,8 @@ fn bounds_that_are_none_are_never_trusted() {
     }
 }
 
-/// Sizes, speeds and times scaled by powers of ten, with both scalars.
+/// Returns the time of impact of a rotating segment in units of `time`. The segment has length
+/// `2 * size`, and rotates by one radian per `time`.
 fn scaled<N: Space<2, Isometry = Isometry2<N>>>(size: N, time: N, offset: N) -> N {
     let rod = Segment::new(Point::<N, 2>::origin(), Point::<N, 2>::new(N::TWO * size, N::ZERO));
     let wall = Plane::new(Unit::new_unchecked(-Vector::<N, 2>::y()));
@@ -462,7 +464,8 @@ fn box2d_115_sweep() {
         let sweep = Turning2::<f64>::new(start, way, turn);
         assert_eq!(both((&still, shape1), (&sweep, shape2), &until(1.0)), None, "it only nears");
     }
-    // The case gives the least distance: with a slightly larger target there is an impact, at the end.
+    // The case gives the least distance. With a slightly larger target distance there is an impact,
+    // at the end.
     let least = case["expected"]["min_signed_distance"].as_f64().expect("a number");
     let sweep = Turning2::<f64>::new(two.pose, way, turn);
     let near = |distance| {
@@ -560,8 +563,8 @@ fn within_the_tolerance_bodies_count_as_touching() {
     assert_eq!(cast(V2::y()), None, "separating");
 }
 
-/// The end of a rod passes a wall by a tiny gap, and only bounds of its speed are known. A gap
-/// below a millionth of the size is a contact.
+/// The end of a segment passes a half-plane at a tiny distance, and only bounds of its speed are
+/// known. A distance below a millionth of the size counts as contact.
 #[test]
 fn what_grazes_within_a_millionth_touches() {
     let (rod, wall) = (rod(0.0, 2.0), half_plane(0.0, -1.0));
@@ -573,7 +576,8 @@ fn what_grazes_within_a_millionth_touches() {
     }
 }
 
-/// Equal bodies at one pose whose motions differ only after the longest time: both orders give the same result.
+/// Tests equal bodies at one pose whose motions differ only after the maximum time: both orders
+/// give the same result.
 #[test]
 fn equal_bodies_that_part_after_the_longest_time_have_one_order() {
     let triangle = Triangle::new(

@@ -1,4 +1,5 @@
-//! Tests nesting up to the greatest depth allowed: no query overflows a small stack, and deeper nesting is refused.
+//! Tests nesting up to the greatest depth allowed: no query overflows a small stack, and deeper
+//! nesting is refused.
 
 use std::thread;
 

@@ -42,7 +42,7 @@ struct Stage<N: Real, R, const D: usize> {
 }
 
 impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Stage<N, R, D> {
-    /// Number of pairs with a wrong result or a panic.
+    /// Returns the number of pairs with a wrong result or a panic.
     fn all_pairs(&self, setting: &Setting) -> usize {
         let shapes = (self.shapes)(N::lit(setting.scale));
         let mut wrong = Vec::new();
@@ -158,7 +158,7 @@ struct Two<'a, N: Real, R, const D: usize> {
     g1: &'a dyn Shape<N, D>,
     m2: &'a Isometry<N, R, D>,
     g2: &'a dyn Shape<N, D>,
-    /// Returns `true` if shapes and poses are equal, so that the order is undefined.
+    /// Whether both shapes and both poses are equal, so that their order is undefined.
     same: bool,
 }
 

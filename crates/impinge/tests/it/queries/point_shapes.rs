@@ -36,8 +36,8 @@ fn check_nearest<N: Real, const D: usize>(
         };
         if let Some(other) = solid.boundary(&direction) {
             let nearer = distance - (asked - other).norm();
-            // On a flat side the nearest point may move by its rounding, on a round side by the
-            // root of it.
+            // On a flat side the nearest point may move by the rounding error, on a curved side by
+            // its square root.
             assert!(nearer <= 4.0 * close, "{other} is nearer by {nearer}: {what}");
         }
     }
@@ -141,7 +141,7 @@ fn solids_far_from_the_world_origin_agree_with_samples() {
     run(space_solids::<f64>, |rng| pose3(rng, 1e6), 13);
 }
 
-/// For shapes without thickness: the result is a convex combination of the corners, and no
+/// Tests shapes without thickness: the result is a convex combination of the corners, and no
 /// combination on a grid is nearer.
 fn check_flat<N: Space<D>, const D: usize>(rng: &mut Rng, flat: &Flat<N, D>) {
     let asked = rng.vector::<D>(4.0);

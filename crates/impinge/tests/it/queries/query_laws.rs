@@ -37,7 +37,7 @@ const REGIMES: [Regime; 7] = [
 /// Size of the second solid relative to the first.
 const RATIOS: [f64; 8] = [1.0, 1.0, 0.1, 30.0, 1e-3, 1e3, 1e-6, 1e6];
 
-/// Number of pairs of each two kinds in each regime.
+/// Returns the number of seeds for each two kinds in each regime.
 fn seeds() -> u64 {
     samples(2) as u64
 }
@@ -103,7 +103,7 @@ fn bring_to<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     }
 }
 
-/// Error allowed for a pair of kinds, relative to their size.
+/// Returns the error allowed for a pair of kinds, relative to their size.
 ///
 /// Next to a solid a million times smaller, the faces of the larger one have directions known only
 /// up to a rounding error a million times as large.

@@ -29,8 +29,8 @@ fn soup<N: Real>(random: &mut Random, (size, offset): (f64, f64), count: u32) ->
     TriMesh::new(vertices, (0..count).map(|index| [0, 1, 2].map(|k| 3 * index + k)).collect())
 }
 
-/// Rays at corners, at points of sides and into triangles, along sides, from points on them, and
-/// arbitrary ones.
+/// Returns a ray at a corner, at a point of a side, into a triangle, along a side, from a point of
+/// a side, or an arbitrary ray.
 fn aimed<N: Real>(random: &mut Random, mesh: &TriMesh<N, 3>, size: f64) -> Ray<N, 3> {
     let any = |random: &mut Random| {
         let part = u32::try_from(random.bits() % u64::from(mesh.num_parts())).expect("few");
@@ -171,8 +171,8 @@ fn answers_need_places() {
     RayCast::<f32, 2>::cast_local_rays(&Ball::new(1.0_f32), &RayBatch::new(&rays), &mut []);
 }
 
-/// A world of 5000 balls and half-spaces, whose objects do not interact. Every ninth moves in each
-/// step and once after the last update; a hundred are removed.
+/// Returns a world of 5000 balls and half-spaces, whose objects do not interact. Every ninth moves
+/// in each step and once after the last update; a hundred are removed.
 fn world<N: Space<D>, const D: usize>(
     random: &mut Random,
     place: impl Fn(Vector<N, D>) -> N::Isometry,

@@ -36,7 +36,8 @@ fn at(t: f64) -> (Option<f64>, Option<f64>) {
     (Some(t), Some(t))
 }
 
-/// A ray that starts outside, for which solid and hollow shapes have the same hit.
+/// Returns the case of a ray that starts outside, for which solid and hollow shapes have the same
+/// hit.
 fn from_outside<const D: usize>(origin: [f64; D], dir: [f64; D], t: f64) -> Case<D> {
     let (solid, hollow) = at(t);
     (origin, dir, solid, hollow)

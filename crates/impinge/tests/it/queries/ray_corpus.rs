@@ -85,7 +85,7 @@ fn tri_mesh<N: Real>(shape: &Value) -> TriMesh<N, 3> {
     TriMesh::new(corners(&shape["vertices"]), triangles.collect())
 }
 
-/// Cylinders and cones along y, and the rotation that takes y to the axis of the case.
+/// Returns a cylinder or cone along y, and the rotation that takes y to the axis of the case.
 fn round<N: Real>(shape: &Value) -> Option<(ShapeHandle<N, 3>, Isometry3<N>)> {
     let (half_height, radius) = (number::<N>(&shape["half_height"]), number(&shape["radius"]));
     let handle = match shape["type"].as_str()? {
@@ -216,7 +216,8 @@ fn reordered(case: &Value) -> Vec<Value> {
     orders.iter().map(|order| reorder(order)).collect()
 }
 
-/// A closed mesh, as given and with reversed windings.
+/// Compares the signed distance of a point from a closed mesh with the case, with the original and
+/// with reversed windings.
 fn check_mesh<N: Real>(case: &Value) {
     let (params, expected) = (&case["params"], &case["expected"]);
     let asked = point::<N, 3>(&params["point"]);
@@ -258,7 +259,8 @@ fn corners<N: Real>(list: &Value) -> Vec<Point<N, 3>> {
     list.as_array().expect("a list").iter().map(point).collect()
 }
 
-/// The convex closed meshes as hulls: signs and distances must not depend on the faces.
+/// Compares the hulls of the convex meshes with the cases: signs and distances must not depend on
+/// the faces.
 fn convex_meshes<N: Space<3>>() {
     let mut checked = 0;
     for case in cases() {

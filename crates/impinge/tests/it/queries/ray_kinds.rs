@@ -135,7 +135,8 @@ fn every_kind_is_hit_from_above() {
     kinds(&space_kinds::<f64>(), &space);
 }
 
-/// A cube as a hull gives the results of a cuboid, even at corners and edges and along faces.
+/// Asserts that a cube as a hull gives the results of a cuboid, even at corners and edges and along
+/// faces.
 fn cube<N: Real>() {
     let hull = ConvexHull::<N>::from_points(&cube_corners());
     let cuboid = Cuboid::<N, 3>::new(Vector::<N, 3>::repeat(N::ONE));

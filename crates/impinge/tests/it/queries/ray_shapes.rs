@@ -227,8 +227,8 @@ fn solids_far_from_the_world_origin_agree_with_the_oracle() {
     run(space_solids::<f64>, |rng| pose3(rng, 1e6), 13);
 }
 
-/// A ray from far away, aimed at a solid or past it, finds the boundary as precisely as its own
-/// coordinates are.
+/// Asserts that a ray from far away, aimed at a solid or past it, finds the boundary as precisely
+/// as its own coordinates are.
 fn far_rays<N: Space<D>, const D: usize>(solids: Vec<Solid<N, D>>, away: f64) {
     let mut rng = Rng::new(5);
     for solid in solids.iter().filter(|solid| solid.name != "plane") {
@@ -257,8 +257,8 @@ fn rays_from_afar_find_the_boundary() {
     far_rays(space_solids::<f32>(&mut Rng::new(4)), 1e3);
 }
 
-/// Parameters of the crossing on the ray and on a segment in 2D, by Cramer's rule. The ray hits if
-/// the first is not negative and the second lies in 0..=1.
+/// Returns the parameters of the crossing on the ray and on a segment in 2D, by Cramer's rule. The
+/// ray hits if the first is not negative and the second lies in 0..=1.
 fn segment_by_cramer<const D: usize>(
     flat: &[Vector<f64, 2>],
     origin: &Vector<f64, 2>,
@@ -298,7 +298,7 @@ fn segments_of_the_plane_agree_with_cramer() {
     assert!((0.3..=0.7).contains(&rate), "{hits} of {clear}");
 }
 
-/// Parameters of `origin + t · dir = a + u · (b − a) + v · (c − a)` by Cramer's rule.
+/// Returns the parameters of `origin + t · dir = a + u · (b − a) + v · (c − a)` by Cramer's rule.
 fn triangle_by_cramer(
     corners: &[Vector<f64, 3>],
     origin: &Vector<f64, 3>,

@@ -10,7 +10,7 @@ use impinge::world::CollisionGroups;
 use impinge_scenes::{Scene, mixed_shapes, mixed_sizes, pile, sparse_drift, tower};
 use scene_stage::{Play, Player, World};
 
-/// Exponents of the factors: far to both sides, and odd ones.
+/// Exponents of the scale factors: negative and positive, even and odd.
 const POWERS: [i32; 4] = [-20, -7, 9, 20];
 
 fn power_of_two(k: i32) -> f64 {

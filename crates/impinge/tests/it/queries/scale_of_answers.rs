@@ -69,8 +69,8 @@ impl<const D: usize> Draw<D> {
     }
 }
 
-/// Results of queries of two shapes: all lengths, all numbers that do not scale, and all discrete
-/// results as text.
+/// Returns the results of queries of two shapes: all lengths, all numbers that do not scale, and
+/// all discrete results as text.
 fn answers2<N: Space<2, Isometry = Isometry2<N>>>(
     shapes: [&dyn Shape<N, 2>; 2],
     offset: Vector<N, 2>,
@@ -190,7 +190,7 @@ fn answers_on_a_grid_of_space_scale() {
     hold::<f64, 3>(54, answers3);
 }
 
-/// The numbers of a report, also at sizes that are not powers of two.
+/// Tests the numbers of a bug report, also at sizes that are not powers of two.
 #[test]
 fn segments_that_cross_and_touch_have_the_depth_of_the_crossing() {
     fn check<N: Space<2, Isometry = Isometry2<N>>>() {
@@ -212,7 +212,7 @@ fn segments_that_cross_and_touch_have_the_depth_of_the_crossing() {
     check::<f64>();
 }
 
-/// Returns height fields over one row of heights.
+/// Asserts that height fields with scaled heights give scaled results.
 #[test]
 fn height_fields_scale() {
     let random = &mut Random(55, false);

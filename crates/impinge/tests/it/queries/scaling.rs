@@ -34,7 +34,8 @@ fn reaches<N: Real, const D: usize>(shape: &Handle<N, D>, direction: &Vector<N, 
     (0..composite.num_parts()).map(part).collect()
 }
 
-/// A scaled solid extends along a direction as far as the solid does along the scaled direction.
+/// Asserts that the extent of a scaled solid along a direction equals the extent of the solid along
+/// the scaled direction.
 fn check<N: Real, const D: usize>(shape: &Handle<N, D>, factors: [f64; D], random: &mut Random) {
     let scale = Vector::<N, D>::from_fn(|axis, _| N::lit(factors[axis]));
     let scaled =
@@ -56,7 +57,7 @@ fn check<N: Real, const D: usize>(shape: &Handle<N, D>, factors: [f64; D], rando
     }
 }
 
-/// Returns the error of scaling the shape by its handle, and not by its type.
+/// Returns the error with which the handle of the shape refuses the factors.
 fn refused<const D: usize>(shape: &Handle<f64, D>, factors: [f64; D]) -> ScaleError {
     shape.scaled(&Vector::<f64, D>::from(factors)).expect_err("no such shape")
 }
@@ -143,7 +144,8 @@ fn shapes_of_the_plane_reach_where_their_scaled_points_do() {
     check_plane::<f64>();
 }
 
-/// A point is in the half-space if and only if the scaled point is in the scaled half-space.
+/// Asserts that a point is in a half-space if and only if the scaled point is in the scaled
+/// half-space.
 #[test]
 fn half_spaces_keep_their_points() {
     let mut random = Random(93, false);

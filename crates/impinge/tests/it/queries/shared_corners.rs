@@ -11,7 +11,7 @@ use impinge::shape::{
 };
 use query_support::random::Random;
 
-/// Random points around a corner, on one side of a plane through it, and the corner itself.
+/// Returns random points around a corner, on one side of a plane through it, and the corner itself.
 fn around<N: Real, const D: usize>(
     random: &mut Random,
     corner: &[f64; D],
@@ -36,7 +36,7 @@ fn around<N: Real, const D: usize>(
     points
 }
 
-/// Two lists of points with a common corner, on opposite sides of a plane through it.
+/// Returns two lists of points with a common corner, on opposite sides of a plane through it.
 fn meeting<N: Real, const D: usize>(random: &mut Random, round: usize) -> [Vec<Point<N, D>>; 2] {
     let on_grid = round.is_multiple_of(2);
     let far = [1.0, 400.0, 1e5][round % 3];
@@ -50,7 +50,7 @@ fn meeting<N: Real, const D: usize>(random: &mut Random, round: usize) -> [Vec<P
     [around(random, &corner, &side, on_grid), around(random, &corner, &other, on_grid)]
 }
 
-/// Shapes made from some points; the flat ones use the first three.
+/// Returns shapes made from some points; the flat ones use the first three.
 fn shapes2<N: Space<2>>(p: &[Point<N, 2>]) -> Vec<ShapeHandle<N, 2>> {
     let identity = N::isometry(&impinge::math::Pose::identity());
     let triangle = ShapeHandle::new(Triangle::new(p[0], p[1], p[2]));
@@ -151,7 +151,7 @@ fn solids_of_space_that_share_a_corner_touch() {
 /// A point, a segment or a triangle with corners on a grid.
 type Piece = Vec<[i64; 2]>;
 
-/// Twice the signed area of a triangle, exactly.
+/// Returns twice the signed area of a triangle, exactly.
 fn turn(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
@@ -191,8 +191,8 @@ fn meet(one: &Piece, other: &Piece) -> bool {
     pairs.any(|(a, b)| cross(a, b)) || holds(one, other[0]) || holds(other, one[0])
 }
 
-/// Pieces on a grid, which often meet at corners and on sides, touch exactly where integer
-/// arithmetic says so.
+/// Asserts that pieces on a grid, which often meet at corners and on sides, touch exactly if
+/// integer arithmetic finds a common point.
 fn grids<N: Space<2, Isometry = Isometry2<N>>>() -> u32 {
     let random = &mut Random(63, false);
     let mut touching = 0;
@@ -233,7 +233,7 @@ fn pieces_of_a_grid_touch_by_integers() {
     assert!(found.iter().all(|&touching| touching > 7000), "{found:?} touch");
 }
 
-/// A pair of polygons cut into triangles, with the numbers of a report.
+/// Tests a pair of polygons cut into triangles, with the numbers of a bug report.
 #[test]
 fn polygons_that_share_a_vertex_touch() {
     let quad = |corners: [[f64; 2]; 4], triangles: [[u32; 3]; 2]| {

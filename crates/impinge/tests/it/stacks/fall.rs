@@ -1,15 +1,15 @@
-//! Falling solids come to rest on the ground and on each other, and keep their contacts there.
+//! Falling solids come to rest on terrain and on each other, and keep their contacts there.
 
 use impinge_stacks::{Choices, Kind, Stack, Stage, stacks2, stacks3};
 
 use super::{above, assert_none, played};
 
-/// Ten seconds; the last two are measured.
+/// Ten seconds. Energy is measured in the last two, contacts in the second half.
 const STEPS: usize = 600;
-/// Energy for each unit of mass: 1/10000 of that needed to lift a solid by its size.
+/// Greatest kinetic energy per unit of mass: 1/10000 of the energy that lifts a solid by its size.
 const AT_REST: f64 = 1e-3;
-/// Energy of capsules that nothing stops from rolling: 1/100 of that needed to lift a solid by its
-/// size.
+/// Greatest kinetic energy per unit of mass for capsules, which roll without resistance: 1/100 of
+/// the energy that lifts a solid by its size.
 const ROLLING: f64 = 0.1;
 
 fn fall<N: Stage<D>, const D: usize>(stacks: &[Stack<D>]) {

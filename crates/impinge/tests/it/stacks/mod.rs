@@ -9,7 +9,7 @@ mod slide;
 
 use impinge_stacks::{Choices, Impinge, Memory, Outcome, Solver, Stack, Stage, play};
 
-/// Plays a scene with a solver that finds its impulses by contact ids only.
+/// Plays a scene with a solver that looks up the impulses of the last step by contact ids only.
 fn played<N: Stage<D>, const D: usize>(
     stack: &Stack<D>,
     choices: Choices,
@@ -18,7 +18,7 @@ fn played<N: Stage<D>, const D: usize>(
     play(stack, &mut Impinge::<N, D>::new(stack, choices), Solver::new(Memory::by_ids()), steps)
 }
 
-/// Descriptions of the numbers above their bounds.
+/// Returns a description of each number above its bound.
 fn above<const N: usize>(name: &str, numbers: [(&str, f64, f64); N]) -> Vec<String> {
     let is_above = |(_, number, bound): &(&str, f64, f64)| number > bound || number.is_nan();
     let faults = numbers.into_iter().filter(is_above);

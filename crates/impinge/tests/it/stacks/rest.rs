@@ -4,15 +4,15 @@ use impinge_stacks::{Choices, Kind, Outcome, Stack, Stage, stacks2, stacks3};
 
 use super::{above, assert_none, played};
 
-/// Five seconds; the last two are measured.
+/// Five seconds. Energy is measured in the last two, contacts in the second half.
 const STEPS: usize = 300;
-/// Energy for each unit of mass: 1/10000 of that needed to lift a solid by its size, since high
-/// stacks still sway.
+/// Greatest kinetic energy per unit of mass: 1/10000 of the energy that lifts a solid by its size,
+/// since high stacks still sway.
 const ENERGY: f64 = 1e-3;
 /// Greatest drift: a tenth of the size of a solid.
 const DRIFT: f64 = 0.1;
-/// Greatest sinking: ten overlaps of 0.005, which the solver leaves in a stack of ten, and a little
-/// more.
+/// Greatest sinking: the solver leaves an overlap of 0.005 per contact, so 0.05 in a stack of ten,
+/// plus a margin.
 const SINKING: f64 = 0.06;
 /// Greatest share of contacts with new ids.
 const NEW: f64 = 0.005;
@@ -47,7 +47,7 @@ fn rest<N: Stage<D>, const D: usize>(stacks: &[Stack<D>], choices: Choices) {
     assert_none(&faults.collect::<Vec<_>>());
 }
 
-/// Every other scene, for choices other than the defaults.
+/// Returns every other scene, for choices other than the defaults.
 fn some<const D: usize>(stacks: Vec<Stack<D>>) -> Vec<Stack<D>> {
     stacks.into_iter().step_by(2).collect()
 }

@@ -1,4 +1,5 @@
-//! Two solids shaken as if by rounding keep the ids and the positions of their contacts.
+//! Two solids that rest on each other keep the ids and the positions of their contacts under small
+//! random displacements.
 
 use impinge_stacks::{Choices, Impinge, Stack, Stage, pairs2, pairs3, shake};
 

@@ -5,11 +5,11 @@ use impinge_stacks::{Choices, Kind, Stack, Stage, stacks2, stacks3};
 
 use super::{above, assert_none, played};
 
-/// Ten seconds at five units for each second: a hundred cells.
+/// Ten seconds at five units per second: a hundred cells.
 const STEPS: usize = 600;
-/// Greatest change of velocity: a thousandth of the speed, so there is neither a bump nor a brake.
+/// Greatest change of velocity: a thousandth of the speed, so bumps and braking are detected.
 const BUMP: f64 = 5e-3;
-/// Greatest share of contacts with new ids: about one of two in a single step.
+/// Greatest fraction of contacts with new ids: one in 500 over the whole run.
 const NEW: f64 = 0.002;
 
 fn slide<N: Stage<D>, const D: usize>(stacks: &[Stack<D>]) {

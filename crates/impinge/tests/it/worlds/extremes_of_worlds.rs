@@ -40,8 +40,8 @@ fn contacts_seen<N: Play<D>, const D: usize>(player: &Player<N, D>) -> Vec<Seen<
     pairs.collect()
 }
 
-/// A scene around the origin and one moved by 2^20 have equal contacts to the bit, except for the
-/// rounding of world points.
+/// Asserts that a scene around the origin and the scene moved by 2^20 have contacts that are equal
+/// to the bit, except for the rounding of world points.
 fn far_from_the_origin<N: Play<D>, const D: usize>() {
     let shift = f64::from(1_u32 << 20);
     let mut here = Player::<N, D>::new(shifted(mixed_shapes(120), 0.0), 1.0);

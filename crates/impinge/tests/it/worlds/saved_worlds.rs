@@ -1,4 +1,5 @@
-//! Worlds that are saved and restored: scenes that go on, what is refused, and what has no name.
+//! Tests worlds that are saved and restored: scenes that continue, refused input, and filters
+//! without a name in the registry.
 
 use std::hash::Hasher;
 
@@ -15,7 +16,7 @@ use impinge_scenes::Scene;
 use crate::support::scene_stage::{Digest, Play, Player, digest_state};
 use crate::support::world_stage::{Stage, ball, contacts};
 
-/// What all steps from here on say.
+/// Plays `steps` steps; returns the digest of their results, and the number of manifolds.
 fn play<N: Play<D>, const D: usize>(player: &mut Player<N, D>, steps: u32) -> (u64, usize) {
     let (mut digest, mut found) = (Digest::new(), 0);
     for _ in 0..steps {
@@ -26,7 +27,8 @@ fn play<N: Play<D>, const D: usize>(player: &mut Player<N, D>, steps: u32) -> (u
     (digest.finish(), found)
 }
 
-/// A scene that is saved after some steps goes on for 200 as it does if it is not, as text and as bytes.
+/// Asserts that a scene that is saved after 20 steps and restored continues for 200 steps with the
+/// results of an unsaved scene, both as text and as bytes.
 fn goes_on<N: Play<D>, const D: usize>(scene: &Scene<D>, is_reusing: bool) {
     let after = |steps, save: Option<bool>| {
         let mut player = Player::<N, D>::new(scene.clone(), 1.0);
@@ -35,7 +37,7 @@ fn goes_on<N: Play<D>, const D: usize>(scene: &Scene<D>, is_reusing: bool) {
             player.world.set_narrow_phase(Box::new(phase));
         }
         play(&mut player, steps);
-        // In the middle of a step.
+        // The world is saved in the middle of a step, before its update.
         player.apply();
         if let Some(as_text) = save {
             let world = if as_text {
@@ -72,7 +74,7 @@ fn saved_scenes_go_on_in_space() {
     goes_on::<f32, 3>(&impinge_scenes::spawn_and_despawn::<3>(150), false);
 }
 
-/// Two balls that touch, and one that is gone.
+/// Returns a world of two touching balls, from which a third ball was removed after the update.
 fn three_balls<N: Stage<D>, const D: usize>() -> CollisionWorld<N, D, u32> {
     let mut world = CollisionWorld::new(N::lit(0.02));
     let (ball, groups) = (ball::<N, D>(1.0), CollisionGroups::new());
@@ -113,7 +115,7 @@ fn worlds_of_another_kind_are_refused() {
     assert!(error.is_some(), "without a type");
 }
 
-/// What contradicts itself is refused, each as what it is.
+/// Tests that data that contradict themselves are refused as damaged.
 #[test]
 fn contradictions_are_refused() {
     let text = serde_json::to_string(&three_balls::<f32, 2>()).expect("it can be saved");
@@ -166,7 +168,7 @@ fn handles_and_events_of_restored_worlds() {
     assert_eq!((new.uid(), restored.contains(gone)), (2, false), "the index is used again");
 }
 
-/// Named by a registry, or not.
+/// A filter that accepts all pairs. It can be restored only if the registry has its name.
 struct All;
 
 impl impinge::dim2::world::BroadPhasePairFilter<f32, u32> for All {
@@ -209,7 +211,8 @@ fn phases_that_are_to_take_over_are_saved() {
     assert_eq!(both[0], both[1], "in both worlds");
 }
 
-/// A few compounds of two can have more parts than there is memory for what they touch.
+/// Tests that compounds nested 30 deep, with two equal children each, are refused: they have 2³⁰
+/// parts.
 #[test]
 fn compounds_that_multiply_are_refused() {
     let mut shape: ShapeHandle<f32, 2> = ball(1.0);

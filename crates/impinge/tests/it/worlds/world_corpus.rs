@@ -54,7 +54,7 @@ fn shape<N: Real, const D: usize>(value: &Value) -> ShapeHandle<N, D> {
     }
 }
 
-/// Groups from masks; the filter of the corpus is a whitelist.
+/// Returns groups from masks; the filter of the corpus is a whitelist.
 fn groups(step: &Value) -> CollisionGroups {
     let list = |key: &str| {
         let mask = step[key].as_u64()?;
@@ -154,7 +154,7 @@ where
             "remove" => self.remove(value),
             "move_slowly" => self.move_slowly(value),
             "update" => self.log = step(&mut self.world),
-            // Worlds have no snapshots to serialize; the rest of the script is valid without them.
+            // Serialization has its own tests; the rest of the script is valid without it.
             "serialize_roundtrip" | "note" => (),
             _ => self.expect(value),
         }
@@ -330,8 +330,8 @@ fn parry_409_remove_to_single_leaf() {
     }
 }
 
-/// Moving random boxes on a grid, so that touching is exact: the pairs are those of a scan of all
-/// pairs.
+/// Moves random boxes on a grid, so that touching is exact, and compares the pairs with a scan of
+/// all pairs.
 fn all_pairs<N: Stage<3>>() {
     let random = &mut Random(1580, false);
     let mut quarter = |range: f64| (random.signed() * range * 4.0).round() / 4.0;
@@ -374,7 +374,7 @@ fn melonjs_1580_octree_depth() {
     all_pairs::<f64>();
 }
 
-/// Number of results of every query of a world with a filter.
+/// Returns the number of results of every query of a world with a filter.
 fn answers<N: Stage<3, Isometry = Isometry3<N>>>(
     world: &CollisionWorld<N, 3, ()>,
     point: &Point<N, 3>,
@@ -400,7 +400,7 @@ fn answers<N: Stage<3, Isometry = Isometry3<N>>>(
     ]
 }
 
-/// Number of results of the queries that take groups.
+/// Returns the number of results of the queries that take groups.
 fn answers_to_groups<N: Stage<3>>(
     world: &CollisionWorld<N, 3, ()>,
     point: &Point<N, 3>,
@@ -443,8 +443,8 @@ fn empty_worlds<N: Stage<3, Isometry = Isometry3<N>>>() {
     }
 }
 
-/// The one case that queries a world with a point, in an empty world and in one whose objects are
-/// all filtered out.
+/// Runs the one case that queries a world with a point, in an empty world and in one whose objects
+/// are all filtered out.
 #[test]
 fn world_point_projection() {
     empty_worlds::<f32>();

@@ -328,8 +328,8 @@ impl Ledger {
     }
 }
 
-/// Worlds are cleared partly and completely, again and again: whatever started stops once, also for
-/// objects that went and whose index was reused between two updates.
+/// Clears worlds partly and completely, many times. Each contact that started stops once, also for
+/// objects that were removed and whose index was reused between two updates.
 fn clearing_and_retaining_end_every_pair_once<N: Stage<D>, const D: usize>() {
     let (mut random, mut world) = (Random::new(3), World::<N, D>::default());
     let (mut ledger, mut handles) = (Ledger::default(), Vec::new());

@@ -14,7 +14,7 @@ use world_stage::{Stage, add, ball, contacts, cube, half_space, near, step, vect
 
 type World<N, const D: usize> = CollisionWorld<N, D, ()>;
 
-/// Two balls in contact, and a stale handle.
+/// Returns a world of two balls in contact, with their handles and a stale handle.
 fn pair<N: Stage<D>, const D: usize>() -> (World<N, D>, [CollisionObjectHandle; 3]) {
     let mut world = World::<N, D>::new(N::lit(0.02));
     let shape = ball(1.0);

@@ -1,6 +1,6 @@
-//! Follows hulls, boxes and meshes step by step. The contacts of a world, which updates many pairs
-//! in one batch, equal to the bit those of a generator for each single pair, even when both reuse
-//! contacts.
+//! Compares the contacts of a world, which updates many pairs in one batch, with the contacts of a
+//! generator for each single pair. They are equal to the bit in every step, even when both reuse
+//! contacts. The pairs are of hulls, boxes and meshes.
 //!
 //! The generator of a pair has the same history, but only gets poses and shapes.
 

@@ -26,7 +26,7 @@ fn read(
 }
 
 /// Lets a ball fall through a sensor onto the floor, then removes the floor. Returns the numbers of
-/// start and end messages after each of the three.
+/// start and end messages after the sensor, after the landing, and after the removal.
 fn told<B: Backend>() -> [[usize; 2]; 3] {
     let mut app = app::<B>();
     app.init_resource::<Count>().add_systems(Last, read);

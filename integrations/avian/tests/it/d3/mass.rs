@@ -6,7 +6,8 @@ use avian_impinge::d3::Collider;
 use avian3d::prelude::{ComputeMassProperties3d, ScalableCollider};
 use bevy_math::{Quat, Vec3};
 
-/// Checks the mass properties of a collider at density 1; `moments` are divided by the mass.
+/// Checks the mass properties of a collider at density 2. `moments` are the principal moments of
+/// inertia divided by the mass.
 fn weighs(collider: &Collider, volume: f32, center: Vec3, moments: Vec3) {
     let found = collider.mass_properties(2.0);
     let near = |a: f32, b: f32| (a - b).abs() <= 1e-5 * b.abs().max(1.0);

@@ -71,7 +71,7 @@ fn beside_parry() {
     assert!(all.as_flattened().as_flattened().iter().all(|x| x.is_finite()));
 }
 
-/// Returns the height of a slope of one in four from x = 0 on, with waves across.
+/// Returns the height of a ground that is flat for x < 0 and rises by one in four for x > 0.
 fn ground(x: f32, _: f32) -> f32 {
     0.25 * x.max(0.0)
 }

@@ -1,4 +1,4 @@
-//! Candidates of `L` pairs, each in a slot of its own, and the rule that admits them.
+//! Contact candidates of `L` pairs, each candidate in its own slot, and the rule that admits them.
 //!
 //! ```text
 //!                lane 0  lane 1  ...                     masks of a slot: one bit per lane
@@ -43,11 +43,11 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> Slots<N, D, CO
 /// Bounds that decide which candidates are admitted.
 #[derive(Clone, Copy)]
 pub(super) struct Limits<V> {
-    /// Signed distance along the separating axis. If the faces are right, the lowest candidate has
-    /// this height.
+    /// Signed distance along the separating axis. If the supporting faces are chosen correctly, the
+    /// lowest candidate has this height.
     pub(super) gap: V,
     pub(super) prediction: V,
-    /// Sine of the angle by which the boxes may turn.
+    /// Sine of the angle by which the boxes may rotate.
     pub(super) sine: V,
     /// Lengths up to this are rounding errors.
     pub(super) tolerance: V,
@@ -55,9 +55,9 @@ pub(super) struct Limits<V> {
 
 /// State of the admission while slots are filled.
 ///
-/// A candidate is admitted if its height is within the prediction, or if turning brings it within.
-/// The boxes turn about the pivot: the centroid of the candidates whose height is the gap, up to
-/// rounding.
+/// A candidate is admitted if its height is within the prediction, or if a rotation brings it
+/// within. The boxes rotate about the pivot: the centroid of the candidates whose height is the
+/// gap, up to rounding.
 ///
 /// ```text
 ///     other box     .-o   height <= prediction + sine * arm
@@ -67,20 +67,20 @@ pub(super) struct Limits<V> {
 /// ```
 pub(super) struct Admission<V> {
     limits: Limits<V>,
-    /// Smallest height of a candidate so far; infinite without one.
+    /// Smallest height of a candidate so far; infinite without a candidate.
     lowest: V,
-    /// Largest height admitted without turning.
+    /// Largest height admitted without rotation: the prediction plus the tolerance.
     most: V,
     /// Largest height that counts as level with the gap.
     level: V,
     /// Sum of the coordinates `flat` of the level candidates.
     sum: [V; 2],
-    /// How many candidates are level, as a value of the scalar type.
+    /// Number of level candidates, as a value of the scalar type.
     count: V,
 }
 
 impl<V> Admission<V> {
-    /// Returns the state without a candidate.
+    /// Returns the state before the first candidate.
     #[inline(always)]
     pub(super) fn new<S: Simd, N: Real>(simd: S, limits: Limits<V>) -> Self
     where
@@ -88,14 +88,14 @@ impl<V> Admission<V> {
     {
         let (zero, infinity) = (V::all(simd, N::ZERO), V::all(simd, N::INFINITY));
         let (most, level) = (limits.prediction + limits.tolerance, limits.gap + limits.tolerance);
-        // If the gap is within the tolerance of the prediction, all candidates up to the prediction
-        // are level.
+        // If the gap is within the tolerance of the prediction, all candidates admitted without
+        // rotation are level.
         let level = limits.prediction.simd_le(level).select(most, level);
         Self { limits, lowest: infinity, most, level, sum: [zero; 2], count: zero }
     }
 
-    /// Stores coordinates and height of a candidate in a slot. Only the lanes of `is_there` have
-    /// it.
+    /// Stores coordinates and height of a candidate in a slot. `is_there` are the lanes that have
+    /// the candidate.
     #[inline(always)]
     pub(super) fn store<S: Simd, N: Real, M, const D: usize, const COUNT: usize, const L: usize>(
         &mut self,
@@ -143,7 +143,7 @@ impl<V> Admission<V> {
         V: Wide<S, Scalar = N>,
     {
         let Limits { gap, prediction, sine, .. } = self.limits;
-        // NaN in lanes without a level candidate, where turning admits nothing.
+        // NaN in lanes without a level candidate, where a rotation admits nothing.
         let pivot = [self.sum[0] / self.count, self.sum[1] / self.count];
         for slot in 0..COUNT {
             if slots.valid[slot] == 0 {
@@ -153,7 +153,8 @@ impl<V> Admission<V> {
             let flat = [V::load(simd, &x[slot]), V::load(simd, &y[slot])];
             let height = V::load(simd, &slots.height[slot]);
             let arm = norm(&[flat[0] - pivot[0], flat[1] - pivot[1]]);
-            // Written so that an angle that is NaN admits nothing more.
+            // If `sine` is NaN, the comparison is false and the rotation admits no further
+            // candidate.
             let is_near = !height.simd_gt(self.most);
             let is_admitted = is_near | height.simd_le(prediction + sine * arm);
             slots.valid[slot] &= bits(is_admitted);
@@ -163,7 +164,8 @@ impl<V> Admission<V> {
             for (row, along) in slots.points1[slot].iter_mut().zip(point1(flat, height)) {
                 along.store(row);
             }
-            // Distances are at least the gap, and rounding puts none beyond the prediction.
+            // Rounding must not put a distance below the gap, nor a near candidate beyond the
+            // prediction.
             let distance = height.larger(gap);
             let distance = is_near.select(distance.smaller(prediction), distance);
             distance.store(&mut slots.distances[slot]);

@@ -3,10 +3,10 @@
 //!
 //! ```text
 //!   code of a point   31        12            5         0
-//!                     [1 | faces | parts       | slot   ]   layout of the middle: `SlotFeatures::code`
+//!                     [1 | faces | parts       | slot   ]   middle bits: `SlotFeatures::code`
 //! ```
 //!
-//! Bit 31 of every code is set. So no code is 0, the code of points that have no slot
+//! Bit 31 is set in every code, so that no code is 0, which marks points without a slot
 //! (`raw_manifold.rs`).
 
 use super::admit::Slots;
@@ -19,7 +19,7 @@ use crate::math::ones::Ones;
 use crate::math::{Mapped, Point, Real, Vector};
 use crate::shape::FeatureId;
 
-/// The slots of one pair.
+/// The slots of one pair, from which the points of its manifold are chosen.
 pub(super) struct SlotChoice<'a, N: Real, const D: usize, const COUNT: usize, const L: usize> {
     /// Slots of all lanes; only `lane` is read.
     pub(super) slots: &'a Slots<N, D, COUNT, L>,
@@ -64,12 +64,12 @@ pub(super) trait SlotFeatures {
     fn code(&self, slot: usize) -> u32;
 }
 
-/// Mask of the slot in a code.
+/// Mask of the bits that hold the slot in a code.
 const SLOT_BITS: u32 = 31;
 /// Number of slots that a code distinguishes.
 const SLOTS_OF_CODE: usize = 32;
 
-/// Returns the slot that a code holds.
+/// Returns the slot stored in a code.
 #[inline(always)]
 const fn slot_of(code: u32) -> usize {
     (code & SLOT_BITS) as usize
@@ -79,7 +79,7 @@ const fn slot_of(code: u32) -> usize {
 struct KeptSlots<const COUNT: usize> {
     /// Bits of the slots that continue an old point.
     slots: u32,
-    /// Every old point still has its candidate, in the slot of its code.
+    /// Whether every old point still has its candidate, in the slot of its code.
     is_still: bool,
     /// Bits of the old points that no slot continues.
     left: u32,
@@ -108,8 +108,8 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
     /// 2. Slots that are too far from their old points lose the ids ([`Self::drop_jumped`]).
     /// 3. Old points without a slot pass on their ids by position ([`Self::match_positions`]).
     /// 4. If there are more than `limit` candidates, some are chosen, with a preference for slots
-    ///    that continue old points ([`Self::chosen`]); ids of unchosen slots pass to chosen ones near
-    ///    them.
+    ///    that continue old points ([`Self::chosen`]); ids of unchosen slots pass to chosen slots
+    ///    near them.
     /// 5. If only positions changed, the points are updated in place ([`Self::put_all`]); else new
     ///    points get ids and all points are written in the order of ids ([`Self::replace`]).
     #[inline(always)]
@@ -175,7 +175,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         kept
     }
 
-    /// Takes ids from slots that are too far from their old points ([`is_same_point`]).
+    /// Removes the ids of slots that are too far from their old points ([`is_same_point`]).
     #[inline(always)]
     fn drop_jumped(&self, old: &[RawPoint<N, D>], kept: &mut KeptSlots<COUNT>) {
         for (at, point) in old.iter().enumerate() {
@@ -223,14 +223,15 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         )
     }
 
-    /// Updates positions and distances of the points in place; slots, features and order stay.
+    /// Updates positions and distances of the points in place; slots, features and order are
+    /// unchanged.
     #[inline(always)]
     fn put_all(&self, deepest: usize, raw: &mut RawManifold<N, D>) {
         let mut has_jumped = false;
         for point in &mut raw.points {
             let old = *point;
             self.write_position(slot_of(point.code), deepest, point);
-            // A crossing of two edges that jumped is a new contact and gets a new id.
+            // A crossing of two edges whose position jumped is a new contact and gets a new id.
             if !self.is_same(&old, &point.point1) {
                 (point.id, has_jumped) = (raw.ids.next(), true);
             }
@@ -260,7 +261,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         }
     }
 
-    /// Gives new ids to the slots in `new`, in the order in which the builder for one pair does.
+    /// Assigns new ids to the slots in `new`, in the order used by the builder for one pair.
     #[inline(never)]
     fn begin(&self, new: u32, kept: &mut KeptSlots<COUNT>, raw: &mut RawManifold<N, D>) {
         for (_, slot) in in_order(Ones::<COUNT>(new).map(|slot| (slot, self.point1(slot)))) {
@@ -268,7 +269,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         }
     }
 
-    /// Returns the slots in the order of their ids, and how many there are.
+    /// Returns the slots in the order of their ids, and their number.
     #[inline(always)]
     fn by_ids(slots: u32, kept: &KeptSlots<COUNT>) -> ([usize; COUNT], usize) {
         let (mut order, mut count) = ([0; COUNT], 0);
@@ -313,9 +314,9 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         Vector::<N, 2>::new(x[slot][lane], y[slot][lane])
     }
 
-    /// Returns the slot that gets the distance `gap`: of the level slots, first the ones that
-    /// continue an old point; else of all slots. Among the preferred ones, the one with the
-    /// smallest distance.
+    /// Returns the slot that gets the distance `gap`: the slot with the smallest distance among the
+    /// level slots that continue an old point. If there are none, it is chosen among all level
+    /// slots, else among all slots.
     #[inline(always)]
     fn deepest(&self, slots: u32, kept: u32) -> usize {
         let level = self.level & slots;
@@ -323,7 +324,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         self.lowest(preferred.into_iter().find(|&slots| slots != 0).unwrap_or(slots))
     }
 
-    /// Returns the slot with the smallest distance; the first one of equals.
+    /// Returns the slot with the smallest distance; the lowest index wins a tie.
     #[inline(always)]
     fn lowest(&self, slots: u32) -> usize {
         let (mut lowest, mut distance) = (slots.trailing_zeros() as usize, N::INFINITY);
@@ -341,14 +342,14 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
     /// Returns at most `limit` slots, by the rule of `reduce::chosen`.
     #[inline(always)]
     fn chosen(&self, limit: usize, kept: u32) -> u32 {
-        // If no candidate is at the gap, the lowest ones are level.
+        // If no candidate is at the gap, the lowest candidates count as level.
         let mut level = self.level;
         if level == 0 {
             let least = self.distance(self.lowest(self.valid));
             let lowest = Ones::<COUNT>(self.valid).filter(|&slot| self.distance(slot) <= least);
             level = lowest.fold(0, |slots, slot| slots | 1 << slot);
         }
-        // If an old point is the deepest, no other has to stand for it.
+        // If a level slot continues an old point, no other kept slot counts as deepest.
         let has_old = level & kept != 0;
         let slack =
             if has_old { -N::INFINITY } else { slack_level(self.gap, self.size, self.tolerance) };

@@ -1,13 +1,13 @@
-//! Boxes against boxes.
+//! Contact kernels for pairs of boxes.
 //!
-//! Branches on the pair become masks. Each possible corner of the overlap area of the two faces has
-//! its own slot, filled or not ([`admit`]): 4 slots in 2D ([`plane`]), 24 in 3D ([`space`]). Only
-//! the choice of the points ([`choose`]) runs pair by pair. Flat boxes, and pairs whose nearest
-//! points do not lie on the two faces, fall back to the builder for one pair.
+//! Case distinctions of a pair become masks over the lanes. Each possible corner of the overlap
+//! area of the two faces has its own slot, filled or not ([`admit`]): 4 slots in 2D ([`plane`]), 24
+//! in 3D ([`space`]). Only the choice of the points ([`choose`]) runs pair by pair. Flat boxes, and
+//! pairs whose nearest points do not lie on the two faces, fall back to the builder for one pair.
 //!
-//! The sine of the angle by which the boxes may turn enters the test of each corner. The kernels
-//! read these fields of [`Inputs`]: both poses, the half extents in `ends[0][0]` and `ends[1][0]`,
-//! `prediction` and `sine`.
+//! The sine of the angle by which the boxes may rotate is used in the test of each corner. The
+//! kernels read these fields of [`Inputs`]: both poses, the half extents in `ends[0][0]` and
+//! `ends[1][0]`, `prediction` and `sine`.
 
 mod admit;
 mod choose;

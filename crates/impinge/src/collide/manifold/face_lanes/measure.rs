@@ -102,25 +102,27 @@ pub(in crate::collide) struct FaceClip<N: Real> {
     pub(super) in_face: SideHeights<N, 3, MAX>,
     /// Corners of the ring, measured against the sides of the triangles.
     pub(super) in_triangle: SideHeights<N, MAX, 3>,
-    /// Bound of the rounding errors of lengths, for each lane.
+    /// By lane, a bound of the rounding errors of lengths.
     pub(super) tolerance: [N; LANES],
     pub(super) supporting: SupportingBits,
-    /// Lanes where the triangle's supporting feature is certain and all sides are longer than two
-    /// tolerances.
+    /// Lanes where the triangle's supporting feature is certain, and all its sides and the sides of
+    /// the ring are longer than two tolerances.
     pub(super) with_extent: u8,
     /// Lanes where a side of the triangle (first index) and a side of the ring (second index)
     /// cross.
     pub(super) crossed: [[u8; MAX]; 3],
 }
 
-/// Supporting features of the triangles along the normals. Lanes where it is a face, and lanes
-/// where each corner or side belongs to it.
+/// Supporting features of the triangles along the normals, as masks over the lanes.
 #[derive(Clone, Copy, Default)]
 pub(super) struct SupportingBits {
+    /// Lanes whose supporting feature is the face.
     pub(super) face: u8,
     /// Lanes where the supporting face is the back of the triangle.
     pub(super) back: u8,
+    /// For each corner, the lanes whose supporting feature contains it.
     pub(super) corners: [u8; 3],
+    /// For each side, the lanes whose supporting feature contains it.
     pub(super) sides: [u8; 3],
 }
 

@@ -13,9 +13,9 @@
 //! The result is that of [`clip`](super::clip) for the supporting features of the solid and of the
 //! triangle along the normal: a face, a side or a corner each, at least one of them a face. A lane
 //! is one triangle. [`measure`] computes, in lanes, how far the corners of one outline are inside
-//! each side of the other. Few candidates remain, and [`points`] makes them one by one. Lanes with
-//! a degenerate outline, or whose supporting feature is uncertain, are left to the clip of the
-//! pair.
+//! each side of the other. Few candidates remain; [`points`] computes them one by one. Lanes with a
+//! degenerate outline or an uncertain supporting feature are left undecided, and the caller clips
+//! the pair by [`clip`](super::clip).
 //!
 //! All vectors are in the frame of the solid.
 
@@ -39,7 +39,7 @@ pub(in crate::collide) struct ClipRequest<N: Real> {
     /// Supporting feature of the solid towards the triangle, against the normal.
     part: FeatureId,
     /// Signed distance of the nearest points, if they have this normal. Then no point gets a
-    /// smaller distance, and the clip is undecided if no point is that near.
+    /// smaller distance, and the lane is undecided if no point is that near.
     pub(in crate::collide) nearest: Option<N>,
     /// Points nearer than this by more than rounding are dropped; the distances of the others are
     /// raised to at least this.
@@ -71,10 +71,10 @@ pub(in crate::collide) struct FaceSolid<'a, N: Real> {
 }
 
 impl<N: Real> FaceSolid<'_, N> {
-    /// Appends the points of each of up to 8 triangles, given in their own frame. Calls `visit`
-    /// with the lane and the smallest distance of its points, infinite without points, or with
-    /// `None` if the clip of the pair has to decide. Lanes are visited in groups with the same
-    /// supporting feature of the solid.
+    /// Appends the points of each of up to 8 triangles, whose corners are in their own frame. Calls
+    /// `visit` with the lane and the smallest distance of its points, infinite without points, or
+    /// with `None` if the lane is undecided. Lanes are visited in groups with the same supporting
+    /// feature of the solid.
     pub(in crate::collide) fn each_clip(
         &self,
         triangles: &PartPacket<N, 3>,
@@ -86,8 +86,8 @@ impl<N: Real> FaceSolid<'_, N> {
         self.each_clip_at(Level::new(), (triangles, requests), clip, points, visit);
     }
 
-    /// Runs [`Self::each_clip`] with the vectors of an instruction set; the result does not depend
-    /// on it.
+    /// Runs [`Self::each_clip`] with the instruction set of `level`; the result does not depend on
+    /// the level.
     pub(super) fn each_clip_at(
         &self,
         level: Level,

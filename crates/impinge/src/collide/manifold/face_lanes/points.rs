@@ -1,4 +1,4 @@
-//! Makes the contact points of one triangle from the measured distances.
+//! Computes the contact points of one triangle from the measured distances.
 
 use super::ClipRequest;
 use super::measure::FaceClip;
@@ -8,7 +8,7 @@ use crate::shape::FeatureId;
 
 impl<N: Real> FaceClip<N> {
     /// Appends the points of one triangle; returns their smallest distance, infinite without
-    /// points. `None`, with nothing appended, if the clip of the pair has to decide.
+    /// points. `None`, with nothing appended, if the lane is undecided.
     pub(super) fn points_of(
         &self,
         lane: usize,
@@ -17,7 +17,7 @@ impl<N: Real> FaceClip<N> {
         points: &mut RawPoints<N, 3>,
     ) -> Option<N> {
         let has_extent = self.with_extent >> lane & 1 == 1;
-        // If neither outline has an area, edges may be parallel or corners coincide.
+        // If neither outline has an area, edges may be parallel and corners may coincide.
         let has_area = self.ring.count > 2 || self.supporting.face >> lane & 1 == 1;
         if !(has_extent && has_area) {
             return None;
@@ -74,7 +74,7 @@ impl<N: Real> FoundPoints<'_, N> {
         }
         distance = max(min(distance, self.prediction), *least);
         let point1 = Point::from(point + normal * distance);
-        // A corner that coincides with a corner is found from both outlines.
+        // Corners that coincide are found from both outlines.
         let near = N::lit(4.0) * self.tolerance;
         let is_same = |old: &RawPoint<N, 3>| {
             let moved = old.point1 - point1;

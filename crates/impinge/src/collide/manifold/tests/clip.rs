@@ -1,4 +1,4 @@
-//! Faces of any number of corners in 3D: contacts are the corners of the common area.
+//! Contacts of faces with any number of corners in 3D: the corners of the overlap of both faces.
 
 use super::super::build3;
 use super::scene::fact;
@@ -8,7 +8,7 @@ use crate::shape::{Capsule, ConvexHull, Cuboid, Cylinder, Segment, Shape, Triang
 
 pub(super) type Outline = Vec<[f64; 2]>;
 
-/// A regular polygon around a centre, counter-clockwise.
+/// Returns a regular polygon around a centre, counter-clockwise.
 pub(super) fn regular(count: usize, [x, y]: [f64; 2], radius: f64, turn: f64) -> Outline {
     let corner = |at: usize| {
         let angle = turn + at as f64 * core::f64::consts::TAU / count as f64;
@@ -18,7 +18,7 @@ pub(super) fn regular(count: usize, [x, y]: [f64; 2], radius: f64, turn: f64) ->
     (0..count).map(corner).collect()
 }
 
-/// The prism over an outline between two heights.
+/// Returns the prism over an outline between two heights.
 pub(super) fn prism<N: Real>(outline: &Outline, [low, high]: [f64; 2]) -> ConvexHull<N> {
     let at = |z: f64| {
         let point = move |&[x, y]: &[f64; 2]| Point::<N, 3>::new(N::lit(x), N::lit(y), N::lit(z));
@@ -27,7 +27,7 @@ pub(super) fn prism<N: Real>(outline: &Outline, [low, high]: [f64; 2]) -> Convex
     ConvexHull::from_points(&at(low).chain(at(high)).collect::<Vec<_>>())
 }
 
-/// Intersection of two convex outlines, by the method of Sutherland and Hodgman.
+/// Returns the intersection of two convex outlines, by the method of Sutherland and Hodgman.
 pub(super) fn common(one: &Outline, other: &Outline) -> Outline {
     let mut kept = one.clone();
     for (at, from) in other.iter().enumerate() {
@@ -110,7 +110,7 @@ fn faces_of_any_number_of_corners_are_clipped() {
     prisms::<f64>(1e-13);
 }
 
-/// A face without width counts as a segment, one without length as a point.
+/// Tests that a face without width counts as a segment, and a face without length as a point.
 fn degenerate<N: Real>(tolerance: f64) {
     let p = |x: f64, y: f64| Point::<N, 3>::new(N::lit(x), N::lit(y), N::ZERO);
     let floor = Cuboid::new(Vector::<N, 3>::new(N::ONE, N::ONE, N::ONE));

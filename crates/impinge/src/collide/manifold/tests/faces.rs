@@ -1,4 +1,5 @@
-//! Compares contacts of faces with triangles, 8 at a time, with the exact overlap of both outlines.
+//! Compares the contacts of a face with triangles, computed 8 at a time in SIMD lanes, with the
+//! exact overlap of both outlines.
 
 use super::clip::{Outline, common, prism, regular};
 use crate::collide::manifold::face_lanes::{ClipRequest, FaceClip, FaceSolid};
@@ -11,16 +12,16 @@ use crate::shape::{Cuboid, FeatureId, Shape};
 
 type Corners<N> = [Point<N, 3>; 3];
 
-/// Triangles in the frame of a solid, and the input of the clip for each.
+/// Triangles in the frame of a solid, and the clip request of each.
 struct Scene<N: Real> {
     triangles: Vec<Corners<N>>,
     requests: Vec<ClipRequest<N>>,
 }
 
-/// Points of one triangle; `None` if the lanes leave it undecided.
+/// Contact points of one triangle; `None` if the lanes leave it to the clip of the pair.
 type Found<N> = Option<Vec<RawPoint<N, 3>>>;
 
-/// Returns the unit normal of a triangle that has a positive z.
+/// Returns the unit normal of a triangle, with the sign that makes its z component non-negative.
 fn upward<N: Real>([a, b, c]: &Corners<N>) -> Vector<N, 3> {
     let normal = cross(&(b - a), &(c - a)).normalize();
     if normal.z < N::ZERO { -normal } else { normal }
@@ -116,8 +117,8 @@ fn bottom(outline: &Outline) -> Vec<Point<f64, 3>> {
 }
 
 /// Asserts that the points of one triangle span the overlap of the triangle and the bottom of the
-/// solid, that each lies on both at its distance, and that it has the ids of the features it lies
-/// on.
+/// solid, and that each lies on both at its distance. Also asserts that the ids of vertices belong
+/// to corners at these positions.
 fn check<N: Real>(
     outline: &Outline,
     corners: &Corners<N>,
@@ -165,7 +166,7 @@ fn check<N: Real>(
     }
 }
 
-/// Returns two frames for the triangles: that of the solid, and a random one.
+/// Returns two frames for the triangles: the frame of the solid, and a random frame.
 fn frames<N: Real>(random: &mut Xorshift) -> [(Matrix<N, 3>, Vector<N, 3>); 2] {
     let (normal, _) = (random.vector::<N>(1.0).normalize(), 0);
     let (u, v) = orthonormal_basis(&normal);
@@ -195,8 +196,8 @@ fn triangles<N: Real>(random: &mut Xorshift, on_grid: bool) -> Vec<Corners<N>> {
     all.filter(is_wide).collect()
 }
 
-/// Asserts the points of a solid over some triangles, moved down by `lift` in the frame of the
-/// solid. Returns how many triangles the lanes leave undecided, and how many not.
+/// Checks the contact points of a solid with random triangles, which are moved down by `lift` into
+/// the frame of the solid. Returns the numbers of undecided and of decided triangles.
 fn check_all<N: Real>(
     outline: &Outline,
     (solid, lift): (&dyn Shape<N, 3>, N),
@@ -224,7 +225,7 @@ fn all_is_shared<N: Real>() {
     let mut random = Xorshift(11);
     let square: Outline = vec![[-1.0, -1.5], [1.0, -1.5], [1.0, 1.5], [-1.0, 1.5]];
     let (triangle, octagon) = (regular(3, [0.1, 0.0], 1.5, 0.3), regular(8, [0.0, 0.2], 1.2, 0.1));
-    // The centre of a box is at the origin.
+    // The origin of a box is its centre, so its bottom is at height -1.
     let cuboid = Cuboid::new(Vector::<N, 3>::new(N::ONE, N::lit(1.5), N::ONE));
     let hulls = [&triangle, &octagon].map(|outline| prism::<N>(outline, [0.0, 2.0]));
     let solids: [(&Outline, &dyn Shape<N, 3>, N); 3] = [

@@ -91,15 +91,15 @@ fn corners_count<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
             for corner in &corners {
                 let height = normal.dot(&(corner.coords - pair.pose12.translation));
                 let distance = -height - radius;
-                // Over a capsule's raised end the surface is a little nearer than the ball around
-                // the end.
+                // Below the raised end of a tilted capsule, the surface is slightly nearer than the
+                // ball around that end.
                 let max_distance = wanted.prediction
                     + if radius > N::ZERO { N::lit(-0.05 * scale) } else { tolerance };
                 let is_near =
                     |at: Point<N, 3>| radius > N::ZERO || (at - corner).norm() <= tolerance;
                 let has_it = raw.points.iter().any(|point| is_near(point.point1));
-                // With more than four corners, those on the outline count, and old ones that span
-                // most of it.
+                // A corner need not be a contact if it is inside the outline of the contacts, or if
+                // the last manifold had at least four points, which may be kept.
                 let is_inner = before.points.len() >= 4 || is_among(corner, &raw, &normal);
                 let is_far = distance > max_distance - tolerance - tolerance;
                 assert!(has_it || is_far || is_inner, "{corner} at {distance}, {what}");

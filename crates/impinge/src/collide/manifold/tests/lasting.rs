@@ -13,9 +13,9 @@ fn ids_by_features<N: Scene<D>, const D: usize>(raw: &RawManifold<N, D>) -> IdsB
     raw.points.iter().map(|point| ([point.feature1, point.feature2], point.id)).collect()
 }
 
-/// Moves a box on a half-space or box for a thousand steps. Asserts that an id stays with its
-/// features, that an id that passes to other features was near these one step before, and that an
-/// ended id never returns. Returns how many ids were given.
+/// Moves a box on a half-space or box for a thousand steps. Asserts that features that persist keep
+/// their id, and that new features get an id of the previous step or a new one, but no id that
+/// ended earlier. Returns the number of ids assigned.
 fn slide<N: Scene<D>, const D: usize>(terrain: &dyn Shape<N, D>, top: f64) -> usize {
     let solid = Cuboid::new(Vector::<N, D>::repeat(N::HALF));
     let (mut raw, mut old) = (RawManifold::default(), IdsByFeatures::new());
@@ -76,8 +76,9 @@ fn a_box_sliding_over_an_edge_keeps_its_ids_on_new_features() {
     assert!(on_box::<f64, 3>(0.45) <= 6, "{} numbers", on_box::<f64, 3>(0.45));
 }
 
-/// Asserts that no id changes for two equal boxes, one on the other, shifted along one side so that
-/// two pairs of sides coincide, under errors of the size of rounding in every step.
+/// Asserts that no id changes for two equal boxes, one on the other, under random rotations and
+/// displacements of up to twice the rounding error. The upper box is shifted along one side by
+/// `shift`, so that two pairs of sides coincide.
 fn stack_rests<N: Scene<D>, const D: usize>(shift: f64) {
     let solid = Cuboid::new(Vector::<N, D>::repeat(N::HALF));
     let (mut raw, mut random) = (RawManifold::default(), Random(11));

@@ -90,8 +90,8 @@ fn is_same<N: Real, const D: usize>(
     (a - b.point1).norm() <= N::lit(3e-3) && features == [b.feature1, b.feature2]
 }
 
-/// Counts the pairs whose points are not flipped, with the same features, if the solids are
-/// swapped, and all pairs. Among equally good reductions rounding may choose another.
+/// Swaps the solids of all pairs. Returns the number of pairs without the same points and features,
+/// flipped, and the number of all pairs. Rounding may decide between equally good reductions.
 fn swap_losses<N: Scene<D>, const D: usize>(wish: &ManifoldRequest<N>) -> (usize, usize) {
     let (mut lost, mut total) = (0, 0);
     for_all_pairs::<N, D>(60, 1.0, |pair| {

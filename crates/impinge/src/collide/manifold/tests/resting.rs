@@ -1,4 +1,4 @@
-//! Solids at rest on each other: the number of points that span the area, counted by hand.
+//! Numbers of contact points of solids at rest, counted by hand.
 
 use super::scene::{Scene, fact, manifold, request};
 use crate::collide::{ManifoldRequest, Pair, RawManifold};
@@ -48,7 +48,7 @@ where
     }
 }
 
-/// Rotations of the size of rounding that a solid at rest may have.
+/// Rotations about x and z, in radians, of the size of the rounding error of `f32`.
 const TILTS: [f64; 5] = [0.0, 3e-8, -1e-7, 1.5e-7, -2e-7];
 
 fn box_rests<const D: usize>(expected: usize)
@@ -60,7 +60,8 @@ where
         for sunk in [0.0, 1e-8, 1e-3] {
             let rest = Rest { solid: &solid, height: 0.25 - sunk, turn: [tilt, 0.0, tilt] };
             let [on_plane, on_box] = rest.counts(&request(0.0, 0.0));
-            // If they only touch, rounding decides whether they do; if so, all corners count.
+            // Within rounding of touching there may be no contact; otherwise all corners are
+            // contacts.
             let is_right = |count| count == expected || sunk < 1e-7 && count == 0;
             assert!(is_right(on_plane), "{on_plane} points on a plane: {tilt} {sunk}");
             assert!(is_right(on_box), "{on_box} points on a box: {tilt} {sunk}");
@@ -126,7 +127,8 @@ fn ellipsoids_tapered_capsules_and_rounded_boxes_rest() {
         Rounded::<f32, 3>::new(Cuboid::new(Vector::<f32, 3>::new(0.5, 0.125, 0.25)), 0.125),
         Rounded::<f32, 2>::new(Cuboid::new(Vector::<f32, 2>::new(0.5, 0.125)), 0.125),
     );
-    // The side is tilted by the sine 0.6, and so is the axis on it; the small end is 0.25 high.
+    // The side of the tapered capsule has an angle of sine 0.6 to its axis, so the axis of the
+    // lying solid has this slope. The centre of the small end is at height 0.25.
     let club = TaperedCapsule::<f32, 3>::new(0.625, 0.25, 1.0);
     let flat_club = TaperedCapsule::<f32, 2>::new(0.625, 0.25, 1.0);
     let lying = [0.0, 0.0, -(0.8_f64.atan2(0.6))];
@@ -230,7 +232,7 @@ fn an_octagon_keeps_its_deepest_point_and_a_wide_area() {
     assert!(area(&few) > 0.6 * area(&all), "{} of {}", area(&few), area(&all));
 }
 
-/// Area of points in convex position, projected along y.
+/// Returns the area of points in convex position, projected along y.
 fn area(raw: &RawManifold<f64, 3>) -> f64 {
     let mut points: Vec<Point<f64, 3>> = raw.points.iter().map(|point| point.point1).collect();
     points.sort_by(|a, b| a.z.atan2(a.x).total_cmp(&b.z.atan2(b.x)));
@@ -277,7 +279,7 @@ fn half_spaces_back_to_back_touch_in_one_point() {
     assert!(raw.points.is_empty(), "no contact where the overlap has no bound");
 }
 
-/// A prism with regular polygons of twenty sides as ends, of radius 1, from y = 0 to y = 1.
+/// Returns a prism with regular polygons of twenty sides as ends, of radius 1, from y = 0 to y = 1.
 fn prism() -> ConvexHull<f32> {
     let angles = (0_u8..20).map(|i| f64::from(i) * std::f64::consts::TAU / 20.0);
     let points: Vec<Point<f32, 3>> = angles
@@ -299,7 +301,8 @@ fn a_prism_of_many_sides_stands_on_four_points() {
     assert_eq!(standing.counts(&wish), [20; 2], "all of them, if requested");
 }
 
-/// A flat tent: its ridge is nearest to the half-space, and the near vertices belong to two faces.
+/// A hull whose bottom is a flat V: the ridge is nearest to the half-space, and the near vertices
+/// belong to two faces.
 #[test]
 fn near_vertices_of_several_faces_count_above_a_half_space() {
     let corners = [[-1.0, 0.01, 0.0], [1.0, 0.01, 0.0], [0.0, 0.0, -1.0], [0.0, 0.0, 1.0]];

@@ -18,10 +18,12 @@ pub(crate) trait Scene<const D: usize>: Simplicial<D> {
         out: &mut RawManifold<Self, D>,
     );
 
-    /// A pose turned by an axis times an angle; in 2D by the last component.
+    /// Returns the pose with this translation and the rotation vector `turn`, axis times angle in
+    /// radians. In 2D the last component is the angle.
     fn pose(translation: Vector<Self, D>, turn: [f64; 3]) -> Pose<Self, D>;
 
-    /// Polytopes, and the solids of this dimension only, in the order of kinds.
+    /// Returns a random polytope, and the solids that exist in this dimension only, in the order of
+    /// kinds.
     fn own(scale: f64, random: &mut Random) -> Vec<Box<dyn Shape<Self, D>>>;
 }
 
@@ -157,8 +159,9 @@ pub(crate) fn request<N: Real>(prediction: f64, sine: f64) -> ManifoldRequest<N>
     ManifoldRequest { prediction: N::lit(prediction), sine: N::lit(sine), max_points: 4 }
 }
 
-/// Returns a pose at which the distance of the solids is a random number between `low` and `high`,
-/// roughly if they overlap. The second solid is placed apart and moved along the normal.
+/// Returns a pose at which the distance of the solids is a random number between `low * scale` and
+/// `high * scale`, only approximately if they overlap. The second solid is placed apart and moved
+/// along the normal.
 pub(crate) fn near_pose<N: Scene<D>, const D: usize>(
     solids: [Kind<'_, N, D>; 2],
     (scale, low, high): (f64, f64, f64),

@@ -19,7 +19,7 @@ fn segment<N: Real>(kind: usize, scale: f64, random: &mut Random) -> Solid<N> {
     match kind {
         0 => Box::new(Segment::new(point(random), point(random))),
         1 => Box::new(Capsule::<N, 3>::new(length(random), length(random) * N::HALF)),
-        // Through edges and corners of the solids below.
+        // As long as the largest solids below, so that it can cross their edges and corners.
         2 => Box::new(Capsule::<N, 3>::new(N::lit(scale), N::lit(scale * 0.25))),
         _ => Box::new(Capsule::<N, 3>::new(N::ZERO, length(random))),
     }
@@ -59,7 +59,7 @@ fn tolerance<N: Real>(pair: &Pair<'_, N, 3>, scale: f64) -> N {
     max(N::lit(256.0) * N::EPSILON, least) * N::lit(scale)
 }
 
-/// Rotations: any, none, almost none, along a face.
+/// Returns a rotation vector: arbitrary, zero, nearly zero, or about the y axis.
 fn turn(round: usize, random: &mut Random) -> [f64; 3] {
     let any = random.turn();
     match round % 5 {

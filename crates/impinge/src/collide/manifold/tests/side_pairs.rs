@@ -1,4 +1,4 @@
-//! Flat-sided 2D solids: contacts span the overlap interval of the sides that face each other.
+//! Contacts of flat-sided 2D solids span the overlap interval of their supporting sides.
 
 use super::scene::{Random, Scene, describe, near_pose, off_surface, solids};
 use crate::collide::separation::separation_2d;
@@ -23,10 +23,11 @@ fn contacts<N: Real>(pair: &Pair<'_, N, 2>, request: &ManifoldRequest<N>) -> Raw
     raw
 }
 
-/// A solid whose upper side is at height zero, from one coordinate to another, and its origin.
+/// A solid whose upper side is at height zero, and the world position of its origin.
 type Bench<N> = (Box<dyn Shape<N, 2>>, [f64; 2]);
 
-/// One of each kind; the radius of the round ones is 1/8.
+/// Returns one solid of each kind whose upper side extends from `low` to `high`; rounded solids
+/// have the radius 1/8.
 fn benches<N: Real>([low, high]: [f64; 2]) -> Vec<Bench<N>> {
     let (middle, half) = ((low + high) / 2.0, (high - low) / 2.0);
     let box_of = |height: f64| Cuboid::new(Vector::<N, 2>::new(N::lit(half), N::lit(height)));
@@ -52,13 +53,13 @@ fn placed<N: Real>([x, y]: [f64; 2], angle: f64, by: [f64; 2]) -> Pose<N, 2> {
     Pose { rotation: exact.rotation.map(N::lit), translation: exact.translation.map(N::lit) }
 }
 
-/// A side on another, in world coordinates.
+/// Two solids with a side of one above a side of the other, in world coordinates.
 struct Stack {
-    /// Ends of the lower side and of the upper one.
+    /// The x coordinates of the ends of the lower side, then of the upper side.
     sides: [[f64; 2]; 2],
-    /// Gap between them at the lower end of the overlap.
+    /// Gap between the sides at the left end of their overlap, which has the smaller x.
     gap: f64,
-    /// Angle by which the upper one is turned about its point above that end.
+    /// Angle, in radians, by which the upper solid is rotated about its point above that end.
     tilt: f64,
 }
 
@@ -87,7 +88,7 @@ impl Stack {
     }
 }
 
-/// Asserts that swapping the pair gives the same points and features.
+/// Returns whether `flipped`, the manifold of the swapped pair, has the same points and features.
 fn is_flipped<N: Real>(
     pair: &Pair<'_, N, 2>,
     raw: &RawManifold<N, 2>,
@@ -161,7 +162,7 @@ fn an_angular_prediction_adds_the_end_that_is_farther_off() {
     tilted_sides::<f64>();
 }
 
-/// Flat-sided solids of random sizes, rounded ones among them.
+/// Returns flat-sided solids of random sizes; some of them are rounded.
 fn flat_sided<N: Scene<2>>(random: &mut Random) -> Vec<Box<dyn Shape<N, 2>>> {
     let mut shapes = solids::<N, 2>(1.0, random);
     shapes.retain(|shape| !matches!(shape.geometry().kind(), ShapeKind::Ball | ShapeKind::Plane));
@@ -172,8 +173,8 @@ fn flat_sided<N: Scene<2>>(random: &mut Random) -> Vec<Box<dyn Shape<N, 2>>> {
     shapes
 }
 
-/// Poses near each other at random, or on a grid and almost unturned, so that sides and corners
-/// coincide.
+/// Returns a random pose near touching in even rounds. In odd rounds the pose is on a grid and
+/// almost unrotated, so that sides and corners coincide.
 fn pose_of<N: Scene<2>>(
     kinds: [Kind<'_, N, 2>; 2],
     round: usize,

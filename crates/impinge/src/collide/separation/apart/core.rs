@@ -1,4 +1,5 @@
-//! Cores in lanes: support points, and the number of vertices tied along a direction.
+//! Support points of cores, and the numbers of vertices tied along a direction, for all lanes at
+//! once.
 
 use crate::math::lanes::{dot, either, minus, spread, times};
 use crate::math::simd::{Simd, SimdMask};
@@ -19,22 +20,21 @@ pub(super) enum LaneCore<'a, N: Real, V> {
 #[derive(Clone, Copy)]
 pub(super) struct CorePoints<'a, N: Real> {
     pub(super) vertices: &'a [Point<N, 3>],
-    /// The hull that owns the vertices, by which a lone pair finds support points faster; `None`
-    /// for a triangle.
+    /// The hull that owns the vertices. A search for a single pair uses its faster support
+    /// function. `None` for a triangle.
     pub(super) hull: Option<&'a Polytope<N, 3>>,
 }
 
 /// Vertices tied for the farthest along a direction, up to a tolerance.
 pub(super) struct LaneTies<V> {
-    /// How many vertices are tied, as a value of the scalar type. Coinciding vertices may count
-    /// twice.
+    /// Number of tied vertices, as a value of the scalar type. Coinciding vertices may count twice.
     pub(super) count: V,
     /// Vector between the two tied vertices, if there are exactly two.
     pub(super) along: [V; 3],
 }
 
 impl<N: Real, V> LaneCore<'_, N, V> {
-    /// Returns the vertex farthest along `direction`; the first of equals.
+    /// Returns the vertex farthest along `direction`; the first vertex wins a tie.
     #[inline(always)]
     pub(super) fn support<S: Simd>(&self, simd: S, direction: &[V; 3]) -> [V; 3]
     where
@@ -73,7 +73,8 @@ impl<N: Real, V> LaneCore<'_, N, V> {
                 let mut along = [V::all(simd, N::ZERO); 3];
                 for axis in 0..3 {
                     let rise = direction[axis].abs() * half[axis] * two;
-                    // A box without extent along an axis has each corner twice there.
+                    // A box without extent along an axis has each corner twice there, and the
+                    // copies do not count.
                     let is_tied = rise.simd_le(tolerance) & (half[axis] * two).simd_gt(tolerance);
                     count = is_tied.select(count + count, count);
                     let unit = Vector::<N, 3>::ith(axis, N::ONE);
@@ -100,7 +101,7 @@ impl<N: Real, V> LaneCore<'_, N, V> {
     }
 }
 
-/// Returns the vertex farthest along a direction; the first of equals.
+/// Returns the vertex farthest along a direction; the first vertex wins a tie.
 #[inline(always)]
 fn farthest<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

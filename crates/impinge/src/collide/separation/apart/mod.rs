@@ -1,19 +1,19 @@
-//! Nearest points of triangles, boxes and hulls in 3D that are well apart, for one pair or for
-//! 8 pairs at a time. Both run the same source and so give the same bits.
+//! Nearest points of triangles, boxes and hulls in 3D that are well apart, for one pair or for 8
+//! pairs at a time. Both run the same code, so their results are bit-identical.
 //!
-//! The search is the one of E. Gilbert, D. Johnson and S. Keerthi ("A Fast Procedure for Computing
-//! the Distance Between Complex Objects in Three-Dimensional Space", 1988), without branches: each
-//! step computes all features of the simplex at its newest corner and selects the nearest
-//! ([`simplex`]). A result is returned only with a proof: its points are as far apart as two
-//! supporting planes. Without a proof the pair falls back to the algorithm of its kinds. This
-//! happens for cores nearer than 2⁻⁶ of the pair's size (`MIN_GAP`) or overlapping, for several
-//! pairs of nearest points, and if the bounds do not agree.
+//! The search follows E. Gilbert, D. Johnson and S. Keerthi ("A Fast Procedure for Computing the
+//! Distance Between Complex Objects in Three-Dimensional Space", 1988), without branches: each step
+//! computes all features of the simplex at its newest corner and selects the nearest ([`simplex`]).
+//! A result is returned only with a proof: its points are as far apart as two supporting planes.
+//! Without a proof the pair falls back to the algorithm of its kinds. This happens for cores nearer
+//! than 2⁻⁶ of the pair's size (`MIN_GAP`) or overlapping, for several pairs of nearest points, and
+//! if the bounds do not agree.
 //!
 //! ```text
 //!        core 1             core 2        normal = nearest / |nearest|
-//!      +--------+          /\             lower bound: min normal · b − max normal · a, by support points
+//!      +--------+          /\             lower bound: min normal · b − max normal · a
 //!      |        a*-------b*  \            upper bound: |b* − a*|
-//!      +--------+          \__\           both agree up to rounding, or there is no answer
+//!      +--------+          \__\           without agreement up to rounding there is no result
 //! ```
 //!
 //! `packet` lays out [`LANES`] pairs in rows, `core` computes support points, and `search` has the
@@ -44,15 +44,15 @@ use crate::shape::{Kind, SupportMap};
 /// Number of pairs in one packet.
 const LANES: usize = 8;
 
-/// Largest number of vertices; hulls with more go to algorithms that do not visit every vertex in
-/// each step.
+/// Largest number of vertices. Hulls with more are passed to algorithms that do not visit every
+/// vertex in each step.
 const MAX_VERTICES: usize = 128;
 
 /// Returns the separation of two triangles, boxes or hulls: by the search if they are well apart,
 /// else by the algorithm of their kinds.
 ///
-/// For two boxes and a finite `limit`, the separating axis test runs first: most of them touch, and
-/// the test proves it in less time than the search needs to give up. For hulls the test takes
+/// For two boxes and a finite `limit`, the separating axis test runs first. Most such pairs touch,
+/// and the test proves this in less time than the search needs to give up. For hulls the test takes
 /// longer than the search.
 #[inline]
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
@@ -76,8 +76,8 @@ pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     result(pair, limit, limit >= N::ZERO).distance(pair, limit)
 }
 
-/// Computes [`separation`] for up to [`LANES`] pairs of the same kinds, bit for bit. An outer
-/// `None` marks a pair that has to be computed alone, an inner one a pair beyond `limit`.
+/// Computes [`separation`] for up to [`LANES`] pairs of the same kinds, with identical bits. An
+/// outer `None` is a pair that has to be computed alone; an inner `None` is a pair beyond `limit`.
 pub(crate) fn separations<'p, 'a: 'p, N: Real>(
     pairs: impl Iterator<Item = &'p Pair<'a, N, 3>> + Clone,
     limit: N,
@@ -85,9 +85,8 @@ pub(crate) fn separations<'p, 'a: 'p, N: Real>(
     each(pairs, limit, false, |result, pair| result.separation(pair, limit))
 }
 
-/// Computes [`distance`] for up to [`LANES`] pairs of the same kinds, for a `limit` of zero or
-/// more. An outer `None` marks a pair that has to be computed alone, an inner one a pair beyond
-/// `limit`.
+/// Computes [`distance`] for up to [`LANES`] pairs of the same kinds; `limit` is zero or more. An
+/// outer `None` is a pair that has to be computed alone; an inner `None` is a pair beyond `limit`.
 pub(crate) fn distances<'p, 'a: 'p, N: Real>(
     pairs: impl Iterator<Item = &'p Pair<'a, N, 3>> + Clone,
     limit: N,
@@ -96,7 +95,8 @@ pub(crate) fn distances<'p, 'a: 'p, N: Real>(
 }
 
 /// Searches up to [`LANES`] pairs and applies `convert` to the result of each. Returns `None` for
-/// all pairs without vectors, or if the pairs do not share the vertices of their hulls.
+/// all pairs if the machine has no SIMD vectors, or if the pairs do not share the vertices of their
+/// hulls.
 #[inline]
 fn each<'p, 'a: 'p, N: Real, T: Copy>(
     pairs: impl Iterator<Item = &'p Pair<'a, N, 3>> + Clone,
@@ -119,7 +119,7 @@ pub(crate) const fn is_faceted<N: Real>(kind: &Kind<'_, N, 3>) -> bool {
     matches!(kind, Kind::Triangle(_) | Kind::Cuboid(_) | Kind::Polytope(_))
 }
 
-/// Returns the algorithm for a pair of these kinds that may touch or overlap.
+/// Returns the algorithm for the kinds of a pair that also handles contact and overlap.
 fn nearer<N: Real>(pair: &Pair<'_, N, 3>) -> Algorithm<N, 3> {
     match (pair.first, pair.second) {
         (Kind::Cuboid(_), Kind::Cuboid(_)) => cuboid_cuboid::separation,
@@ -185,7 +185,7 @@ fn result<N: Real>(pair: &Pair<'_, N, 3>, limit: N, with_overlap: bool) -> GapRe
     solids.lone_result(&found)
 }
 
-/// Two solids with flat cores.
+/// Two triangles, boxes or hulls, and the unit of length of the search.
 struct FlatPair<'a, N: Real> {
     solids: [FlatCore<'a, N, 3>; 2],
     /// Radii around both cores.
@@ -197,8 +197,8 @@ struct FlatPair<'a, N: Real> {
 }
 
 impl<'a, N: Real> FlatPair<'a, N> {
-    /// Wraps a pair; `None` for other kinds, for hulls of more than [`MAX_VERTICES`] vertices, and
-    /// if the unit of the pair is not finite.
+    /// Makes the pair; `None` for other kinds, for hulls of more than [`MAX_VERTICES`] vertices,
+    /// and if the unit of the pair is not finite.
     #[inline]
     fn of(pair: &Pair<'a, N, 3>) -> Option<Self> {
         if !(is_faceted(&pair.first) && is_faceted(&pair.second)) {

@@ -9,7 +9,7 @@
 //!   limit         pair 0  pair 1  ...  pair 7      hulls and triangles: same vertices in all lanes
 //! ```
 //!
-//! A lane is the pair's index in the packet of `collide/batch/convex.rs`.
+//! The lane of a pair is its index in the packet of `collide/batch/convex.rs`.
 
 use super::core::LaneCore;
 use super::search::LaneCores;
@@ -57,7 +57,7 @@ struct PacketGap<N: Real> {
     is_overlap: u64,
 }
 
-/// Computes the results of up to 8 pairs of the same kinds, with the bits of [`super::result`] and
+/// Computes the results of up to 8 pairs of the same kinds, bit-identical to [`super::result`] and
 /// independent of the instruction set. `None` if the pairs do not share the vertices of their
 /// hulls.
 pub(super) fn results<'p, 'a: 'p, N: Real>(

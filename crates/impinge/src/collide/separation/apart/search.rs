@@ -1,4 +1,4 @@
-//! Searches the nearest points of two cores, in lanes.
+//! Searches for the nearest points of two cores, for all lanes at once.
 //!
 //! ```text
 //!   along = nearest / |nearest|     the next direction of search, unit
@@ -19,15 +19,15 @@ use crate::math::{Real, Wide, max};
 /// Cap on the number of support points. Most pairs take five or six.
 const ROUNDS: usize = 32;
 
-/// Cores nearer than this, in units of the pair, are left to the algorithms that decide about
-/// touching: 2⁻⁶.
+/// Smallest distance of the cores, in units of the pair, at which the search returns a separation:
+/// 2⁻⁶. Closer pairs fall back to algorithms that also handle contact.
 pub(super) const MIN_GAP: f64 = 1.0 / 64.0;
 
 /// Edges count as parallel if the squared sine of their angle is below this: 2⁻²⁰.
 const PARALLEL: f64 = 1.0 / 1_048_576.0;
 
-/// Returns the gap between the bounds of a distance up to which they count as equal, in units of
-/// the pair: 2⁻¹⁹ in `f32`, 2⁻⁴⁶ in `f64`.
+/// Returns the largest difference of the upper and the lower bound of a distance at which they
+/// count as equal, in units of the pair: 2⁻¹⁹ in `f32`, 2⁻⁴⁶ in `f64`.
 fn tolerance<N: Real>() -> N {
     max(N::lit(16.0) * N::EPSILON, N::lit(1.0 / 70_368_744_177_664.0))
 }
@@ -51,7 +51,7 @@ pub(super) struct LaneGap<V, M> {
     pub(super) normal: [V; 3],
     /// Nearest points of both cores.
     pub(super) points: [[V; 3]; 2],
-    /// Lanes whose cores are apart; the fields above are proved only there.
+    /// Lanes whose cores are apart; `distance`, `normal` and `points` are proved only there.
     pub(super) is_apart: M,
     /// Lanes whose cores are farther apart than the limit.
     pub(super) is_beyond: M,
@@ -60,10 +60,10 @@ pub(super) struct LaneGap<V, M> {
 }
 
 impl<N: Real, V: Copy> LaneCores<'_, N, V> {
-    /// Runs the search. Without `with_overlap`, lanes nearer than [`MIN_GAP`] are given up
-    /// immediately.
+    /// Runs the search. Without `with_overlap`, lanes nearer than [`MIN_GAP`] stop immediately,
+    /// without a result.
     ///
-    /// A finished lane keeps its values, so no lane depends on its neighbours.
+    /// A finished lane keeps its values, so no lane depends on other lanes.
     #[inline(always)]
     pub(super) fn gap<S: Simd>(&self, simd: S, with_overlap: bool) -> LaneGap<V, V::Mask>
     where
@@ -120,8 +120,8 @@ impl<N: Real, V: Copy> LaneCores<'_, N, V> {
     }
 
     /// Returns the lanes with a single pair of nearest points: no face or edge of one core is
-    /// parallel to a face or edge of the other. Of several pairs the middle is wanted, which other
-    /// algorithms find.
+    /// parallel to a face or edge of the other. For several nearest pairs the result is their
+    /// middle, which other algorithms compute.
     #[inline(always)]
     fn is_unique<S: Simd>(&self, simd: S, normal: &[V; 3]) -> V::Mask
     where
@@ -146,7 +146,7 @@ impl<N: Real, V: Copy> LaneCores<'_, N, V> {
 }
 
 impl<V: Copy> LaneSimplex<V> {
-    /// Selects `other` in the lanes of `is_other`.
+    /// Selects `other` in the lanes of `is_other`, else `self`.
     #[inline(always)]
     fn or<S: Simd>(&self, other: &Self, is_other: V::Mask) -> Self
     where

@@ -1,10 +1,10 @@
-//! Nearest point to the origin on the faces of a tetrahedron that meet in its newest corner, in
-//! lanes.
+//! Nearest point to the origin on the faces of a tetrahedron that meet in its newest corner, for
+//! all lanes at once.
 //!
 //! ```text
-//!            w  newest            candidates: the edges w p0, w p1, w p2 and the inside of the faces
-//!           /|\                   w p0 p1, w p1 p2, w p2 p0; corners may coincide, so that a triangle,
-//!          / | \                  an edge or a point is a tetrahedron too
+//!            w  newest            candidates: the edges w p0, w p1, w p2 and the inside of the
+//!           /|\                   faces w p0 p1, w p1 p2, w p2 p0; corners may coincide, so that
+//!          / | \                  a triangle, an edge or a point is a tetrahedron too
 //!        p0--+--p1
 //!          \ | /
 //!           p2
@@ -30,7 +30,7 @@ pub(super) struct LaneCorner<V> {
 }
 
 impl<V> LaneCorner<V> {
-    /// Selects `other` in the lanes of `is_other`.
+    /// Selects `other` in the lanes of `is_other`, else `self`.
     #[inline(always)]
     pub(super) fn or<S: Simd>(&self, other: &Self, is_other: V::Mask) -> Self
     where
@@ -87,7 +87,7 @@ impl<V> BestFeature<V> {
 struct Fan<'a, V> {
     old: &'a LaneSimplex<V>,
     newest: &'a LaneCorner<V>,
-    /// Vectors from the newest corner to the old ones.
+    /// Vectors from the newest corner to the old corners.
     edges: [[V; 3]; 3],
     /// Squared lengths of the edges.
     squares: [V; 3],
@@ -257,9 +257,9 @@ impl<'a, V: Copy> Fan<'a, V> {
     }
 }
 
-/// Returns the lanes where the origin and another point lie on the same side of a plane, the origin
-/// clearly. `of_origin` and `of_point` are their heights above the plane, times the length of
-/// `normal`.
+/// Returns the lanes where the origin and another point lie on the same side of a plane, and the
+/// origin is farther than [`CLEAR`] from it. `of_origin` and `of_point` are their heights above the
+/// plane, times the length of `normal`.
 #[inline(always)]
 fn is_clear<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

@@ -3,7 +3,7 @@ use crate::collide::separation::hulls::tests::Random;
 use crate::math::simd::Level;
 use crate::shape::{ConvexHull, Cuboid, Shape, Triangle};
 
-/// Triangles, boxes and hulls, including flat and thin ones.
+/// Returns triangles, boxes and hulls, including flat and thin solids.
 fn solids<N: Real>(random: &mut Random) -> Vec<Box<dyn Shape<N, 3>>> {
     let mut point = || Point::<N, 3>::from(random.vector::<N>());
     let many: Vec<_> = (0..48).map(|_| point()).collect();
@@ -17,7 +17,7 @@ fn solids<N: Real>(random: &mut Random) -> Vec<Box<dyn Shape<N, 3>>> {
     ]
 }
 
-/// Poses of the second solid: turned at random and aligned, apart, near and overlapping.
+/// Returns poses of the second solid: rotated at random or aligned, apart, near or overlapping.
 fn poses<N: Real>(random: &mut Random, count: usize) -> Vec<Pose<N, 3>> {
     let pose = |round: usize| {
         let mut pose = random.turn::<N>();

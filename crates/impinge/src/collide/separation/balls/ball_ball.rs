@@ -9,8 +9,8 @@ use crate::shape::Kind;
 
 /// Returns the separation of two balls.
 ///
-/// Balls with a common centre have the first axis as normal; a ball does not turn, so it is the
-/// first axis of the world.
+/// If the centres coincide, the normal is the first axis of the world, because the frame of a ball
+/// has the axes of the world.
 pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -29,7 +29,7 @@ pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     })
 }
 
-/// Returns the distance of [`separation`].
+/// Returns the distance of [`separation`], without a limit.
 #[inline]
 pub(in crate::collide::separation) fn distance<N: Real, const D: usize>(
     center2: &Vector<N, D>,

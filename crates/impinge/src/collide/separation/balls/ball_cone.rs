@@ -1,4 +1,5 @@
-//! Ball against cone: a triangle in the half-plane of the axis and the centre.
+//! Ball against cone. In the half-plane through the axis and the ball's centre, the cone is a
+//! triangle.
 //!
 //! ```text
 //!    y |\ apex (0, h)             one half of the axial section: `x` from the axis, `y` up
@@ -50,15 +51,16 @@ impl<N: Real> Section<N> {
         }
     }
 
-    /// Height of `p` above the section along `outward`, which must not point towards the axis.
+    /// Returns the height of `p` above the section along `outward`, which must not point towards
+    /// the axis.
     fn height(&self, outward: &Vector<N, 2>, p: &Vector<N, 2>) -> N {
         outward.dot(p) - max(outward.dot(&self.apex), outward.dot(&self.rim))
     }
 
     /// Returns the largest height of `p` above a side, and the normal of that side.
     ///
-    /// The directions sideways and up are also tried, after the sides: a cone without height or
-    /// radius has no side there, and its end would be missed.
+    /// The directions +x and +y are also tried, after the sides: a cone without height or radius
+    /// has no side with this normal.
     fn highest(&self, p: &Vector<N, 2>) -> (N, Vector<N, 2>) {
         let (x, y) = (Vector::<N, 2>::x(), Vector::<N, 2>::y());
         let mut best = (self.height(&-y, p), -y);
@@ -110,7 +112,7 @@ mod tests {
 
     #[test]
     fn apex_side_base_and_inside() {
-        // The slant is perpendicular to (4, 3) / 5.
+        // The normal of the side is (4, 3) / 5.
         let cone = Cone::new(2.0_f64, 3.0);
         let p = Point::<f64, 3>::new;
         let apex = project(&cone, &p(0.0, 7.0, 0.0));

@@ -1,4 +1,5 @@
-//! Ball against cylinder: a rectangle in the half-plane of the axis and the centre.
+//! Ball against cylinder. In the half-plane through the axis and the ball's centre, the cylinder is
+//! a rectangle.
 
 use crate::collide::Pair;
 use crate::collide::separation::projection::{Projection, center_in_second};

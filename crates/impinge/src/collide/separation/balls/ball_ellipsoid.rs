@@ -13,8 +13,8 @@ const STEPS: usize = 64;
 
 /// Returns the separation of a ball from an ellipsoid.
 ///
-/// From the centre, the ball leaves along the shortest half axis, the first of equals, towards its
-/// positive side.
+/// From the centre, the ball leaves along the shortest half axis, towards its positive side; the
+/// first of several shortest axes wins a tie.
 pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -103,14 +103,14 @@ impl<N: Real, const D: usize> ScaledEllipsoid<N, D> {
         }
     }
 
-    /// Returns the point of the surface at which `normal` is a normal; `normal` must have the
-    /// length that the surface equation gives it.
+    /// Returns the point of the surface at which `normal` is a normal. The length of `normal` must
+    /// satisfy Σ (eᵢ nᵢ)² = 1, where e are the half axes.
     fn at(&self, normal: &Vector<N, D>) -> Point<N, D> {
         Point::from(normal.zip_map(&self.half_axes, |n, half| half * (half * n)))
     }
 
-    /// Returns the squared size of the point for `t`, in units of the half axes: above 1 it is
-    /// outside. Also half the rate at which that falls.
+    /// Returns f(t) = Σ (eᵢ pᵢ / (t + excessᵢ))² and −f′(t) / 2, where e are the half axes and p
+    /// the point. The candidate for `t` lies on the surface if f(t) = 1, outside if f(t) > 1.
     fn level(&self, t: N) -> (N, N) {
         let (mut level, mut fall) = (N::ZERO, N::ZERO);
         for axis in 0..D {
@@ -122,7 +122,7 @@ impl<N: Real, const D: usize> ScaledEllipsoid<N, D> {
         (level, fall)
     }
 
-    /// Finds the root from below: the level at `t` is 1 or more.
+    /// Finds the root of f(t) = 1 by Newton's method from below; at the start `t`, f is 1 or more.
     fn root(&self, mut t: N) -> N {
         for _ in 0..STEPS {
             let (level, fall) = self.level(t);
@@ -137,8 +137,7 @@ impl<N: Real, const D: usize> ScaledEllipsoid<N, D> {
     }
 
     /// Projects the point if the shortest half axis alone decides: the point lies in the symmetry
-    /// plane across that axis and close enough to the centre, or the ellipsoid has no thickness
-    /// there.
+    /// plane perpendicular to that axis and close enough to the centre, or that half axis is zero.
     fn across(&self) -> Projection<N, D> {
         let shortest = |axis: &usize| self.excess[*axis] == N::ZERO;
         let first = (0..D).find(shortest).unwrap_or(0);

@@ -31,7 +31,7 @@ pub(in crate::collide::separation) fn project<N: Real>(
     let (index, distance) = polygon.highest_face(center);
     let highest = &polygon.faces()[index as usize];
     let outward = highest.normal;
-    // Written so that NaN ends here too.
+    // A NaN distance takes the branch for points inside.
     if distance > N::ZERO {
         return project_from_outside(polygon, center, highest);
     }
@@ -68,7 +68,7 @@ fn project_from_outside<N: Real>(
     best
 }
 
-/// Projects a point onto a side that it is in front of.
+/// Projects a point that is in front of a side onto this side.
 fn project_on_side<N: Real>(
     polygon: &Polytope<N, 2>,
     side: &PolytopeFace<N, 2>,

@@ -33,7 +33,7 @@ pub(in crate::collide::separation) fn project<N: Real>(
     let highest = &hull.faces()[index as usize];
     let outward = highest.normal;
     let flat = Projection { distance, outward, point: center - outward * distance };
-    // Written so that NaN ends here too.
+    // A NaN distance takes the branch for points inside.
     if distance > N::ZERO { project_from_outside(hull, center, highest, &flat) } else { flat }
 }
 
@@ -71,7 +71,7 @@ fn project_from_outside<N: Real>(
     best
 }
 
-/// Projects a point onto a face that it is in front of.
+/// Projects a point that is in front of a face onto this face.
 fn project_on_face<N: Real>(
     hull: &Polytope<N, 3>,
     face: &PolytopeFace<N, 3>,

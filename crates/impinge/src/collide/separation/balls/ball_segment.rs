@@ -44,12 +44,12 @@ pub(in crate::collide::separation) fn project<N: Real, const D: usize>(
     Foot::new(*ends, center).projection()
 }
 
-/// Point of a segment nearest to a given point.
+/// Point of a segment nearest to the projected point.
 pub(in crate::collide::separation) struct Foot<N: Real, const D: usize> {
     ends: [Point<N, D>; 2],
     /// The nearest point of the segment.
     point: Point<N, D>,
-    /// Vector from `point` to the given point; `distance` is its length.
+    /// Vector from `point` to the projected point; `distance` is its length.
     offset: Vector<N, D>,
     pub(in crate::collide::separation) distance: N,
     /// Whether `point` lies between the ends.
@@ -68,7 +68,7 @@ impl<N: Real, const D: usize> Foot<N, D> {
         Self { ends, point, offset, distance: offset.norm(), is_inside }
     }
 
-    /// Returns the projection, which adds the direction; computing it costs more than all the rest.
+    /// Returns the projection. Its direction costs more to compute than all other values.
     pub(in crate::collide::separation) fn projection(&self) -> Projection<N, D> {
         Projection { distance: self.distance, outward: self.outward(), point: self.point }
     }

@@ -11,8 +11,9 @@ use crate::shape::{FeatureId, Kind, TaperedCapsule};
 
 /// Returns the separation of a ball from a tapered capsule.
 ///
-/// A centre on the axis leaves along a fixed perpendicular, a centre at an end away from the other
-/// end. If one ball contains the other, the centre of the larger one leaves along the first axis.
+/// A centre on the axis leaves along a fixed perpendicular, and a centre at an end of the axis
+/// leaves away from the other end. If one ball contains the other, the centre of the larger ball
+/// leaves along the first axis.
 pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -76,7 +77,7 @@ mod tests {
 
     type P = Point<f64, 3>;
 
-    /// The side rises by 3 on 4: its normal is tilted by the sine 0.6.
+    /// Returns a tapered capsule whose side rises by 3 over 4, so that the sine of its tilt is 0.6.
     fn club() -> TaperedCapsule<f64, 3> {
         TaperedCapsule::try_from_ends(P::origin(), P::new(0.0, 5.0, 0.0), [1.0, 4.0])
             .expect("finite")

@@ -88,14 +88,14 @@ fn front<N: Real>(corners: &[Point<N, 3>; 3]) -> Option<Vector<N, 3>> {
     unit(&cross(&along, &inward)).filter(|_| !thin).map(|(front, _)| front)
 }
 
-/// Returns the index of the longest side, the first of equals.
+/// Returns the index of the longest side; the first side wins a tie.
 fn longest_side<N: Real>(corners: &[Point<N, 3>; 3]) -> usize {
     let squared = |at: usize| (corners[(at + 1) % 3] - corners[at]).norm_squared();
     let longer = |a: usize, b: usize| if squared(b) > squared(a) { b } else { a };
     longer(longer(0, 1), 2)
 }
 
-/// Returns the nearest point of the three sides, the first of equals.
+/// Returns the nearest point of the three sides; the first side wins a tie.
 fn on_nearest_side<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Foot<N, 3> {
     let [a, b, c] = *corners;
     let mut best = Foot::new([a, b], center);

@@ -9,7 +9,7 @@ use crate::math::{Point, Real, Vector, cross2, max, max_component, perp, unit};
 use crate::shape::Kind;
 
 /// Returns the separation of a ball from a triangle in 2D. A triangle that is a segment up to
-/// rounding goes to [`polygon_polygon`].
+/// rounding is passed to [`polygon_polygon`].
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 2>,
     limit: N,
@@ -47,7 +47,7 @@ impl<N: Real> DirectedEdge<N> {
         -perp(&self.along)
     }
 
-    /// Returns whether the point projects into the side, not only onto its line, from outside.
+    /// Returns whether the point is outside this side and projects between its ends.
     fn is_below(&self, center: &Point<N, 2>) -> bool {
         let coordinate = self.along.dot(&(center - self.from));
         self.height > N::ZERO && coordinate > N::ZERO && coordinate < self.length
@@ -91,7 +91,7 @@ pub(in crate::collide::separation) fn project<N: Real>(
     if highest.height > N::ZERO {
         return Some(from_corner(&[a, b, c], center, &highest));
     }
-    // NaN gives no depth.
+    // A NaN height gives `None`.
     (highest.height <= N::ZERO).then(|| highest.projection(center))
 }
 
@@ -104,8 +104,8 @@ fn has_area<N: Real>(sides: &[DirectedEdge<N>; 3]) -> bool {
     area > N::lit(64.0) * N::EPSILON
 }
 
-/// Projects the point onto the nearest corner, the first of equals. If it is so close that the
-/// direction is mostly rounding, the normal of the highest side is used.
+/// Projects the point onto the nearest corner; the first corner wins a tie. If it is so close that
+/// the direction is mostly rounding error, the normal of the highest side is used.
 fn from_corner<N: Real>(
     corners: &[Point<N, 2>; 3],
     center: &Point<N, 2>,
@@ -165,7 +165,7 @@ mod tests {
         assert_eq!(project(&corners, &p(f64::NAN, 1.0)), None, "nowhere");
     }
 
-    /// Compares with the separation of outlines, all around triangles of all shapes.
+    /// Compares with the separation of outlines, for random triangles and points.
     #[test]
     fn as_outlines_have_it() {
         let (mut inside, mut tried) = (0, 0);

@@ -23,7 +23,7 @@ pub(crate) struct BoxPair<N: Real> {
     pub(crate) pose12: Pose<N, 3>,
 }
 
-/// Which of the 15 directions an axis is; indices are those of the boxes' axes.
+/// One of the 15 directions; the indices are those of the boxes' axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum AxisKind {
     /// The normal of a face of the first box.
@@ -68,7 +68,8 @@ impl<N: Real> BoxPair<N> {
         }
     }
 
-    /// Returns the face normal with the largest gap; `abs_rotation` holds the rotation's absolute values.
+    /// Returns the face normal with the largest gap; `abs_rotation` are the absolute values of the
+    /// rotation.
     fn best_face(&self, abs_rotation: &Matrix<N, 3>) -> (AxisKind, N) {
         let (t, mut best, mut gap) = (&self.pose12.translation, AxisKind::Face1(0), N::ZERO);
         for i in 0..3 {

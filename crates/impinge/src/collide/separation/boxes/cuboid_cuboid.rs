@@ -23,8 +23,8 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     along_best(pair, limit, &boxes, &boxes.best_axis())
 }
 
-/// Returns the result of [`separation`] if the axes decide: the boxes overlap, or exceed `limit`
-/// (`Some(None)`). `None` if they do not decide.
+/// Returns the result of [`separation`] if the axes decide it: the boxes overlap, or their gap
+/// exceeds `limit` (`Some(None)`). `None` if the axes do not decide it.
 pub(in crate::collide::separation) fn decided_by_axes<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -35,7 +35,7 @@ pub(in crate::collide::separation) fn decided_by_axes<N: Real>(
     is_decided.then(|| along_best(pair, limit, &boxes, &best))
 }
 
-/// Returns the distance of [`separation`]; for overlapping boxes it is the gap, without points.
+/// Returns the distance of [`separation`], without points. For overlapping boxes it is the gap.
 pub(in crate::collide::separation) fn distance<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -56,7 +56,7 @@ fn of_pair<N: Real>(pair: &Pair<'_, N, 3>) -> BoxPair<N> {
     BoxPair { half1, half2, pose12: pair.pose12 }
 }
 
-/// Returns the separation, given the axis of the largest gap.
+/// Returns the separation, computed from `best`, the axis of the largest gap.
 fn along_best<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -138,7 +138,7 @@ impl<N: Real> BoxReferenceFace<N> {
         if self.toward < N::ZERO { -N::ONE } else { N::ONE }
     }
 
-    /// Signed height of a point above the face.
+    /// Returns the signed height of a point above the face.
     fn height(&self, point: &Point<N, 3>) -> N {
         self.sign() * point[self.axis] - self.half[self.axis]
     }
@@ -271,7 +271,7 @@ mod tests {
 
     #[test]
     fn edge_over_edge() {
-        // Both turned by an eighth: an upper edge along x below a lower edge along z.
+        // Both boxes are rotated by 45°: an upper edge along x below a lower edge along z.
         let eighth = core::f64::consts::FRAC_PI_4;
         let pose1 = Isometry3::new([0.0; 3].into(), [eighth, 0.0, 0.0].into());
         let pose2 = Isometry3::new([0.25, 2.75, 0.25].into(), [0.0, 0.0, eighth].into());

@@ -15,7 +15,7 @@ impl<N: Real> Rectangles<N> {
     /// second.
     ///
     /// In a tie, sides of the first box come before sides of the second, each in the order of its
-    /// outline: below, right, above, left.
+    /// outline: bottom, right, top, left.
     pub(in crate::collide::separation) fn best_axis(&self) -> Axis<N> {
         let abs_rotation = self.pose12.rotation.abs();
         let offset = self.pose12.translation;
@@ -47,7 +47,7 @@ impl<N: Real> Rectangles<N> {
     }
 }
 
-/// Returns the position of a side in the outline: 0 below, 1 right, 2 above, 3 left.
+/// Returns the position of a side in the outline: 0 bottom, 1 right, 2 top, 3 left.
 const fn rank(axis: usize, is_positive: bool) -> usize {
     match (axis, is_positive) {
         (0, true) => 1,
@@ -57,11 +57,11 @@ const fn rank(axis: usize, is_positive: bool) -> usize {
     }
 }
 
-/// Gap, position in the outline, axis, and whether the other box is on the positive side of the
-/// axis.
+/// Gap, position of the side in the outline, axis, and whether the other box is on the positive
+/// side of the axis.
 type FoundAxis<N> = (N, usize, usize, bool);
 
-/// Returns the axis with the larger gap; in a tie the one that comes first in the outline.
+/// Returns the axis with the larger gap; in a tie, the axis whose side comes first in the outline.
 fn better<N: Real>(one: FoundAxis<N>, other: FoundAxis<N>) -> FoundAxis<N> {
     if other.0 > one.0 || other.0 == one.0 && other.1 < one.1 { other } else { one }
 }

@@ -55,7 +55,7 @@ struct LocalSegment<'a, N: Real> {
     ends: [Vector<N, 3>; 2],
     /// Vector from the first end to the second.
     along: Vector<N, 3>,
-    /// Pose of the solid in the frame of the segment, in lengths of the caller.
+    /// Pose of the solid in the frame of the segment, in the caller's unit of length.
     pose12: &'a Pose<N, 3>,
     /// Length of one unit: a power of two.
     scale: N,
@@ -85,7 +85,7 @@ enum SegmentResult<N: Real> {
     Unproved,
 }
 
-/// Returns the rounding error of arithmetic on numbers of size 2.
+/// Returns the rounding error of arithmetic on numbers up to 2.
 fn rounding_error<N: Real>() -> N {
     N::lit(16.0) * N::EPSILON
 }
@@ -104,8 +104,8 @@ impl<'a, N: Real> LocalSegment<'a, N> {
         let local = |end: &Point<N, 3>| {
             pose12.rotation.tr_mul(&((end.coords - pose12.translation) * shrink))
         };
-        // Computed from the ends as given, so that the distance between the origins costs no
-        // digits.
+        // Computed from the ends before they are translated, so that the distance of the origins
+        // adds no rounding error.
         let along = pose12.rotation.tr_mul(&((ends[1] - ends[0]) * shrink));
         Some(Self { ends: [local(ends[0]), local(ends[1])], along, pose12, scale, shrink })
     }
@@ -178,8 +178,8 @@ impl<N: Real> LocalBox<'_, N> {
         found.map_or(SegmentResult::Unproved, SegmentResult::Found)
     }
 
-    /// Returns axis, sign and gap of the face that the segment is highest above; the first of
-    /// equals.
+    /// Returns axis, sign and gap of the face that the segment is highest above; the first face
+    /// wins a tie.
     fn best_face(&self) -> (usize, N, N) {
         let [a, b] = &self.segment.ends;
         let mut best = (0, N::ONE, -N::INFINITY);
@@ -204,7 +204,7 @@ impl<N: Real> LocalBox<'_, N> {
             let height = x * from[one] + y * from[other];
             let extent = x.abs() * self.half[one] + y.abs() * self.half[other];
             let sine = (x * x + y * y).sqrt();
-            // Written so that NaN and segments parallel to the axis are skipped.
+            // False for NaN and for segments parallel to the axis, which are skipped.
             let is_certain = sine > rounding_error() && (height.abs() - extent) > bound * sine;
             if is_certain {
                 let signed_sine = if height < N::ZERO { -sine } else { sine };
@@ -224,8 +224,8 @@ impl<N: Real> LocalBox<'_, N> {
             + along[2].abs() * self.half[2]
     }
 
-    /// Returns the separation along the normal of a face that the segment crosses; `None` if no
-    /// point of the segment is proved.
+    /// Returns the separation along the normal of a face; `None` unless the lowest point of the
+    /// segment projects into the face.
     fn at_face(&self, axis: usize, sign: N, gap: N) -> Option<Parting<N>> {
         let [a, b] = &self.segment.ends;
         let climb = (b[axis] - a[axis]) * sign;
@@ -262,7 +262,7 @@ impl<N: Real> LocalBox<'_, N> {
     }
 
     /// Returns the separation along the common perpendicular of the segment and the box edges along
-    /// `axis`; `None` without a proof.
+    /// `axis`; `None` unless its points are as far apart as the gap.
     fn at_edge(&self, axis: usize, outward: &Vector<N, 3>, gap: N) -> Option<Parting<N>> {
         let mut ends = [Point::origin(); 2];
         for at in 0..3 {
@@ -279,7 +279,7 @@ impl<N: Real> LocalBox<'_, N> {
     }
 
     /// Returns the separation at the nearest points of segment and box, which are apart; `None`
-    /// without a proof.
+    /// unless supporting planes prove it.
     fn nearest(&self) -> Option<Parting<N>> {
         let share = self.nearest_share();
         let on_segment = self.segment.at(share);

@@ -36,7 +36,7 @@ pub(super) fn links<N: Real>(
 }
 
 /// Returns the bits of the segments beyond the limit, and the smallest distance from the centre.
-/// Runs with the vectors of an instruction set, on which the result does not depend.
+/// `level` selects the instruction set; the result does not depend on it.
 fn at<N: Real>(
     level: Level,
     tiles: &PartPacket<N, 2>,
@@ -46,7 +46,8 @@ fn at<N: Real>(
     with_lanes!(level, simd => beyond::<_, N, N::Lanes<_>>(simd, tiles, question, radius))
 }
 
-/// Compares the limit with distances that have the bits of [`ball_segment`].
+/// Compares distances, bit-identical to those of [`ball_segment`], with the limit; returns the
+/// result of [`at`].
 #[inline(always)]
 fn beyond<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

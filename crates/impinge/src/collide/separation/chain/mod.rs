@@ -2,9 +2,9 @@
 //!
 //! The kernels run the algorithms of [`polygon_polygon`](super::polygons::polygon_polygon),
 //! [`segment_lanes`](super::segments::segment_lanes) and
-//! [`ball_segment`](super::balls::ball_segment) in the same order of operations, so results have
-//! the same bits. Most segments are culled as beyond the limit; for the others, the separation is
-//! computed from the axis that the test found.
+//! [`ball_segment`](super::balls::ball_segment) in the same order of operations, so results are
+//! bit-identical. Most segments are culled as beyond the limit; for the others, the separation is
+//! computed from the axis found by the test.
 //!
 //! ```text
 //!   question.tiles   [0 1 2 3 4 5 6 7] [8 9 . . . . . .]    corners 0 and 1 of each `PartPacket`
@@ -36,16 +36,16 @@ pub(crate) struct ChainQuestion<'a, N: Real> {
     pub(crate) tiles: &'a [PartPacket<N, 2>],
     /// Number of segments; lanes of the last packet after them are ignored.
     pub(crate) count: usize,
-    /// Origin that the segments are translated to, in the frame of the chain.
+    /// Point in the frame of the chain that becomes the origin of the segments.
     pub(crate) origin: Vector<N, 2>,
     pub(crate) solid: Kind<'a, N, 2>,
-    /// Pose of the second of each pair in the frame of the first, in the order of kinds. If the
-    /// segment comes first, this is the pose of the solid; if the solid is a ball or a segment, it
-    /// comes first, and this is the pose of the chain.
+    /// Pose of the second solid of each pair in the frame of the first. A ball or segment is the
+    /// first of the pair, and this is the pose of the chain; any other solid is the second, and
+    /// this is its pose.
     pub(crate) pose12: Pose<N, 2>,
     /// Centre of the solid in the frame of the chain.
     pub(crate) center: Point<N, 2>,
-    /// Separations above this are dropped.
+    /// Largest distance of interest; larger separations are dropped.
     pub(crate) limit: N,
 }
 
@@ -70,7 +70,7 @@ pub(crate) fn links<N: Real>(question: &ChainQuestion<'_, N>, links: &mut Links<
     links_at(Level::new(), question, links)
 }
 
-/// Runs [`links`] with the vectors of an instruction set, on which the result does not depend.
+/// Runs [`links`] with the instruction set `level`, on which the result does not depend.
 fn links_at<N: Real>(
     level: Level,
     question: &ChainQuestion<'_, N>,

@@ -51,8 +51,8 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     Some(())
 }
 
-/// A polygon in the frame of the segments, with its extents along the normals of its sides and its
-/// tips.
+/// A polygon in the frame of the segments, with its extents along the normals of its sides and
+/// along its tips ([`PolygonOutline::tips`]).
 struct PolygonExtents<N: Real> {
     outline: PolygonOutline<N>,
     /// Upper bound of the distance of the vertices from the origin.
@@ -168,7 +168,7 @@ fn of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let length = squared.sqrt();
     let front = [side[1] / length, -(side[0] / length)];
     let back = negated(&front);
-    // Computed as the tips of an outline with two sides.
+    // By the formula for the tips of an outline with two sides.
     let tip = [front[1] - back[1], back[0] - front[0]];
     let tip = over(&tip, dot(&tip, &tip).sqrt());
     let (low, high) = heights(simd, &front, solid);

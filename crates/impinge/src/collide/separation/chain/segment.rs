@@ -54,7 +54,7 @@ fn alone<N: Real>(
     polygon_polygon::separation_of_outlines(&pair, question.limit)
 }
 
-/// Separations of 8 segments of a chain from a core, in rows.
+/// Separations of 8 segments of a chain from a core, one value per lane.
 struct SegmentGaps<N> {
     /// Signed distances of the cores.
     gaps: [N; LANES],
@@ -69,7 +69,7 @@ struct SegmentGaps<N> {
 }
 
 impl<N: Real> SegmentGaps<N> {
-    /// Computes the gaps of a packet, with the cores in the order of each pair.
+    /// Computes the gaps of a packet, with the two cores of each pair in canonical order.
     #[inline(always)]
     fn of<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,

@@ -1,4 +1,4 @@
-//! Compares segments in lanes with segments one by one, on every instruction set.
+//! Compares batches of 8 segments with single segments, on every instruction set.
 
 use super::*;
 use crate::collide::Pair;

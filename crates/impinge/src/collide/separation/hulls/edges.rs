@@ -107,8 +107,8 @@ impl CandidateEdges {
     }
 }
 
-/// A pair of edges that forms a face of the Minkowski difference: of the reference face's solid,
-/// and of the other.
+/// A pair of edges that forms a face of the Minkowski difference: one edge of the solid with the
+/// reference face, and one of the other solid.
 pub(super) struct EdgeQuery<N> {
     edges: [usize; 2],
     /// Signed distance of the solids along the pair's common perpendicular.
@@ -210,7 +210,7 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     }
 
     /// Returns the separation at the nearest points of two edges along their common perpendicular;
-    /// `None` without a proof.
+    /// `None` unless supporting planes prove it.
     #[inline(always)]
     pub(super) fn edge_contact<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -349,7 +349,7 @@ fn separations<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     );
     let height = dot(&across, &away) / squared.sqrt();
     let outward = left1.select(-height, height);
-    // Parallel edges have no common perpendicular; faces then separate the solids as much.
+    // Parallel edges have no common perpendicular; a face normal then has a gap as large.
     let tiny = V::all(simd, N::lit(64.0) * N::EPSILON * N::EPSILON * edge1.squared);
     let is_crossing = squared.simd_gt(dot(&along2, &along2) * tiny);
     Some((is_face & is_crossing).select(outward, V::all(simd, -N::INFINITY)))

@@ -16,7 +16,7 @@ pub(super) struct LocalSolid<'s, 'a, N: Real> {
     /// Vertices in the frame of the reference face, in units of the pair.
     pub(super) vertices: &'s Vertices<N>,
     /// Heights of the vertices: of the other solid along the normal of the face, of the face's own
-    /// solid against it.
+    /// solid along the negated normal.
     pub(super) heights: Heights<N>,
 }
 
@@ -65,10 +65,10 @@ impl<'s, 'a, N: Real> ReferenceFace<'s, 'a, N> {
 }
 
 impl<N: Real> ReferenceFace<'_, '_, N> {
-    /// Returns the separation; `None` without a proof.
+    /// Returns the separation; `None` unless supporting planes prove it.
     ///
-    /// Edges are queried twice: first the few near the plane, which mostly decide, then all within
-    /// the bound. Closures are avoided because they are not inlined into vector code.
+    /// Edges are queried twice: first the few near the plane, which are enough for most pairs, then
+    /// all within the bound. Closures are avoided because they are not inlined into vector code.
     #[inline(always)]
     pub(super) fn resolve<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -96,8 +96,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         None
     }
 
-    /// Breaks with the separation by edges within `max_distance` of the plane, `None` without a
-    /// proof. Continues, unless `is_last`, if farther edges may give a better separation.
+    /// Breaks with the separation by edges within `max_distance` of the plane, or with `None` if it
+    /// is not proved. Continues, unless `is_last`, if farther edges may give a better separation.
     #[inline(always)]
     fn within<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -130,9 +130,9 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         if is_decided { ControlFlow::Break(found) } else { ControlFlow::Continue(()) }
     }
 
-    /// Returns whether a separation found by edges is right whatever edges lie farther away. It is
-    /// if the solids are apart. It also is if they have a point in common, because edges farther
-    /// from the plane than the depth along the face's normal cannot be better.
+    /// Returns whether no farther edge can improve a separation found by edges. This holds if the
+    /// solids are apart. It also holds if they have a point in common, because edges farther from
+    /// the plane than the depth along the face's normal cannot be better.
     #[inline(always)]
     fn is_certain<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -170,7 +170,7 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         Separation { distance, normal: self.normal, point1, point2 }
     }
 
-    /// Returns the first vertex in `lowest` (bits) that projects into the face. If an edge or a
+    /// Returns the first vertex in the mask `lowest` that projects into the face. If an edge or a
     /// face is lowest, the result may be another of its points.
     fn lowest_point(&self, lowest: u32) -> LowestPoint<N> {
         let (mut max_distance, mut rest) = (N::INFINITY, lowest);
@@ -217,8 +217,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     }
 
     /// Iterates over the sides of the face: their ends, and the inward normals of their side
-    /// planes. The side face of a triangle, an edge there and back, also gets planes across both
-    /// ends.
+    /// planes. A side face of a triangle is one edge in both directions; it also gets planes
+    /// perpendicular to the edge at both ends.
     fn sides(&self) -> impl Iterator<Item = ([Vector<N, 3>; 2], Vector<N, 3>)> {
         let ring = self.own.solid.ring(self.index);
         let at = |vertex: u32| self.own.vertices.at(vertex as usize);
@@ -276,13 +276,14 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
             .then(|| corner + self.normal * self.separation())
     }
 
-    /// Middle of the part of an edge that lies over the face; `None` if there is none.
+    /// Returns the middle of the part of an edge that lies over the face; `None` if there is none.
     fn clipped(&self, [a, b]: [Vector<N, 3>; 2]) -> Option<Vector<N, 3>> {
         let (from, to) = self.span([a, b])?;
         Some(a + (b - a) * ((from + to) * N::HALF))
     }
 
-    /// Interval of an edge that lies over the face, as parameters from 0 at `a` to 1 at `b`.
+    /// Returns the interval of an edge that lies over the face, as parameters from 0 at `a` to 1 at
+    /// `b`. `None` if it is empty.
     fn span(&self, [a, b]: [Vector<N, 3>; 2]) -> Option<(N, N)> {
         let (mut from, mut to) = (N::ZERO, N::ONE);
         for (ends, inward) in self.sides() {

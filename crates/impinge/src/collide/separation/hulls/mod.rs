@@ -1,13 +1,13 @@
 //! Separating axis test of two convex polyhedra with few features: triangles, boxes and hulls.
 //! [`segment`] tests segments against triangles and hulls.
 //!
-//! The test is that of D. Gregorius, "The Separating Axis Test between Convex Polyhedra" (GDC
-//! 2013), with vertices, planes and edges in lanes of 8:
+//! The test follows D. Gregorius, "The Separating Axis Test between Convex Polyhedra" (GDC 2013),
+//! with vertices, planes and edges in lanes of 8:
 //!
 //! 1. The faces of both solids are queried for the reference face: the face that the other solid
 //!    lies farthest above, or least deep below ([`vertices`]).
-//! 2. If the lowest vertex of the other solid lies over that face and above its plane, it gives the
-//!    answer ([`face`]).
+//! 2. If the lowest vertex of the other solid lies over that face and above its plane, it
+//!    determines the result ([`face`]).
 //! 3. Otherwise edges are queried ([`edges`]), but only those with an end near enough to the plane
 //!    of the reference face. If the solids overlap, these are the pairs of edges that form a face
 //!    of the Minkowski difference, found by their arcs on the Gauss map; if they are apart, the
@@ -18,13 +18,14 @@
 //!             \   /                      normal of the reference face
 //!              \ /                        ^
 //!      low  ----*----------------------   |   separation = low - offset
-//!   offset  =========== reference face    |   queried: own edges with an end above low - reach,
-//!          |  own solid |                     other edges with an end below offset + reach
+//!   offset  =========== reference face    |   queried: own edges with an end above
+//!          |  own solid |                     low - max_distance, other edges with an end
+//!                                             below offset + max_distance
 //! ```
 //!
-//! An answer is accepted only with a proof: its two points are as far apart as a pair of supporting
+//! A result is accepted only with a proof: its two points are as far apart as a pair of supporting
 //! planes. Otherwise the pair falls back to the general algorithm. There is no iteration and no
-//! state: the answer depends on the pair alone.
+//! state: the result depends on the pair alone.
 //!
 //! The capacities depend on each other: 32 vertices are the bits of a `u32` ([`vertices`]), 64
 //! faces the bits of a `u64` ([`segment`]), and 90 edges have `u8` indices ([`edges`]). 32 vertices
@@ -59,15 +60,15 @@ use crate::math::{Pose, Real, Wide};
 const LANES: usize = 8;
 /// Number of blocks for 32 vertices.
 const BLOCKS: usize = 4;
-/// Blocks of planes: 64 faces, the bits of a `u64` in `segment`.
+/// Number of blocks for 64 planes of faces, the bits of a `u64` in `segment`.
 pub(super) const PLANE_BLOCKS: usize = 8;
 
 /// Returns the separation of two solids with flat faces: triangles, boxes and convex hulls.
 ///
-/// Ties: faces of the first solid come before faces of the second, each in order, and faces before
-/// edges; of pairs of edges the one with the lower indices. Cost: the product of the numbers of
-/// vertices and faces, in blocks of 8. Thin triangles, flat boxes and larger hulls fall back to
-/// the general algorithm.
+/// In a tie, faces of the first solid come before faces of the second, each in the order of their
+/// indices, and faces come before edges; of pairs of edges, the lower indices win. Cost: the
+/// product of the numbers of vertices and faces, in blocks of 8. Thin triangles, flat boxes and
+/// larger hulls fall back to the general algorithm.
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     result(Level::new(), pair, limit).separation(pair, limit, general::of_flat_cores)
 }
@@ -92,7 +93,7 @@ fn result<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> SatResult<N
 pub(super) enum SatResult<N: Real> {
     /// The solids are farther apart than the limit.
     Beyond,
-    /// The separation of the cores or solids, proved.
+    /// The proved separation of the solids, or of their cores.
     Found(Separation<N, 3>),
     /// No result is proved.
     Unproved,
@@ -127,7 +128,7 @@ pub(super) fn beyond_limit<N: Real>(units: &Units<N>, limit: N) -> N {
     limit + N::lit(16.0) * rounding_error::<N>() * (N::ONE + limit.abs())
 }
 
-/// Runs the test with the vectors of an instruction set; the result does not depend on it.
+/// Runs the test with the instruction set `level`, on which the result does not depend.
 fn sat<N: Real>(
     level: Level,
     solids: [&Polyhedral<'_, N>; 2],
@@ -140,7 +141,7 @@ fn sat<N: Real>(
     with_lanes!(level, simd => sat_in_lanes::<_, N, N::Lanes<_>>(simd, solids, pose12, limit))
 }
 
-/// Queries the faces of both solids, then resolves the better one.
+/// Queries the faces of both solids, then computes the separation from the better face.
 #[inline(always)]
 fn sat_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

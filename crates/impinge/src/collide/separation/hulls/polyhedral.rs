@@ -6,7 +6,7 @@
 //!                                      edges 0..3 front, 3..6 back: two along each side
 //!         2                            rings 012, 021, and 10, 21, 02 for the sides
 //!        / \
-//!       0---1     box: vertices, faces and edges with the numbers of `Cuboid`
+//!       0---1     box: vertices, faces and edges numbered as in `Cuboid`
 //! ```
 
 use super::edges::MAX_EDGES;
@@ -38,8 +38,8 @@ enum Rings<'a, N: Real> {
 }
 
 impl<'a, N: Real> Polyhedral<'a, N> {
-    /// Wraps a hull, or another solid by its `features`. `None` for a hull with more features than
-    /// the lanes hold, and for another solid without features.
+    /// Makes the polyhedron of a hull, or of another solid from its `features`. `None` for a hull
+    /// with more features than the lanes hold, and for another solid without features.
     pub(in crate::collide::separation) fn of(
         kind: Kind<'a, N, 3>,
         features: Option<&'a LocalFeatures<N>>,
@@ -66,8 +66,8 @@ impl<'a, N: Real> Polyhedral<'a, N> {
         })
     }
 
-    /// Returns whether the width exceeds the rounding error beside another solid of bounding radius
-    /// `reach`. The sides of faces without width have no direction.
+    /// Returns whether the solid is thicker than the rounding error of a pair with a solid of
+    /// bounding radius `reach`. The sides of faces without width have no direction.
     pub(super) fn has_width(&self, reach: N) -> bool {
         self.thickness > rounding_error::<N>() * (self.reach + reach)
     }
@@ -95,7 +95,7 @@ impl<'a, N: Real> Polyhedral<'a, N> {
         [vertices.at(from as usize), vertices.at(to as usize)]
     }
 
-    /// Returns a vertex.
+    /// Returns a vertex, in the solid's own frame and in units of the shape.
     #[inline(always)]
     pub(in crate::collide::separation) fn vertex(&self, vertex: usize) -> Vector<N, 3> {
         let [x, y, z] = &self.blocks[vertex / LANES];
@@ -143,8 +143,8 @@ impl<N: Real> LocalFeatures<N> {
         let half = cuboid.half_extents();
         let signed = |axis: usize, bit: usize| if bit == 0 { -half[axis] } else { half[axis] };
         let vertices = filled(|axis| filled(|vertex| signed(axis, vertex >> axis & 1)));
-        // Face 2 · axis is on the positive side of the axis, the next on the negative; the last
-        // fills up.
+        // Face 2 · axis is on the positive side of the axis, the next on the negative; spare lanes
+        // repeat the last face.
         let face = |lane: usize| if lane < 6 { lane } else { 5 };
         let along = |axis: usize, lane: usize| match face(lane) {
             face if face / 2 != axis => N::ZERO,
@@ -166,9 +166,9 @@ impl<N: Real> LocalFeatures<N> {
         }
     }
 
-    /// Features of a prism without height: front and back are the triangle, the other faces its
-    /// sides, and two edges lie along each side. `None` for a thin triangle, whose normal would be
-    /// off by more than rounding.
+    /// Computes the features of a prism without height: front and back are the triangle, the other
+    /// faces its sides, and two edges lie along each side. `None` for a thin triangle, whose normal
+    /// would be off by more than rounding.
     fn of_triangle(triangle: &Triangle<N, 3>) -> Option<Self> {
         let [a, b, c] = triangle.corners();
         let sides = [b - a, c - b, a - c];
@@ -179,7 +179,7 @@ impl<N: Real> LocalFeatures<N> {
         let longest = max(max(squared[0], squared[1]), squared[2]);
         let across = cross(&sides[0], &sides[1]);
         let area = across.norm();
-        // Written so that NaN counts as thin.
+        // False for NaN, which counts as thin.
         let is_wide = area > N::lit(THIN) * longest;
         if !is_wide {
             return None;
@@ -187,7 +187,7 @@ impl<N: Real> LocalFeatures<N> {
         let front = across / area;
         let outward: [_; 3] = filled(|side| cross(&sides[side], &front) / squared[side].sqrt());
         let faces = [front, -front, outward[0], outward[1], outward[2]];
-        // The last face fills up.
+        // Spare lanes repeat the last face.
         let face = |lane: usize| if lane < 4 { lane } else { 4 };
         let corner = |lane: usize| &triangle.corners()[if lane < 2 { lane } else { 2 }];
         // The plane of a side contains the corner at which the side begins.
@@ -245,7 +245,7 @@ const BOX_EDGES: [PolytopeEdge; 12] = {
         let (next, after) = ((axis + 1) % 3, (axis + 2) % 3);
         let low = ((signs & 1) << next) | ((signs >> 1) << after);
         let faces = [2 * next + 1 - (signs & 1), 2 * after + 1 - (signs >> 1)];
-        // The order of the faces lets the loop of the first run along the edge.
+        // The faces are ordered so that the ring of the first runs in the direction of the edge.
         let is_even = (signs & 1) == (signs >> 1);
         edges[number as usize] = PolytopeEdge {
             vertices: [low, low | (1 << axis)],

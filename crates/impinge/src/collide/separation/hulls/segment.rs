@@ -3,17 +3,17 @@
 //!
 //! A segment has no faces, so the reference face belongs to the solid. If the lower end of the
 //! segment projects into that face, the separation is along the face's normal. Otherwise edges
-//! decide. If the two overlap, the candidates are the edges between a face whose plane the segment
-//! climbs over and a face whose plane it does not: with the segment they form the faces of the
-//! Minkowski difference. If the two are apart, the candidates are the edges of the faces that some
-//! point of the segment lies above.
+//! decide. If the two overlap, the candidates are the edges between a face above whose plane the
+//! segment rises and a face above whose plane it does not: with the segment they form the faces of
+//! the Minkowski difference. If the two are apart, the candidates are the edges of the faces that
+//! some point of the segment lies above.
 //!
 //! ```text
 //!    b *            `climbed`: bit f set if b is higher above plane f than a
 //!       \  |normal  `visible`: bit f set if a or b is above plane f
 //!        \ |
-//!       a *|        answers are from the solid to the segment; `hulls::in_first_frame`
-//!    ------+-----   turns them round
+//!       a *|        separations are from the solid to the segment; `hulls::in_first_frame`
+//!    ------+-----   flips them
 //!      solid
 //! ```
 
@@ -60,7 +60,7 @@ pub(super) fn result<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> 
         .map_or(SatResult::Unproved, |solid| sat(level, &ends, &solid, &pair.pose12, limit))
 }
 
-/// Runs the test with the vectors of an instruction set; the result does not depend on it.
+/// Runs the test with the instruction set `level`, on which the result does not depend.
 fn sat<N: Real>(
     level: Level,
     ends: &[Point<N, 3>; 2],
@@ -79,8 +79,8 @@ fn sat<N: Real>(
     let query = SegmentQuery {
         solid,
         ends: [local(&ends[0]), local(&ends[1])],
-        // Computed from the ends as given, so that the distance between the origins costs no
-        // digits.
+        // Computed from the ends before they are translated, so that the distance of the origins
+        // adds no rounding error.
         along: pose12.rotation.tr_mul(&((ends[1] - ends[0]) * units.shrink)),
         shrink: units.shrink,
     };
@@ -108,7 +108,8 @@ struct SegmentQuery<'a, N: Real> {
 
 /// Heights of the segment above the planes of all faces.
 struct FaceHeights<N> {
-    /// Index of the face with the largest height of the segment's lower end, the first of equals.
+    /// Index of the face with the largest height of the segment's lower end; the first face wins a
+    /// tie.
     index: usize,
     /// Signed height of the segment's lower end above that face.
     separation: N,
@@ -177,8 +178,8 @@ impl<N: Real> SegmentQuery<'_, N> {
     }
 
     /// Returns the separation along the normal of the highest face; `None` unless the lower end
-    /// projects into it. If the segment is parallel to the face, it is at the middle of the part
-    /// that projects into the face.
+    /// projects into it. If the segment is parallel to the face, the points are at the middle of
+    /// the part that projects into the face.
     fn over_face(
         &self,
         vertices: &Vertices<N>,
@@ -258,7 +259,7 @@ impl<N: Real> SegmentQuery<'_, N> {
                 |axis| end[axis] - V::load(simd, &block.from[axis]),
             );
             let height = dot(&across, &away) * V::load(simd, &outward) / squared.sqrt();
-            // Parallel edges have no common perpendicular; faces then separate the two as much.
+            // Parallel edges have no common perpendicular; a face normal then has a gap as large.
             let separations = squared.simd_gt(tiny).select(height, V::all(simd, -N::INFINITY));
             let highest = highest_lane(separations);
             if highest > largest {
@@ -271,15 +272,15 @@ impl<N: Real> SegmentQuery<'_, N> {
     }
 
     /// Returns the sign that makes the cross product of an edge and the segment point out of the
-    /// solid. The edge runs around its first face, so the product points outwards if the segment
-    /// climbs over that face.
+    /// solid. The edge runs counter-clockwise around its first face, so the product points outwards
+    /// if the segment rises above the plane of that face.
     fn outward(&self, edge: usize, climbed: u64) -> N {
         let [first, _] = self.solid.edges[edge].faces;
         if climbed >> first & 1 == 1 { N::ONE } else { -N::ONE }
     }
 
     /// Returns the separation at the nearest points of an edge and the segment along their common
-    /// perpendicular; `None` without a proof.
+    /// perpendicular; `None` unless supporting planes prove it.
     #[inline(always)]
     fn edge_contact<S: Simd, V: Wide<S, Scalar = N>>(
         &self,

@@ -137,7 +137,7 @@ impl<N: Real> Vertices<N> {
     }
 
     /// Queries the face directions of the other solid: returns the face with the largest signed
-    /// height of these vertices above its plane, the first of equals.
+    /// height of these vertices above its plane. The first face wins a tie.
     #[inline(always)]
     pub(super) fn query_faces<S: Simd, V: Wide<S, Scalar = N>>(
         &self,

@@ -286,7 +286,8 @@ impl<N: Real> PolygonOutline<N> {
         ys[1..].copy_from_slice(&normals[1][..LANES - 1]);
         let (before, after): ([V; 2], [V; 2]) = (load(simd, &[xs, ys]), load(simd, normals));
         let is_tip = dot(&before, &after).simd_lt(V::all(simd, N::ZERO));
-        // Rotated by a right angle: from normals to the directions of the sides.
+        // Rotating a normal by a right angle gives the direction of its side. The tip is the
+        // difference of the directions of both sides.
         let tip = [-before[1] - -after[1], before[0] - after[0]];
         let length = dot(&tip, &tip).sqrt();
         ([tip[0] / length, tip[1] / length], is_tip)

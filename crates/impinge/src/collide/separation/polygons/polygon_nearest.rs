@@ -1,6 +1,6 @@
 //! Nearest points of two polygons, from their best axis. In most cases they are a corner and a
-//! point of a side, or two corners. Otherwise each end of the sides at one top is compared with
-//! each side at the other, 8 at a time.
+//! point of a side, or two corners. Otherwise each end of the two sides at the top vertex of one
+//! polygon is compared with both sides at the top vertex of the other, 8 pairs at a time.
 
 use super::outline::{PolygonOutline, highest, lane};
 use super::polygon_polygon::{Axis, in_middle};
@@ -85,7 +85,7 @@ impl<'a, N: Real> OutlinePair<'a, N> {
         Separation { distance: self.axis.gap, normal: self.axis.normal, point1, point2 }
     }
 
-    /// Returns how far a vertex of an outline is below the outline's top, along the axis.
+    /// Returns the depth of a vertex of an outline below the outline's top, along the axis.
     #[inline(always)]
     fn below(&self, which: usize, vertex: usize) -> N {
         let down = self.axis.normal.dot(&(self.top(which) - self.outlines[which].at(vertex)));
@@ -143,8 +143,8 @@ impl<'a, N: Real> OutlinePair<'a, N> {
         in_middle([low1, high1], [low2.0, high2.0], &self.axis)
     }
 
-    /// Returns the lowest and the highest, along `tangent`, of the top and its neighbours that are
-    /// as far along the axis.
+    /// Returns the lowest and the highest vertex along `tangent`, among the top and its neighbours
+    /// that are equally far along the axis, up to rounding.
     #[inline(always)]
     fn feature(&self, which: usize, tangent: &Vector<N, 2>) -> [(N, Point<N, 2>); 2] {
         let (outline, top) = (self.outlines[which], self.tops[which]);
@@ -186,18 +186,18 @@ impl<'a, N: Real> OutlinePair<'a, N> {
     }
 }
 
-/// Returns a vertex with its predecessor before it and its successor after it.
+/// Returns the predecessor of a vertex, the vertex and its successor.
 #[inline(always)]
 fn around<N: Real>(outline: &PolygonOutline<N>, vertex: usize) -> [Point<N, 2>; 3] {
     [outline.at(outline.previous(vertex)), outline.at(vertex), outline.at(outline.next(vertex))]
 }
 
-/// Returns the nearest points of the sides at two vertices, each given with its neighbours. `None`
-/// if the squared distances are not finite.
+/// Returns the nearest points of the sides at two vertices; `around1` and `around2` hold each
+/// vertex between its neighbours. `None` if the squared distances are not finite.
 ///
 /// ```text
-///   lane     0  1  2  3  4  5  6  7      way1: that end of the first outline's side against the
-///   side 1   b  b  b  b  a  a  a  a      whole side of the second; way2: the other way round.
+///   lane     0  1  2  3  4  5  6  7      `on2`: point of side 2 nearest to the end of side 1
+///   side 1   b  b  b  b  a  a  a  a      `on1`: point of side 1 nearest to the end of side 2
 ///   side 2   b  b  a  a  b  b  a  a      b: side before the vertex, a: side after it
 ///   end      f  t  f  t  f  t  f  t      f: from, t: to
 /// ```

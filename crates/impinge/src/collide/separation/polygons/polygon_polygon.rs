@@ -6,8 +6,8 @@
 //! positive, so the nearest points lie on the sides next to the best normal, ends included.
 //!
 //! Eight sides are tried at a time, each against all vertices of the other solid. If the best
-//! normal leads to the nearest points, as it mostly does ([`OutlinePair::clear_case`]), the tips of sharp
-//! corners are skipped. The rest goes to the [general
+//! normal leads to the nearest points, as it does for most pairs ([`OutlinePair::clear_case`]), the
+//! tips of sharp corners are skipped. The rest falls back to the [general
 //! algorithm](crate::collide::separation::general): outlines with too many vertices, sides whose
 //! squared length is close to underflow or overflow, and nearest points that do not lie along the
 //! best axis.
@@ -32,7 +32,7 @@ pub(in crate::collide::separation) struct Axis<N: Real> {
     pub(in crate::collide::separation) normal: Vector<N, 2>,
 }
 
-/// Result of the search.
+/// Result of the search for the separation of two outlines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum OutlineResult<N: Real> {
     /// The outlines are farther apart than the limit.
@@ -44,9 +44,9 @@ enum OutlineResult<N: Real> {
 
 /// Returns the separation of two outlines.
 ///
-/// Ties: sides of the first solid come before sides of the second, in their order. Two coinciding
-/// points have the first axis of the first solid's frame as normal. Cost: the product of the
-/// numbers of vertices.
+/// In a tie, sides of the first solid come before sides of the second, each in their order. Two
+/// coinciding points have the first axis of the first solid's frame as normal. Cost: the product of
+/// the numbers of vertices.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 2>,
     limit: N,
@@ -70,7 +70,7 @@ pub(in crate::collide::separation) fn separation_of_outlines<N: Real>(
     }
 }
 
-/// Runs [`search`] with the vectors of an instruction set, on which the result does not depend.
+/// Runs [`search`] with the instruction set `level`, on which the result does not depend.
 fn between<N: Real>(level: Level, pair: &Pair<'_, N, 2>, limit: N) -> OutlineResult<N> {
     let known = known_axis(pair);
     with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, pair, known, limit))
@@ -104,7 +104,7 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let rounding = own.rounding + other.rounding;
     let rounding_error =
         N::lit(4.0) * N::EPSILON * max(own.size::<S, V>(simd), other.size::<S, V>(simd));
-    // Closures are not inlined into vector code.
+    // No closure is used here, because closures are not inlined into vector code.
     let sides = match known {
         Some(known) => known,
         None => best_side::<S, N, V>(simd, &own, &other),
@@ -162,7 +162,8 @@ fn best_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     if second.gap > first.gap { Axis { gap: second.gap, normal: -second.normal } } else { first }
 }
 
-/// Returns the normal of a side of `own` with the largest gap to `other`; the first of equals.
+/// Returns the normal of a side of `own` with the largest gap to `other`; the first side wins a
+/// tie.
 #[inline(always)]
 fn best_side_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -205,8 +206,8 @@ fn best_axis<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     best
 }
 
-/// Returns the tip of `own` with the largest gap to `other`, the first of equals; `None` without
-/// tips.
+/// Returns the tip of `own` with the largest gap to `other`; the first tip wins a tie. `None`
+/// without tips.
 #[inline(always)]
 fn best_tip_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -230,8 +231,9 @@ fn best_tip_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     best
 }
 
-/// Returns the separation at the middle of the overlap interval of two features: lowest and highest
-/// vertex of the first with their coordinates along the tangent, and the coordinates of the second.
+/// Returns the separation at the middle of the overlap interval of two features. `low1` and `high1`
+/// are the ends of the first feature with their coordinates along the tangent, `low2` and `high2`
+/// the coordinates of the ends of the second.
 pub(in crate::collide::separation) fn in_middle<N: Real>(
     [low1, high1]: [(N, Point<N, 2>); 2],
     [low2, high2]: [N; 2],
@@ -325,7 +327,8 @@ pub(in crate::collide::separation) mod tests {
         assert!((inside.distance - expected).abs() < 1e-15, "to a side and beyond");
     }
 
-    /// Pairs of all kinds in the lanes of each instruction set, against the general algorithm.
+    /// Compares the search with the general algorithm for pairs of all kinds, on each instruction
+    /// set.
     fn eight_at_a_time<N: Real>(seed: u64) {
         use crate::collide::separation::hulls::tests::Random;
         let random = &mut Random(seed);
@@ -365,13 +368,13 @@ pub(in crate::collide::separation) mod tests {
         assert!(overlapping * 4 > decided, "{overlapping} of {decided} overlap");
     }
 
-    /// A ball, a segment, a capsule, a triangle, a box or a polygon.
+    /// Draws a ball, a segment, a capsule, a triangle, a box or a polygon, selected by `kind`.
     pub(in crate::collide::separation) fn solid_of<N: Real>(
         random: &mut crate::collide::separation::hulls::tests::Random,
         kind: usize,
     ) -> Box<dyn Shape<N, 2>> {
         let half = random.vector::<N>().xy().abs();
-        // On a grid in half of the cases: parallel sides, and ties.
+        // Half of the cases lie on a grid, which gives parallel sides and ties.
         let on_grid = random.pick(2) == 0;
         let mut point = || {
             let point = random.vector::<N>().xy();

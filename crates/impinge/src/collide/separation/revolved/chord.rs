@@ -6,8 +6,8 @@ use crate::math::{Real, Vector, max, min};
 
 /// Cap on the number of points tried; about four are needed.
 const STEPS: usize = 16;
-/// Cap on the bisections among them, which occur where the nearest part changes in between and,
-/// inside the solid, at kinks of the distance.
+/// Cap on the bisections among these points. They occur where the nearest part of the solid changes
+/// between two points and, inside the solid, at kinks of the distance.
 const HALVINGS: usize = 4;
 
 /// A search along a chord: `bounds` are the parameters between which the slope changes its sign.
@@ -26,7 +26,8 @@ struct ChordSearch<N: Real> {
 }
 
 impl<N: Real> ChordSearch<N> {
-    /// `None` for a chord without length.
+    /// Starts the search. `falls` means that the slope is known to fall at the first end. `None`
+    /// for a chord without length.
     fn new(ends: [Vector<N, 3>; 2], falls: bool) -> Option<Self> {
         let along = ends[1] - ends[0];
         let length = along.norm();
@@ -34,7 +35,8 @@ impl<N: Real> ChordSearch<N> {
         (length > still()).then_some(Self { ends, along, length, bounds, is_known, halvings: 0 })
     }
 
-    /// Returns the parameter of the point nearest to the middle of the solid.
+    /// Returns the parameter of the point of the chord nearest to the origin, the middle of the
+    /// solid.
     fn start(&self) -> N {
         let share = -self.ends[0].dot(&self.along) / (self.length * self.length);
         max(min(share, N::ONE), N::ZERO)
@@ -55,8 +57,8 @@ impl<N: Real> ChordSearch<N> {
         (self.bounds[rises], self.is_known[rises]) = (share, true);
     }
 
-    /// Returns the parameter to try next: `target` if between the bounds, else the bound on its
-    /// side unless that is known.
+    /// Returns the parameter to try next: `target` if it is between the bounds, else the bound on
+    /// its side. `None` if the slope at that bound is already known.
     fn admitted(&self, target: N) -> Option<N> {
         let [low, high] = self.bounds;
         if target > low && target < high {
@@ -75,8 +77,9 @@ impl<N: Real> ChordSearch<N> {
 }
 
 impl<N: Real> Profile<N> {
-    /// Returns the nearest place of a chord, and the part of the chord needed for it. `falls` means
-    /// that the distance falls from the first end. `None` if the search does not converge.
+    /// Returns the point of a chord nearest to the solid, with its direction, and the smallest hull
+    /// that contains it: this point or the chord. `falls` means that the distance falls from the
+    /// first end. `None` if the search does not converge.
     pub(super) fn along(
         &self,
         ends: [Vector<N, 3>; 2],
@@ -108,7 +111,8 @@ impl<N: Real> Profile<N> {
             let next = search.admitted(share + descent.unwrap_or(sign));
             share = match next {
                 Some(next) => next,
-                // Inside, the distance has a kink here.
+                // Inside, the slope changes its sign at a kink of the distance, which Newton's
+                // method cannot find.
                 None if projected.distance < N::ZERO => return None,
                 None => {
                     let to_rim = projected.step_to_rim(self, &search.along);

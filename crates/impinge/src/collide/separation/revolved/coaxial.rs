@@ -1,9 +1,10 @@
 //! Depth of two solids of revolution about nearly the same axis, from their outlines.
 //!
-//! The difference of two solids about one axis is a solid about that axis. Its outline in a
-//! half-plane of the axis is the difference of two polygons. So the least depth is along the normal
-//! of a side of one of them; it is the same all around the axis, where a search over directions has
-//! no gradient. If the axes differ slightly, the best direction is near the ring of such a normal.
+//! The Minkowski difference of two solids about one axis is a solid about that axis. Its outline in
+//! a half-plane of the axis is the difference of two polygons. So the least depth is along the
+//! normal of a side of one of them. It is equal all around the axis, where a search over directions
+//! has no gradient. If the axes differ slightly, the best direction is near the ring of such a
+//! normal.
 //!
 //! ```text
 //!       axis |____ corners[0] (x, y)       x: distance from the axis, y: along it
@@ -27,10 +28,11 @@ use crate::shape::{Geometry, Kind};
 /// Two solids, in units of the pair, count as coaxial if their distance from a common axis is at
 /// most this: 2⁻¹².
 const NEAR: f64 = 1.0 / 4096.0;
-/// Normals of rings whose difference is less than this are searched together.
+/// Ring normals that differ by at most this belong to one ring.
 const SAME_RING: f64 = 1.0 / 16.0;
 
-/// Returns the separation of two cylinders or cones by the general algorithm.
+/// Returns the separation of two cylinders or cones by the general algorithm, with the known
+/// normals of overlapping coaxial solids.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -45,7 +47,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     found.filter(|found| found.distance <= limit)
 }
 
-/// Two solids whose possible normals of an overlap are known if they are coaxial.
+/// Source of the overlap normals of two solids, which are known if the solids are coaxial.
 struct CoaxialPeaks<'a, 'b, N: Real> {
     pair: &'b Pair<'a, N, 3>,
 }
@@ -58,7 +60,7 @@ impl<N: Real> Peaks<N, 3> for CoaxialPeaks<'_, '_, N> {
 
 /// Returns the normal of least depth for the overlapping cores of two coaxial solids, each a
 /// segment, capsule, cylinder or cone. `None` for other kinds, and unless the axes nearly coincide.
-/// `shrink` is the factor from lengths to units of the pair.
+/// `shrink` is the factor from lengths of the shapes to units of the pair.
 pub(in crate::collide::separation) fn peak<N: Real>(
     pair: &Pair<'_, N, 3>,
     shrink: N,
@@ -160,7 +162,7 @@ struct Coaxial<N: Real> {
 }
 
 impl<N: Real> Coaxial<N> {
-    /// Turns the second axis into the direction of the first; `None` unless the solids are nearly
+    /// Flips the second axis into the direction of the first; `None` unless the solids are nearly
     /// coaxial.
     fn new(first: AxialOutline<N>, mut second: AxialOutline<N>) -> Option<Self> {
         if first.axis.dot(&second.axis) < N::ZERO {
@@ -184,7 +186,8 @@ impl<N: Real> Coaxial<N> {
         beside.map_or_else(|| perpendicular_to(&self.first.axis), |(aside, _)| aside)
     }
 
-    /// Returns the exit along the normal of a side, which is given in the half-plane of its solid.
+    /// Returns the exit along the normal of a side; `normal` is in the half-plane of the solid
+    /// `whose`.
     fn direction(
         &self,
         normal: Vector<N, 2>,
@@ -260,7 +263,8 @@ mod tests {
         }
     }
 
-    /// Coaxial solids up to an offset and a tilt of this size, the second either way up.
+    /// Compares with the general algorithm for solids that are coaxial up to an offset and a tilt
+    /// of size `slight`, the second solid upright or upside down.
     fn compare<N: Real>(seed: u64, slight: f64, accuracy: f64) {
         let random = &mut Random(seed);
         for round in 0..200 {

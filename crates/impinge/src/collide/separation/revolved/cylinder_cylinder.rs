@@ -1,12 +1,13 @@
 //! Cylinder against cylinder.
 //!
-//! Tries the directions that can be the normal, each with a cheap proof: normals of caps; the
-//! common perpendicular of both axes; from an axis to the other rim; from rim to rim. If the solids
-//! are apart, the proof is two points as far apart as a pair of supporting planes. If they overlap,
-//! the proof is a ball: if it is centred at a point of one solid and lies within the other, no
-//! separating translation is shorter than its radius. A cap or a side that extends at least as far
-//! beside the point as the depth there contains such a ball. Other cases, such as two overlapping
-//! rims, fall back to the general algorithm.
+//! Tries the directions that can be the normal, each with a cheap proof: normals of caps, the
+//! common perpendicular of both axes, from an axis to the other rim, and from rim to rim. If the
+//! solids are apart, the proof is two points as far apart as a pair of supporting planes. If they
+//! overlap, the proof is a ball: if it is centred at a point of one solid and lies within the
+//! other, no separating translation is shorter than its radius. A point below a cap is the centre
+//! of such a ball if its distance from the side is at least its depth; for a side, the distance
+//! from the caps counts. Other cases, such as two overlapping rims, fall back to the general
+//! algorithm.
 
 use super::coaxial;
 use crate::collide::Pair;
@@ -22,7 +23,7 @@ const STEPS: usize = 10;
 
 /// Returns the separation of two cylinders.
 ///
-/// Ties: caps come before sides, and the first solid before the second.
+/// In a tie, caps come before sides, and the first solid comes before the second.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -42,7 +43,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     }
 }
 
-/// Result of the search.
+/// Result of the search for the separation of two solids.
 pub(in crate::collide::separation) enum RevolvedResult<N: Real> {
     /// The solids are farther apart than the limit.
     Beyond,
@@ -68,7 +69,7 @@ impl<N: Real> RevolvedResult<N> {
     }
 
     /// Returns the separation in the frame of the first solid and in the caller's unit of length.
-    /// An inner `None` means beyond the limit, an outer one undecided.
+    /// An inner `None` is a pair beyond the limit; an outer `None` is an undecided pair.
     pub(in crate::collide::separation) fn answer(
         &self,
         units: &Units<N>,
@@ -106,14 +107,14 @@ impl<N: Real> RevolvedFound<N> {
     }
 }
 
-/// Half height and radius.
+/// Half height and radius of a cylinder, in units of the pair.
 #[derive(Clone, Copy)]
 struct Size<N> {
     half: N,
     radius: N,
 }
 
-/// A cylinder about the y axis, and the other one in its frame.
+/// A cylinder about the y axis, and the other cylinder in its frame, in units of the pair.
 struct CylinderView<N: Real> {
     own: Size<N>,
     other: Size<N>,
@@ -208,8 +209,8 @@ impl<N: Real> CylinderView<N> {
         if sine * self.other.radius <= rounding_error() {
             return self.over_disk(&(self.center + end));
         }
-        // Direction down along the other cap: the normal minus its axial part, computed without a
-        // difference.
+        // Vector down along the other cap: minus the component of the normal perpendicular to the
+        // other axis, scaled to the radius and computed without a difference.
         let aside = radial(&self.axis) * (cosine / sine * self.other.radius);
         let down = lifted(&aside) - normal * (sine * self.other.radius);
         if cosine.abs() * self.other.half <= rounding_error() {
@@ -230,7 +231,7 @@ impl<N: Real> CylinderView<N> {
             max(distance - self.other.radius, -self.own.radius),
             min(distance + self.other.radius, self.own.radius),
         );
-        // If the disks do not overlap, this is the nearest point of the other one.
+        // If the disks do not overlap, this is the nearest point of the other disk.
         let at = if low > high { low } else { (low + high) * N::HALF };
         middle + lifted(&away) * (at - distance)
     }
@@ -302,9 +303,9 @@ impl<N: Real> CylinderView<N> {
         None
     }
 
-    /// Returns the lowest point of the other solid along a direction away from the axis, and its
-    /// derivative as the direction turns; `None` for a tilted side, whose lowest point is not
-    /// unique.
+    /// Returns the lowest point of the other solid along a direction away from the axis, and the
+    /// derivative of this point as the direction rotates; `None` for a tilted side, whose lowest
+    /// point is not unique.
     fn lowest_beside(&self, normal: &Vector<N, 2>) -> Option<(Vector<N, 3>, N)> {
         let (out, across) = (lifted(normal), lifted(&Vector::<N, 2>::new(-normal.y, normal.x)));
         let (axial, turn) = (self.axis.dot(&out), self.axis.dot(&across));
@@ -362,8 +363,8 @@ impl<N: Real> CylinderView<N> {
         None
     }
 
-    /// Returns the point of a rim that is farthest along a direction: of this solid's rim if
-    /// `is_own`, else of the other's.
+    /// Returns the point of a rim that is farthest along a direction: on this solid's rim if
+    /// `is_own`, else on the other solid's.
     fn rim(&self, direction: &Vector<N, 3>, is_own: bool) -> Option<Rim<N>> {
         let (size, center, axis) = if is_own {
             (self.own, Vector::<N, 3>::zeros(), Vector::<N, 3>::y())
@@ -380,7 +381,7 @@ impl<N: Real> CylinderView<N> {
 }
 
 /// A point of a rim, the tangent there, and the derivative of the point along the tangent as the
-/// direction turns.
+/// direction rotates.
 struct Rim<N: Real> {
     point: Vector<N, 3>,
     along: Vector<N, 3>,

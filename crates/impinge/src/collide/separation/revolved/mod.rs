@@ -9,17 +9,17 @@
 //! ```text
 //!      point *--------* low      low: lowest vertex of the flat solid along `outward`; if it is
 //!            |                   not lower than `point`, both solids have a plane there
-//!    nearest *  ^ outward        outward: unit, out of the round solid; level: its extent along it
-//!        .-------.
+//!    nearest *  ^ outward        outward: unit, out of the round solid; extent: the round solid's
+//!        .-------.               along `outward`
 //!        | round |               frame: of the round solid, axis y; units of the pair
 //! ```
 //!
-//! An answer is accepted only if its direction is a supporting plane of both solids and its two
-//! points lie across from each other along it. If the solids are apart that is all. If a point of
-//! the flat solid is inside the round one, the ball around it with its depth as radius is inside
-//! too, so no way out is shorter. If a point of the round solid is below a face, the ball around it
-//! must be inside the flat one. Cases without such a proof, above all an edge across a rim, go to
-//! the arcs of [`ridges`].
+//! A result is accepted only if its direction is the normal of a supporting plane of both solids
+//! and its two points face each other along it. If the solids are apart, this suffices. If a point
+//! of the flat solid is inside the round one, the ball around it with its depth as radius is inside
+//! too, so no separating translation is shorter. If a point of the round solid is below a face, the
+//! ball around it must be inside the flat solid. Cases without such a proof, mostly an edge across
+//! a rim, fall back to the arcs of [`ridges`].
 
 mod chord;
 pub(super) mod coaxial;
@@ -42,7 +42,7 @@ use crate::convex::{Separation, Units};
 use crate::math::{Pose, Real, Vector, cross, unit};
 use crate::shape::{Geometry, SupportMap};
 
-/// Cap on the number of vertices added.
+/// Cap on the number of vertices added in one search.
 const ROUNDS: usize = 12;
 
 /// Smallest sine of the angle between two directions whose common perpendicular is used.
@@ -73,8 +73,8 @@ pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     }
 }
 
-/// Returns the separation if the search decides. An inner `None` means beyond `limit`, an outer one
-/// undecided.
+/// Returns the separation if the search decides. An inner `None` is a pair beyond `limit`; an outer
+/// `None` is an undecided pair.
 fn attempt<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Option<Separation<N, 3>>> {
     let (first, second) = (Geometry(pair.first), Geometry(pair.second));
     let (Some(map1), Some(map2)) = (first.as_support_map(), second.as_support_map()) else {
@@ -102,7 +102,7 @@ fn attempt<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Option<Separation
     Some(rounded.filter(|found| found.distance <= limit))
 }
 
-/// Wraps a separation in the frame of the second solid; `None` gives `Undecided`.
+/// Converts a separation in the frame of the second solid to a result; `None` gives `Undecided`.
 fn in_second_frame<N: Real>(found: Option<RevolvedFound<N>>) -> RevolvedResult<N> {
     found.map_or(RevolvedResult::Undecided, |found| RevolvedResult::Found(found, true))
 }
@@ -133,7 +133,7 @@ struct DirectedPoint<N: Real> {
     extent: N,
 }
 
-/// Points of the flat solid whose hull contains the nearest point, as few as possible.
+/// The fewest points of the flat solid whose hull contains the nearest point.
 #[derive(Clone, Copy)]
 enum NearestHull<N: Real> {
     Point(Vector<N, 3>),
@@ -161,7 +161,8 @@ impl<N: Real> RevolvedPair<'_, N> {
         in_second_frame(self.by_face())
     }
 
-    /// Transforms a point of the flat solid from its own frame and units.
+    /// Transforms a point of the flat solid to the frame of the round solid and to units of the
+    /// pair.
     fn placed(&self, point: &Vector<N, 3>) -> Vector<N, 3> {
         self.pose12.rotation.tr_mul(&(point * self.shrink - self.shift))
     }
@@ -206,7 +207,7 @@ impl<N: Real> RevolvedPair<'_, N> {
             if unit_across.dot(&directed.outward) < N::ZERO { -unit_across } else { unit_across };
         let mut nearest = self.profile.round.support(&outward);
         let extent = outward.dot(&nearest);
-        // On a cap or a line the support point is not unique; use the one known to be near.
+        // On a cap or a line the support point is not unique; use the point known to be near.
         if outward.dot(&directed.nearest) >= extent - rounding_error() {
             nearest = directed.nearest;
         }
@@ -257,9 +258,9 @@ impl<N: Real> RevolvedPair<'_, N> {
 }
 
 impl<N: Real> DirectedPoint<N> {
-    /// Takes the direction of a view. If the nearest point is a corner, that direction may not be
-    /// one along which the corner is farthest, up to rounding; then `extent` exceeds the corner's
-    /// height.
+    /// Creates the point with the direction of a [`ProfileView`]. If the nearest point is a corner,
+    /// the corner may not be the farthest point along this direction, because of rounding; then
+    /// `extent` exceeds the corner's height.
     fn of(profile: &Profile<N>, projected: &ProfileView<N>) -> Self {
         let extent = profile.extent(&projected.outward);
         Self {
@@ -270,8 +271,8 @@ impl<N: Real> DirectedPoint<N> {
         }
     }
 
-    /// Takes a view at which the distance is stationary along the unit vector `along`, with a
-    /// direction that is perpendicular to `along` up to rounding.
+    /// Creates the point of a view at which the distance is stationary along the unit vector
+    /// `along`, with a direction that is perpendicular to `along` up to rounding.
     fn across(
         profile: &Profile<N>,
         projected: &ProfileView<N>,
@@ -295,8 +296,8 @@ impl<N: Real> DirectedPoint<N> {
         self.outward.dot(&self.point) - self.extent
     }
 
-    /// Returns the result, given the lowest vertex along the direction: `Beyond`, or, if no vertex
-    /// is lower than the point, the separation or `Undecided`. `None` if a vertex is lower.
+    /// Returns the result for `low`, the lowest vertex along the direction: `Beyond`, or, if no
+    /// vertex is lower than the point, the separation or `Undecided`. `None` if a vertex is lower.
     fn result(&self, low: &Vector<N, 3>, beyond: N) -> Option<RevolvedResult<N>> {
         let height = self.outward.dot(low) - self.extent;
         if height > beyond {

@@ -22,7 +22,7 @@ pub(super) struct Profile<N: Real> {
     pub(super) round: Round<N>,
     /// Unit normal of the side in the half-plane: components away from the axis, and along it.
     pub(super) slant: Vector<N, 2>,
-    /// Length of the side from the rim to the apex.
+    /// Length of the side of a cone from the rim to the apex; unused for a cylinder.
     length: N,
 }
 
@@ -116,8 +116,9 @@ impl<N: Real> Profile<N> {
         self.corner(ProfilePart::Rim, from_rim)
     }
 
-    /// Returns the view's values for a point at `offset` from a corner of the outline. If the
-    /// squared length underflows, the point counts as on the side.
+    /// Returns the nearest part, the distance and the `offset` of the view for a point at `offset`
+    /// from a corner of the outline. If the squared length underflows, the point counts as on the
+    /// side.
     fn corner(&self, part: ProfilePart, offset: Vector<N, 2>) -> (ProfilePart, N, Vector<N, 2>) {
         let length = offset.norm();
         if length > N::ZERO {
@@ -144,8 +145,8 @@ impl<N: Real> ProfileView<N> {
         self.outward.dot(along)
     }
 
-    /// Returns the Newton step along `along` to the point nearest to the rim, whatever part is
-    /// nearest now; for points between the two lines of the outline that meet at the rim.
+    /// Returns the Newton step along `along` to the point nearest to the rim, whichever part is
+    /// nearest now. Used for points between the two lines of the outline that meet at the rim.
     pub(super) fn step_to_rim(&self, profile: &Profile<N>, along: &Vector<N, 3>) -> Option<N> {
         let Round { half, radius, is_cone } = profile.round;
         let end = if is_cone || self.point.y < N::ZERO { -half } else { half };

@@ -1,4 +1,4 @@
-//! Cylinders and cones against each other.
+//! Cylinders and cones against cones.
 //!
 //! The apex or a rim of one solid is tried against the other. Over a rim the distance is a function
 //! of one angle, whose minimum Newton's method finds. The remaining case is side against side; the
@@ -78,8 +78,8 @@ impl<N: Real> RoundView<N> {
         RevolvedResult::Undecided
     }
 
-    /// Returns the apex, or the nearest point of the rim, that contains `low`; `None` if the search
-    /// does not converge.
+    /// Returns the apex if it is `low`, else the nearest point of the rim through `low`; `None` if
+    /// the search does not converge.
     fn at_corner(&self, low: &Vector<N, 3>) -> Option<DirectedPoint<N>> {
         let round = &self.other.round;
         let is_up = self.axis.dot(&(low - self.center)) > N::ZERO;
@@ -123,7 +123,7 @@ impl<N: Real> RoundView<N> {
         None
     }
 
-    /// Tries side against side; `None` without a proof.
+    /// Tries side against side; `None` unless supporting planes or balls prove the result.
     fn sides(&self) -> Option<RevolvedFound<N>> {
         let (cosine, rise1, rise2) = (self.axis.y, self.own.slant.y, self.other.slant.y);
         let squared = self.axis.x * self.axis.x + self.axis.z * self.axis.z;
@@ -151,8 +151,8 @@ impl<N: Real> RoundView<N> {
         (height > N::ZERO || self.is_deepest(&found)).then_some(found)
     }
 
-    /// Returns the points of the lines of both sides that face each other along a direction; `None`
-    /// if there are none.
+    /// Returns the nearest points of the lines in which both sides touch supporting planes with the
+    /// normal `outward`. `None` if a cap touches instead.
     fn between_sides(&self, outward: Vector<N, 3>) -> Option<DirectedPoint<N>> {
         let line = |profile: &Profile<N>, along: &Vector<N, 3>| {
             let ends = profile.round.touched(along, core::iter::empty());

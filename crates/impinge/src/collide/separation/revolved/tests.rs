@@ -1,4 +1,5 @@
-//! Compares distances and depths with the general algorithm; most need no fallback.
+//! Compares distances and depths with the general algorithm; asserts that most pairs need no
+//! fallback.
 
 use super::*;
 use crate::collide::separation as whole;
@@ -24,7 +25,8 @@ fn answers_are_those_of_the_general_algorithm() {
     agree::<f32>(4, 600, 3e-6);
 }
 
-/// Pairs whose sizes are not small, at this distance, or overlapping by as much.
+/// Returns a pair moved to the given signed distance, up to the error of three steps along its
+/// normal.
 fn placed<'a, N: Real>(
     shapes: &'a Solids<N>,
     random: &mut Random,
@@ -40,7 +42,7 @@ fn placed<'a, N: Real>(
     pair
 }
 
-/// Returns how many of a hundred pairs of each two solids are decided.
+/// Returns the number of decided pairs out of 100, the smallest over all combinations of solids.
 fn decided<N: Real>(distance: f64) -> usize {
     let random = &mut Random(7);
     let solids: [(Make<N>, Make<N>); 12] = [

@@ -49,9 +49,9 @@ impl<N: Real> RidgeLine<N> {
 }
 
 /// An arc of at most half a circle, counter-clockwise, and the lines that are highest at its ends.
-/// The two lines are equal if one point is highest at both ends; otherwise each is the lower one at
-/// the other's end, so that they cross. An arc may have no length: if a bound is attained at an
-/// end, one of the two halves has none.
+/// The two lines are equal if one point is highest at both ends; otherwise each line is lower at
+/// the end of the other line, so that they cross. An arc may have no length: if a bound is attained
+/// at an end, one of the two halves has none.
 #[derive(Clone, Copy)]
 pub(super) struct Arc<N: Real> {
     pub(super) ends: [Vector<N, 2>; 2],
@@ -127,11 +127,11 @@ impl<N: Real> Arc<N> {
 /// highest at the first end, the second at the second end, both are at least `least` there, and
 /// neither point has a positive `base`.
 ///
-/// A direction of the arc is a mix of the ends divided by the mix's length, which is at most 1.
-/// With no positive `base`, a height of at least `least` at the mix is no less at the direction. So
-/// if some mix of the points is at least `least` high at every mix of the ends, it is so on the
-/// arc. Whether such a mix of the points exists is decided by the value of a game with a matrix of
-/// two by two heights.
+/// A direction of the arc is a convex combination of the ends divided by its length, which is at
+/// most 1. With no positive `base`, a height of at least `least` at the combination is no less at
+/// the direction. So if some convex combination of the points is at least `least` high at every
+/// combination of the ends, it is so on the arc. Such a combination of the points exists if the
+/// matrix game with the two by two heights has a value of at least `least`.
 pub(super) fn are_above<N: Real>(heights: &[[N; 2]; 2], least: N) -> bool {
     let [first, second] = heights.mapped(|[from, to]| [from - least, to - least]);
     let is_one = first[1] >= N::ZERO || second[0] >= N::ZERO;
@@ -153,7 +153,7 @@ impl<N: Real> ArcSearch<N> {
         Self { least, best: None, gap }
     }
 
-    /// Records the depth along `u`, given the highest line in that direction.
+    /// Records the depth along `u`; `highest` is the highest line in this direction.
     pub(super) fn note(&mut self, u: &Vector<N, 2>, highest: &RidgeLine<N>) {
         let depth = highest.at(u);
         if depth < self.least {

@@ -16,8 +16,8 @@ use crate::collide::separation::hulls::rounding_error;
 use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, cross, orthonormal_basis, unit};
 use crate::shape::{Cuboid, Kind, Polytope, Triangle};
 
-/// Largest number of vertices; larger solids go to the general algorithm, which does not visit all
-/// their features.
+/// Largest number of vertices. Larger solids are passed to the general algorithm, which does not
+/// visit all their features.
 const MAX_VERTICES: usize = 128;
 
 /// An edge: the indices of its ends, and of the ends of the arc of normals along which the edge is
@@ -71,7 +71,8 @@ impl<N: Real> Flat<N> {
         Some(flat)
     }
 
-    /// Returns the index of the vertex that is lowest along a direction, the first of equals.
+    /// Returns the index of the vertex that is lowest along a direction; the first vertex wins a
+    /// tie.
     pub(super) fn lowest(&self, direction: &Vector<N, 3>) -> usize {
         let (mut lowest, mut low) = (0, N::INFINITY);
         for (index, vertex) in self.vertices.iter().enumerate() {

@@ -1,10 +1,10 @@
 //! Depth of a flat-sided solid in a cylinder or a cone, without growing a polytope.
 //!
-//! The depth along a unit vector `m` is the support function of the difference of the cores; the
-//! answer is its minimum. A minimum on a smooth part of the sphere of directions requires that both
-//! radii of curvature of the difference are at least the depth. Vertices of the flat solid have
-//! radii zero, a rim has one only along itself, and an apex has none. So the minimum lies on one of
-//! these:
+//! The depth along a unit vector `m` is the support function of the Minkowski difference of the
+//! cores; the result is its minimum. A minimum on a smooth part of the sphere of directions
+//! requires that both radii of curvature of the difference are at least the depth. Vertices of the
+//! flat solid have radii zero, a rim has a radius only along itself, and an apex has none. So the
+//! minimum lies on one of these:
 //!
 //! ```text
 //!   normals of faces and caps     points on the sphere       tried one by one
@@ -44,7 +44,7 @@ use crate::shape::{Geometry, SupportMap};
 
 /// Returns the separation of a flat-sided solid, segment or capsule from a cylinder or cone.
 ///
-/// If the solids are apart, it has the bits of the general algorithm.
+/// If the solids are apart, it is bit-identical to the general algorithm.
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     let (flat, round) = cores(pair);
     let loosened = general::loosened(&flat, round, &pair.pose12, limit);
@@ -68,7 +68,7 @@ fn cores<'a, N: Real>(pair: &Pair<'a, N, 3>) -> (FlatCore<'a, N, 3>, &'a dyn Sup
     }
 }
 
-/// Two solids whose cores overlap.
+/// Source of the overlap normals of two solids whose cores overlap.
 struct OverlapPeaks<'a, 'b, N: Real> {
     pair: &'b Pair<'a, N, 3>,
 }
@@ -138,8 +138,8 @@ impl<N: Real> DepthSearch<'_, N> {
         if self.search_edges(&ends, gap).is_some() {
             return self.search_side(gap);
         }
-        // Normals around the axis have almost equal depths, so the parts of arcs across them cannot
-        // be told from the best. The search over the side finds the best one directly.
+        // Normals around the axis have almost equal depths, so the bounds of arcs across them do
+        // not exclude most parts. The search over the side finds the best normal directly.
         self.search_side(gap)?;
         self.search_edges(&ends, gap)
     }

@@ -29,7 +29,7 @@ pub(in super::super) struct Round<N: Real> {
 }
 
 impl<N: Real> Round<N> {
-    /// Wraps a cylinder or cone; `None` for other kinds, and for solids of size zero.
+    /// Scales a cylinder or cone; `None` for other kinds, and for solids of size zero.
     pub(in super::super) fn new(kind: &Kind<'_, N, 3>, shrink: N) -> Option<Self> {
         let (half, radius, is_cone) = match kind {
             Kind::Cylinder(cylinder, _) => (cylinder.half_height(), cylinder.radius(), false),
@@ -40,7 +40,7 @@ impl<N: Real> Round<N> {
         (round.half > rounding_error() && round.radius > rounding_error()).then_some(round)
     }
 
-    /// Returns the signs of the caps' positions along the axis.
+    /// Returns the positions of the caps along the axis: 1 for the upper end, -1 for the lower.
     pub(in super::super) fn caps(&self) -> &'static [f64] {
         if self.is_cone { &[-1.0] } else { &[1.0, -1.0] }
     }
@@ -75,8 +75,8 @@ impl<N: Real> Round<N> {
         Slope { aside, along, extent: along * self.half }
     }
 
-    /// Returns points of this solid that are extreme along a direction; some mix of them faces the
-    /// points `below`.
+    /// Returns points of this solid that are extreme along a direction; some convex combination of
+    /// them faces the points `below`.
     pub(in super::super) fn touched<'a>(
         &self,
         direction: &Vector<N, 3>,

@@ -1,4 +1,4 @@
-//! Compares depths with growing a polytope; most are found without.
+//! Compares depths with the general algorithm, which grows a polytope.
 
 use super::*;
 use crate::collide::separation::hulls::tests::Random;
@@ -7,7 +7,7 @@ use crate::math::{Matrix, Point};
 use crate::shape::{Capsule, Cone, ConvexHull, Cuboid, Cylinder, Segment, Shape, Triangle};
 
 pub(in super::super) type Solids<N> = [Box<dyn Shape<N, 3>>; 2];
-/// Makes a solid of a given size.
+/// Function that makes a solid of the given size.
 pub(in super::super) type Make<N> = fn(Vector<N, 3>) -> Box<dyn Shape<N, 3>>;
 
 pub(in super::super) fn segment<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
@@ -28,7 +28,7 @@ pub(in super::super) fn cuboid<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 
     Box::new(Cuboid::new(size))
 }
 
-/// An octahedron hardly thicker than a sheet of paper.
+/// Returns a thin octahedron with a half thickness of 0.002.
 pub(in super::super) fn blade<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
     octahedron(Vector::<N, 3>::new(size.x + N::lit(0.1), N::lit(0.002), size.z + N::lit(0.1)))
 }
@@ -37,7 +37,7 @@ pub(in super::super) fn hull<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>
     octahedron(size.map(|x| x + N::lit(0.1)))
 }
 
-/// An octahedron with displaced corners.
+/// Returns an octahedron with displaced corners.
 fn octahedron<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
     let point = |x: f64, y: f64, z: f64| {
         Point::<N, 3>::new(size.x * N::lit(x), size.y * N::lit(y), size.z * N::lit(z))
@@ -98,7 +98,8 @@ pub(in super::super) fn depth<N: Real>(pair: &Pair<'_, N, 3>, normal: &Vector<N,
     normal.dot(&first.support_point(normal).coords) - normal.dot(&pair.pose12.point(&end).coords)
 }
 
-/// Asserts that no sampled direction has less depth, and that no pair needs growing a polytope.
+/// Asserts that no sampled direction has less depth, and that the arcs decide each overlapping
+/// pair.
 fn none_is_better<N: Real>(accuracy: f64) {
     let random = &mut Random(5);
     let mut deep = 0;
@@ -152,9 +153,9 @@ fn pair_of<'a, N: Real>(shapes: &'a Solids<N>, pose12: Pose<N, 3>) -> Pair<'a, N
     Pair { first, second, pose12 }
 }
 
-/// A segment parallel to two edges of a sheet without thickness on the axis of a cylinder. The
-/// point across from an edge lies along the normal of a side, so the arc is split at its end. The
-/// half without length once contained the opposite normal, and its depth was taken for the sheet's.
+/// Asserts the depth of a thin cylinder in a box without thickness, at several offsets and
+/// rotations. The direction of least depth may lie at the end of an arc of normals. The half of the
+/// split arc without length must not contain the opposite normal.
 fn a_thin_cylinder_in_a_flat_box<N: Real>() {
     let flat_box = Cuboid::new(Vector::<N, 3>::new(N::ZERO, N::lit(0.95), N::lit(0.5)));
     let cylinder = Cylinder::new(N::lit(0.125), N::lit(0.001));
@@ -181,8 +182,9 @@ fn an_arc_without_length_has_no_other_side() {
     a_thin_cylinder_in_a_flat_box::<f32>();
 }
 
-/// A roof bent by less than the root of epsilon, and a cylinder on its ridge, tilted along the
-/// ridge by less still. The least depth is between the normals of the slopes, not at one of a face.
+/// Asserts the depth of a cylinder on the ridge of a roof. The slopes fall by √ε, and the cylinder
+/// is tilted along the ridge by √ε / 6. The least depth is between the normals of the slopes, not
+/// at a face normal.
 fn a_cylinder_on_a_ridge<N: Real>() {
     let (bend, tilt) = (N::EPSILON.sqrt(), N::EPSILON.sqrt() / N::lit(6.0));
     let (zero, one) = (N::ZERO, N::ONE);
@@ -210,8 +212,8 @@ fn a_roof_may_be_hardly_bent() {
     a_cylinder_on_a_ridge::<f64>();
     a_cylinder_on_a_ridge::<f32>();
 }
-/// A small sliver about the axis of a cone. All normals of the side are equally good up to 10⁻⁹, so
-/// arcs across them are split endlessly before the best of them is known.
+/// A thin triangle near the axis of a cone. All normals of the side have equal depths up to 10⁻⁹,
+/// so arcs across them are split too often before the best normal is known.
 #[test]
 fn a_sliver_on_the_axis_of_a_cone() {
     let corner = |x: f64, y: f64, z: f64| Point::<f64, 3>::new(x, y, z);

@@ -1,4 +1,4 @@
-//! Segments and capsules: nearest points of two segments.
+//! Segments and capsules against each other: nearest points and separations.
 
 pub(crate) mod nearest;
 pub(crate) mod segment_lanes;

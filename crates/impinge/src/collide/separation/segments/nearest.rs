@@ -22,7 +22,7 @@ pub(in crate::collide) fn core<N: Real, const D: usize>(
 /// Returns the point of a segment nearest to `point`, and whether it lies strictly between the
 /// ends.
 ///
-/// It is computed from the nearer end, so that long segments lose no digits.
+/// It is computed from the nearer end, which keeps the rounding error small on long segments.
 #[inline]
 pub(in crate::collide::separation) fn nearest_on_segment<N: Real, const D: usize>(
     ends: &[Point<N, D>; 2],
@@ -68,8 +68,8 @@ pub(in crate::collide::separation) fn nearest_of_segments<N: Real>(
 /// Points where the common perpendicular of two lines meets both segments.
 struct Perpendicular<N: Real> {
     points: (Point<N, 3>, Point<N, 3>),
-    /// Whether both points are so far from all ends that no end can be as near, whatever the
-    /// rounding.
+    /// Whether both points are so far from all ends that no end can be as near, even with rounding
+    /// errors.
     is_well_inside: bool,
 }
 
@@ -97,8 +97,9 @@ pub(in crate::collide::separation) fn nearest_of_ends<N: Real, const D: usize>(
 /// Returns the feet of the common perpendicular of two lines; `None` for parallel lines, and unless
 /// both feet lie on the segments.
 ///
-/// The solution by cross products is wrong by rounding over the sine of the angle between the
-/// lines. Two Newton steps from the residual each multiply the error by the same factor.
+/// The solution by cross products has an error of about the rounding error divided by the sine of
+/// the angle between the lines. Two Newton steps from the residual each reduce the error by the
+/// same factor.
 fn common_perpendicular<N: Real>(
     ends1: &[Point<N, 3>; 2],
     ends2: &[Point<N, 3>; 2],

@@ -1,7 +1,8 @@
-//! Segments in lanes: the nearest point of each to a point, and in 2D the separation of two.
+//! Segments, several at a time: the nearest point of each to a point, and in 2D the separation of
+//! two.
 //!
-//! A lone pair in 2D runs the same source, so queries and manifolds of two segments have the same
-//! bits.
+//! A single pair in 2D runs the same code, so queries and manifolds of two segments are
+//! bit-identical.
 //!
 //! ```text
 //!    first *--------+------* last     from_first = (point - first) · along
@@ -18,17 +19,17 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Point, Real, Wide};
 use crate::shape::Kind;
 
-/// Nearest point of a segment to a given point.
+/// Nearest point of a segment to another point.
 pub(crate) struct Nearest<V, M, const D: usize> {
     pub(crate) point: [V; D],
     /// Lanes where the nearest point lies between the ends.
     pub(crate) is_inside: M,
     /// Vector from the first end to the last.
     pub(crate) along: [V; D],
-    /// Coordinate of the given point along `along`, measured from the first end, times the length
+    /// Coordinate of the other point along `along`, measured from the first end, times the length
     /// of the segment.
     pub(crate) from_first: V,
-    /// Coordinate of the given point against `along`, measured from the last end, times the length
+    /// Coordinate of the other point against `along`, measured from the last end, times the length
     /// of the segment.
     pub(crate) to_last: V,
 }
@@ -124,12 +125,12 @@ impl<V, M> EndAndSide<V, M> {
 }
 
 impl<V, M> SegmentGap<V, M> {
-    /// Returns the separation of two segments given by their ends.
+    /// Returns the separation of two segments, from their ends.
     ///
     /// Segments that do not cross are nearest at an end of one of them. If the nearest point of the
     /// other segment lies between its ends, the normal is perpendicular to that segment, which is
     /// accurate at any distance. Such a pair of points is preferred to others that are as near up
-    /// to rounding; otherwise the first of equals is taken.
+    /// to rounding; otherwise the first pair wins a tie.
     #[inline(always)]
     pub(crate) fn of<S: Simd, N: Real>(simd: S, ends: [&[[V; 2]; 2]; 2]) -> Self
     where

@@ -10,8 +10,8 @@ use crate::math::{Mapped, Point, Real, Vector, cross, max, unit};
 
 /// Returns the separation of two segments or capsules in 3D.
 ///
-/// The normal of crossing cores, whose distance is zero, is their common perpendicular; of cores on
-/// one line a fixed perpendicular of the line; of two coinciding points the first axis.
+/// Crossing cores have distance zero, and their common perpendicular is the normal. Cores on one
+/// line get a fixed perpendicular of the line; two coinciding points get the first axis.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -51,8 +51,8 @@ pub(in crate::collide::separation) fn distance<N: Real>(pair: &Pair<'_, N, 3>) -
 ///
 /// In exact arithmetic it is the direction between the nearest points. If these are close to each
 /// other, that direction is mostly rounding error, and a direction computed from the segments
-/// themselves leaves a larger gap. Of the candidates, the one with the largest gap is returned; of
-/// equal gaps, up to rounding, the first.
+/// themselves has a larger gap. The candidate with the largest gap is returned; among gaps that are
+/// equal up to rounding, the first candidate wins.
 fn best_normal<N: Real>(
     ends1: &[Point<N, 3>; 2],
     ends2: &[Point<N, 3>; 2],
@@ -84,8 +84,8 @@ fn best_normal<N: Real>(
     widest.best.map_or_else(first_axis, |(_, normal)| normal)
 }
 
-/// Search for the normal with the largest gap between two segments; of equals, up to
-/// `rounding_error`, the first.
+/// Search for the normal with the largest gap between two segments; the first of several normals
+/// whose gaps differ by at most `rounding_error`.
 struct Widest<'a, N: Real> {
     ends1: &'a [Point<N, 3>; 2],
     ends2: &'a [Point<N, 3>; 2],
@@ -96,7 +96,7 @@ struct Widest<'a, N: Real> {
 }
 
 impl<N: Real> Widest<'_, N> {
-    /// Takes a normal if its gap is larger than the largest so far by more than `rounding_error`.
+    /// Replaces the best normal if the gap of `normal` is larger by more than `rounding_error`.
     fn consider(&mut self, normal: Option<Vector<N, 3>>) {
         let Some(normal) = normal else { return };
         let gap = gap_along(&normal, self.ends1, self.ends2);

@@ -1,13 +1,13 @@
 //! Separating axes of 8 triangles and one convex polyhedron.
 //!
 //! Two polyhedra overlap iff no normal of a face and no direction perpendicular to an edge of each
-//! separates them; if they do overlap, the one of these with the least overlap is the shortest way
-//! out (Gottschalk, Lin and Manocha, "`OBBTree`", 1996). An edge of the solid and a side of the
-//! triangle matter only if the edge is the solid's highest along the direction and the side the
-//! triangle's lowest. This is so where the side climbs over the plane of one face beside the edge
-//! and sinks below the plane of the other, and the triangle lies on the outer side (Gregorius, "The
-//! Separating Axis Test between Convex Polyhedra", GDC 2013, prunes pairs of edges by their arcs of
-//! normals).
+//! separates them. If they overlap, the shortest separating translation is along the direction with
+//! the least overlap (Gottschalk, Lin and Manocha, "`OBBTree`", 1996). An edge of the solid and a
+//! side of the triangle matter only if the edge is the solid's highest along the direction and the
+//! side the triangle's lowest. This holds if the side rises above the plane of one face beside the
+//! edge and sinks below the plane of the other, and the triangle lies on the outer side (Gregorius,
+//! "The Separating Axis Test between Convex Polyhedra", GDC 2013, prunes pairs of edges by their
+//! arcs of normals).
 //!
 //! ```text
 //!   feature  0                        the triangle's own normal
@@ -27,16 +27,16 @@ use crate::math::lanes::{
 use crate::math::simd::{Run, Simd, SimdMask};
 use crate::math::{Mapped, Matrix, Real, Wide, max, max_component};
 
-/// Two edges count as parallel if the sine of their angle is below this many epsilon.
+/// Sine of the angle below which two edges count as parallel, in units of epsilon.
 const PARALLEL: f64 = 16.0;
-/// Most faces of a [`Polyhedral`], set by its blocks of planes.
+/// Largest number of faces of a [`Polyhedral`], set by its blocks of planes.
 const MAX_FACES: usize = PLANE_BLOCKS * LANES;
 
-/// For each of 8 triangles the direction that leaves the largest gap to the solid.
+/// Direction with the largest gap to the solid, for each of 8 triangles.
 pub(super) struct TriangleAxes<N> {
-    /// Bit of each triangle that is beyond the limit by more than rounding.
+    /// Bits of the triangles that are beyond the limit by more than rounding.
     pub(super) beyond: u8,
-    /// Bit of each triangle that is not thin, and whose gap along `normals` is confirmed by all
+    /// Bits of the triangles that are not thin, and whose gaps along `normals` are confirmed by all
     /// vertices.
     pub(super) known: u8,
     /// Unit of length of each pair, a power of two: in this unit neither the triangle, nor the
@@ -54,7 +54,7 @@ pub(super) struct TriangleAxes<N> {
     pub(super) features: [N; LANES],
 }
 
-/// The features that a direction is perpendicular to.
+/// Features that a direction is perpendicular to.
 pub(super) enum AxisFeature {
     /// The triangle's own normal.
     Triangle,
@@ -100,8 +100,8 @@ impl<N: Real> TriangleQuery<'_, N> {
         in_lanes!(run, simd => self.axes_in_lanes::<_, N::Lanes<_>>(simd, tiles))
     }
 
-    /// Chooses the triangle's own normal, unless a face of the solid leaves a gap that is larger by
-    /// more than rounding, or a pair of edges one that is larger by more than rounding than both.
+    /// Chooses the triangle's own normal, unless a face of the solid has a gap larger by more than
+    /// rounding, or a pair of edges has a gap larger than both by more than rounding.
     #[inline(always)]
     fn axes_in_lanes<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -133,7 +133,8 @@ impl<N: Real> TriangleQuery<'_, N> {
             return packet.stored(&face, beyond, none);
         }
         let best = packet.query_edges(&climbs, &directions, wanted, face);
-        // For a short edge, its two faces alone may claim a gap that other vertices do not leave.
+        // Other vertices may reduce the gap of a pair with a short edge, which was tested by its
+        // two faces only.
         let [_, gap] = packet.gaps_along(&best.normal);
         let known = is_wide & gap.simd_gt(best.gap - V::all(simd, N::lit(4.0) * rounding_error()));
         packet.stored(&best, beyond | (packet.is_beyond(best.gap) & known), known)
@@ -150,7 +151,7 @@ struct TriangleAxis<V> {
 }
 
 impl<V> TriangleAxis<V> {
-    /// Selects `other` in the lanes of `is_other`.
+    /// Selects `other` in the lanes of `is_other`, else `self`.
     #[inline(always)]
     fn or<S: Simd>(&self, is_other: V::Mask, other: &Self) -> Self
     where
@@ -185,7 +186,7 @@ struct PlacedPacket<'a, S, N: Real, V> {
     shrinks: [N; LANES],
     scale: V,
     shrink: V,
-    /// The limit plus rounding, in lengths of the caller.
+    /// The limit plus rounding, in the caller's unit of length.
     beyond: V,
 }
 
@@ -247,8 +248,8 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         axes
     }
 
-    /// Computes the directions from the sides as given: the distance between the origins costs no
-    /// digits then.
+    /// Computes the directions from the sides before they are translated, so that the distance of
+    /// the origins adds no rounding error.
     #[inline(always)]
     fn directions(&self, turn: &Matrix<N, 3>) -> Directions<V, V::Mask> {
         let (simd, [a, b, c], shrink) = (self.simd, &self.given, self.shrink);
@@ -284,8 +285,8 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         [low - top * self.shrink, bottom * self.shrink - high]
     }
 
-    /// Queries the face directions of the solid; `climbs` records which sides climb over each
-    /// plane.
+    /// Queries the face directions of the solid; `climbs` records which sides rise along each face
+    /// normal.
     #[inline(always)]
     fn query_faces(&self, climbs: &mut [[V::Mask; 3]; MAX_FACES]) -> TriangleAxis<V> {
         let (simd, zero) = (self.simd, V::all(self.simd, N::ZERO));
@@ -307,7 +308,7 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
     }
 
     /// Queries the directions perpendicular to an edge of the solid and a side of a triangle;
-    /// returns those that leave larger gaps than `face`, else `face`.
+    /// returns those with larger gaps than `face`, else `face`.
     #[inline(always)]
     fn query_edges(
         &self,
@@ -325,9 +326,9 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
             let [from, to] = edge.vertices.mapped(|end| self.solid.vertex(end as usize));
             let along = times(&spread(simd, &(to - from)), self.shrink);
             let start = times(&spread(simd, &from), self.shrink);
-            // The edge runs around its first face, so its product with a side that climbs over that
-            // face points out of the solid. The triangle lies beyond the side if the edge runs
-            // forward.
+            // The edge runs counter-clockwise around its first face, so its product with a side
+            // that rises along the normal of that face points out of the solid. The triangle lies
+            // beyond the side if the edge runs forward.
             let is_forward = dot(&directions.front, &along).simd_ge(zero);
             let least = V::all(simd, sine * sine) * dot(&along, &along);
             for side in 0..3 {
@@ -342,10 +343,11 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
                 let slack = dot(&across, &minus(&self.corners[side], &start));
                 let squared = dot(&across, &across);
                 let length = squared.sqrt();
-                // Parallel edges have no perpendicular; faces separate the two as much.
+                // Parallel edges have no common perpendicular; a face normal then has a gap as
+                // large.
                 let is_more = is_candidate & squared.simd_gt(least) & slack.simd_gt(bound * length);
-                // Divisions cost more than all the rest, and few directions improve on the best so
-                // far.
+                // Divisions cost more than all other steps, and few directions improve on the best
+                // so far.
                 if is_more.to_bitmask() == 0 {
                     continue;
                 }

@@ -1,11 +1,12 @@
-//! Triangles against a ball: finds the near ones, 8 at a time, and those hidden by a neighbour.
+//! Triangles against a ball: finds the near triangles, 8 at a time, and those that a neighbour
+//! hides.
 //!
 //! A contact at a corner or edge belongs to the whole surface only if no triangle there extends
 //! along its normal: no direction into such a triangle has a positive component
 //! (`shape/surface/seam.rs`). If one of these triangles is nearer to the centre of the ball than
 //! the corner or edge, the direction to its nearest point has such a component. So distances alone
-//! give the result of the rule for normals, and of all triangles around a point where a ball rests,
-//! only one is left. Close cases stay undecided.
+//! give the result of the rule for normals. Of all triangles around the point where a ball rests,
+//! only one remains. Close cases stay undecided.
 //!
 //! ```text
 //!           o  centre           kind 0, 1, 2: nearest on the side that starts at corner 0, 1, 2
@@ -25,8 +26,8 @@ use crate::math::{Point, Real, Vector, Wide, filled, max_component, min};
 /// A triangle is thin if the squared ratio of its height to its longest side is at most this.
 const TALL: f64 = 1.0 / 1000.0;
 /// Squared distances count as different if they differ by more than this many epsilons of all
-/// squared lengths. A nearest feature is certain if the centre would have to move by the root of
-/// that to change it.
+/// squared lengths. A nearest feature is certain if the centre is farther from the border of its
+/// Voronoi region than the root of this difference.
 const CLEAR: f64 = 64.0;
 /// Kinds of corners start at this number, after the kinds of sides.
 const CORNER: f64 = 3.0;
@@ -34,8 +35,7 @@ const CORNER: f64 = 3.0;
 const ROUNDING: f64 = 128.0;
 /// Heights up to this many epsilons of all coordinates count as rounding.
 const HEIGHT: f64 = 64.0;
-/// Largest distance, in near packets before and after its own, in which neighbours of a triangle
-/// are searched.
+/// Number of near packets before and after a triangle's own in which its neighbours are searched.
 const MAX_APART: usize = 8;
 
 /// A ball among triangles.
@@ -58,7 +58,7 @@ pub(crate) struct CandidateTriangles<N> {
     /// Lower bound of the distance from the centre to the triangles in the box; zero if unknown.
     pub(crate) from_middle: N,
     /// One entry for each packet with near triangles, in ascending order: its index, the bits of
-    /// the triangles within the limit, and the bits of the hidden ones among them.
+    /// the triangles within the limit, and the bits of the hidden triangles among them.
     pub(crate) masks: SmallVec<[(usize, [u8; 2]); 8]>,
     /// Lower bound of the squared distances of all hidden triangles; infinite if none is hidden.
     pub(crate) hidden_from: N,
@@ -72,7 +72,7 @@ pub(crate) fn candidate_triangles<N: Real>(
     at(Level::new(), question, has_seams)
 }
 
-/// Runs the search with the vectors of an instruction set; the result does not depend on it.
+/// Runs the search with the instruction set `level`, on which the result does not depend.
 fn at<N: Real>(
     level: Level,
     question: &BallQuestion<'_, N>,
@@ -125,7 +125,7 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     candidates
 }
 
-/// Returns the bits of those of 8 triangles whose boxes overlap the box of the question.
+/// Returns the lanes of those of 8 triangles whose boxes overlap the box of the question.
 #[inline(always)]
 fn are_within<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -277,7 +277,7 @@ impl<V> TrianglePacket<V> {
         let low = dot(nearest, a).smaller(dot(nearest, b)).smaller(dot(nearest, c));
         let slack = V::all(simd, N::lit(ROUNDING) * N::EPSILON) * size;
         let bound = low / length - slack;
-        // False for NaN, and for values that have lost digits by underflow.
+        // False for NaN, and for values that are inexact because of underflow.
         let is_bound = bound.simd_gt(slack)
             & low.simd_gt(V::all(simd, N::MIN_POSITIVE / N::EPSILON))
             & size.simd_lt(V::all(simd, N::MAX.sqrt()));
@@ -285,7 +285,7 @@ impl<V> TrianglePacket<V> {
     }
 
     /// Returns the lanes whose triangles are neither thin nor small relative to their distance from
-    /// the origin.
+    /// the origin, and whose areas are far from underflow and overflow.
     #[inline(always)]
     fn is_tall<S: Simd, N: Real>(&self, simd: S, size: V, clear: V, away: N) -> V::Mask
     where
@@ -311,7 +311,8 @@ impl<V> TrianglePacket<V> {
         let root = [self.squares[0].sqrt(), self.squares[1].sqrt(), self.squares[2].sqrt()];
         let past = [self.along[0] / root[0], self.along[1] / root[1], self.along[2] / root[2]];
         let left = [root[0] - past[0], root[1] - past[1], root[2] - past[2]];
-        // Distances outside of the sides, from the barycentric coordinate of the opposite corner.
+        // Distances of the centre's projection outside the sides, from the barycentric coordinates
+        // of the opposite corners.
         let outside = [
             -self.shares[2] / (area * root[0]),
             -self.shares[0] / (area * root[1]),
@@ -404,7 +405,7 @@ mod tests {
     use super::*;
     use crate::collide::separation::hulls::tests::Random;
 
-    /// Two rows of triangles with shared corners, around a ball near the origin.
+    /// Returns two rows of triangles with shared corners, around a ball near the origin.
     fn strip<N: Real>(random: &mut Random) -> Vec<PartPacket<N, 3>> {
         let mut points: Vec<Point<N, 3>> = Vec::new();
         for at in 0..12_u32 {

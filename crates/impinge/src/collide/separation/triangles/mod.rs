@@ -15,8 +15,8 @@
 //!                                                      the visitor counts on over all packets
 //! ```
 //!
-//! Layout of both: [`PartPacket`] of `collide/packet.rs`. Caller: `collide/mesh/faces.rs`; balls
-//! `collide/mesh/ball.rs`.
+//! Both are [`PartPacket`]s of `collide/packet.rs`. Callers: `collide/mesh/faces.rs`, and
+//! `collide/mesh/ball.rs` for balls.
 
 mod axes;
 mod ball;
@@ -41,10 +41,10 @@ const MIN_SINE: f64 = 1.0 / 1024.0;
 const TALL: f64 = 1.0 / 32.0;
 /// One corner is nearest if the others are farther by this many rounding errors.
 const CLEAR: f64 = 64.0;
-/// Smallest length of a side, in rounding errors, that decides.
+/// Smallest length of a side of a plain case, in rounding errors.
 const LONG: f64 = 8192.0;
 
-/// Returns the rounding error of arithmetic on numbers of size 2.
+/// Returns the rounding error of arithmetic on numbers up to 2.
 fn rounding_error<N: Real>() -> N {
     N::lit(16.0) * N::EPSILON
 }
@@ -54,7 +54,7 @@ pub(crate) struct TiledTriangles<'a, N: Real> {
     pub(crate) tiles: &'a [PartPacket<N, 3>],
     /// For each packet the bits of the selected triangles.
     pub(crate) masks: &'a [u8],
-    /// Origin that the triangles are translated to.
+    /// Point that becomes the origin of the triangles.
     pub(crate) origin: Vector<N, 3>,
 }
 
@@ -86,7 +86,7 @@ impl<N: Real> TiledTriangles<'_, N> {
 /// Visits the triangles that are not certainly farther than `limit` from a solid, with the gap if
 /// the case is plain. `pose12` is the pose of the solid in the frame of the triangles, relative to
 /// their origin. Returns `false`, without a visit, for solids without a kernel here. `limit` is
-/// `prediction` plus the distance that turning adds.
+/// `prediction` plus the distance that rotations may add.
 pub(crate) fn gaps3<N: Real>(
     parts: &TiledTriangles<'_, N>,
     solid: Kind<'_, N, 3>,
@@ -107,8 +107,8 @@ struct TriangleQuery<'a, N: Real> {
     parts: &'a TiledTriangles<'a, N>,
     solid: &'a Polyhedral<'a, N>,
     pose12: &'a Pose<N, 3>,
-    /// Distance up to which contacts are wanted; a gap that differs from it by rounding is not
-    /// plain.
+    /// Largest distance of contacts. A gap that differs from it only by rounding is not a plain
+    /// case.
     prediction: N,
     /// Triangles farther than this are skipped.
     limit: N,
@@ -197,7 +197,7 @@ impl<N: Real> PlacedTriangle<'_, N> {
             share1 > margin && share1 < det - margin && share2 > margin && share2 < det - margin;
         let longest = max(own, max(third.norm_squared(), (third - edge).norm_squared()));
         let (tall, long) = (N::lit(TALL) * longest, N::lit(LONG) * rounding_error::<N>());
-        // Written so that NaN is not a plain case.
+        // False for NaN, which is not a plain case.
         let is_certain = is_inside
             && det > N::lit(MIN_SINE) * own * other
             && own > long * long

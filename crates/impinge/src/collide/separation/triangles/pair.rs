@@ -8,8 +8,8 @@
 //!
 //! ```text
 //!              +n1                 side i of the first and side j of the second make a face iff
-//!            /  |  \               the arc of j parts the poles of 1: n1 leans to one end of j, and
-//!   side 0  | side 1 | side 2      the arc of i parts those of 2, on the same side:
+//!            /  |  \               the arc of j separates the poles of the first, and the arc of i
+//!   side 0  | side 1 | side 2      those of the second, on the same side:
 //!            \  |  /                  (sides2[j] · n1 < 0)  ≠  (sides1[i] · n2 > 0)
 //!              -n1
 //! ```
@@ -24,8 +24,8 @@ use crate::convex::{Separation, Units};
 use crate::math::{Mapped, Point, Pose, Real, Vector, cross, max, min};
 use crate::shape::{Kind, SupportMap, Triangle};
 
-/// Sine of the angle below which two sides count as parallel, in units of epsilon: their face of
-/// the Minkowski difference is narrower than rounding errors.
+/// Sine of the angle below which two sides count as parallel, in units of epsilon. Their face of
+/// the Minkowski difference is then narrower than rounding errors.
 const PARALLEL: f64 = 16.0;
 /// Sine of the angle below which the common perpendicular of two sides is inexact, by up to 32
 /// rounding units.
@@ -251,7 +251,7 @@ mod tests {
     use crate::math::xorshift::Xorshift;
     use crate::shape::Shape;
 
-    /// The distance by the general algorithm, and by axes where these prove it.
+    /// Returns the distance by the general algorithm, and the distance by axes if these prove it.
     fn both<N: Real>(one: &Triangle<N, 3>, other: &Triangle<N, 3>) -> (N, Option<N>) {
         let (first, second) = (one.geometry().0, other.geometry().0);
         let pair = Pair { first, second, pose12: Pose::identity() };

@@ -1,4 +1,4 @@
-//! The entries of height fields: their pyramid, and searches of it.
+//! Entry points that build the pyramid of a height field and search it.
 
 use super::HeightField;
 use super::grid::{GridCells, overlapping, search};
@@ -28,7 +28,7 @@ compiled! {
         visit: &mut dyn FnMut(u32, N) -> N,
     ) = nearest_first;
 
-    /// Visits the cells that a moving box hits up to the time `limit`; see [`first_met`].
+    /// Visits the parts that a moving box hits up to the time `limit`; see [`first_met`].
     fn first_cells(
         field: &HeightField<N, D>,
         aabb: &Aabb<N, D>,
@@ -73,8 +73,8 @@ fn nearest_first<N: Real, const D: usize>(
     }
 }
 
-/// Visits the parts whose box is hit, up to the time `limit`, by a moving box, with a lower bound
-/// of the time. `visit` returns the new limit, which never grows.
+/// Visits the parts whose box a moving box hits up to the time `limit`, with a lower bound of that
+/// time. `visit` returns the new limit, which never grows.
 fn first_met<N: Real, const D: usize>(
     field: &HeightField<N, D>,
     aabb: &Aabb<N, D>,

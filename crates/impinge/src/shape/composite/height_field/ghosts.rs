@@ -1,15 +1,18 @@
-//! Ghosts: cells that the seams beside them know, and that nothing touches.
+//! Ghosts: cells that continue the surface across the seams beside them, but that no query finds.
 //!
 //! ```text
-//!    tile A            tile B          A and B are fields of their own. Each has the samples of the other next
-//!  ──┬──┬──┬┄┄┐     ┌┄┄┬──┬──┬──       to its border, as ghosts (┄): at the seam both see a surface that goes on.
+//!    tile A            tile B          A and B are separate fields. Each also has samples of the
+//!  ──┬──┬──┬┄┄┐     ┌┄┄┬──┬──┬──       other beyond its own border, as ghosts (┄).
 //! ```
+//!
+//! So in each field the surface continues across the seam.
 
 use super::HeightField;
 use crate::math::Real;
 
 impl<N: Real> HeightField<N, 2> {
-    /// Makes exactly the cells ghosts for which `is_ghost(cell)` is true; see [`Self::set_ghost`].
+    /// Makes a cell a ghost if `is_ghost(cell)` is true, and no ghost otherwise; see
+    /// [`Self::set_ghost`].
     #[must_use]
     pub fn with_ghosts(mut self, mut is_ghost: impl FnMut(usize) -> bool) -> Self {
         let cells = self.num_cells();
@@ -21,7 +24,7 @@ impl<N: Real> HeightField<N, 2> {
     }
 
     /// Makes the first and the last cell ghosts: the outermost heights are samples of the
-    /// neighbouring fields, so that nothing bumps into the ends of this one.
+    /// neighbouring fields, so that solids do not catch on the ends of this field.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Vector};
@@ -44,7 +47,7 @@ impl<N: Real> HeightField<N, 2> {
         self.with_ghosts(|cell| cell == 0 || cell == last)
     }
 
-    /// Whether the part is a ghost; see [`Self::set_ghost`].
+    /// Returns whether the part is a ghost; see [`Self::set_ghost`].
     ///
     /// # Panics
     /// If there is no such part.
@@ -53,8 +56,8 @@ impl<N: Real> HeightField<N, 2> {
         self.marks.is_ghost(self.cell_of(part))
     }
 
-    /// Makes a cell a ghost, or restores its segment: nothing touches a ghost, and no search finds
-    /// it, but the seams beside it are those of a line that goes on. A hole stays a hole.
+    /// Makes a cell a ghost, or restores its segment. No search or contact finds a ghost, but the
+    /// line continues across the seams beside it. A hole stays a hole.
     ///
     /// # Panics
     /// If there is no such cell.
@@ -66,7 +69,7 @@ impl<N: Real> HeightField<N, 2> {
 }
 
 impl<N: Real> HeightField<N, 3> {
-    /// Makes exactly the cells ghosts for which `is_ghost(row, column)` is true; see
+    /// Makes a cell a ghost if `is_ghost(row, column)` is true, and no ghost otherwise; see
     /// [`Self::set_ghost`].
     #[must_use]
     pub fn with_ghosts(mut self, mut is_ghost: impl FnMut(usize, usize) -> bool) -> Self {
@@ -80,7 +83,7 @@ impl<N: Real> HeightField<N, 3> {
     }
 
     /// Makes the outermost ring of cells ghosts: the outermost heights are samples of the
-    /// neighbouring fields, so that nothing bumps into the seam between two tiles of a terrain.
+    /// neighbouring fields, so that solids do not catch on the seam between two tiles of a terrain.
     ///
     /// ```
     /// use impinge::dim3::math::Vector;
@@ -100,7 +103,7 @@ impl<N: Real> HeightField<N, 3> {
         })
     }
 
-    /// Whether the part belongs to a ghost; see [`Self::set_ghost`].
+    /// Returns whether the part belongs to a ghost cell; see [`Self::set_ghost`].
     ///
     /// # Panics
     /// If there is no such part.
@@ -109,8 +112,8 @@ impl<N: Real> HeightField<N, 3> {
         self.marks.is_ghost(self.locate(part).1)
     }
 
-    /// Makes a cell a ghost, or restores its triangles: nothing touches a ghost, and no search
-    /// finds it, but the seams beside it are those of a surface that goes on. Holes in it stay.
+    /// Makes a cell a ghost, or restores its triangles. No search or contact finds a ghost, but the
+    /// surface continues across the seams beside it. Holes in the cell stay holes.
     ///
     /// # Panics
     /// If there is no such cell.

@@ -1,4 +1,4 @@
-//! Heights over a grid: the positions of its points, and the search that 2D and 3D share.
+//! Heights over a grid: the positions of the grid points, and the search that 2D and 3D share.
 
 use core::ops::Range;
 
@@ -15,7 +15,7 @@ use crate::math::{Mapped, Point, Real, max, min};
 #[derive(Clone, Debug)]
 pub(super) struct Grid<N: Real> {
     pub(super) columns: usize,
-    /// Row by row.
+    /// The unscaled heights, row by row.
     pub(super) heights: Vec<N>,
     pub(super) xs: Vec<N>,
     pub(super) zs: Vec<N>,
@@ -23,8 +23,9 @@ pub(super) struct Grid<N: Real> {
 }
 
 impl<N: Real> Grid<N> {
-    /// Whether all grid lines along x, and all along z, have distinct positions. Only meaningful in
-    /// 3D.
+    /// Returns whether all grid lines along x, and all along z, have distinct positions.
+    /// Conservative: also false for an extent so small that positions may underflow. Only
+    /// meaningful in 3D.
     pub(super) fn has_extent(&self) -> bool {
         [&self.xs, &self.zs].iter().all(|lines| {
             let is_wide = lines[0].abs() > N::MIN_POSITIVE / N::EPSILON;
@@ -82,8 +83,8 @@ impl<N: Real> GridExtent<N> {
 pub(super) trait GridCells<N: Real> {
     fn grid(&self) -> &Grid<N>;
     fn pyramid(&self) -> &Pyramid<N>;
-    /// Returns the range of the unscaled heights of a cell, without holes and ghosts; the empty span if
-    /// nothing is left.
+    /// Returns the range of the unscaled heights of the cell's parts that are neither holes nor
+    /// ghosts; the empty span if there are none.
     fn cell_span(&self, row: usize, column: usize) -> HeightSpan<N>;
     /// Returns the parts of a cell that are neither holes nor ghosts, and their boxes.
     fn parts(&self, row: usize, column: usize) -> SmallVec<[(u32, GridExtent<N>); 2]>;
@@ -102,8 +103,8 @@ impl<N: Real> Grid<N> {
         Point::from(self.at(row, column))
     }
 
-    /// Returns the box of a block whose cells have the unscaled heights `span`; `None` if all its
-    /// cells are holes.
+    /// Returns the box of a block whose cells have the unscaled heights `span`; `None` if the span
+    /// is empty.
     fn extent(
         &self,
         block: PyramidBlock,
@@ -126,7 +127,8 @@ impl<N: Real> Grid<N> {
     }
 }
 
-/// Returns the box of all cells, in x and z including the holes; `None` if all cells are holes.
+/// Returns the box of all cells, in x and z including holes and ghosts; `None` if there is no other
+/// cell.
 pub(super) fn whole<N: Real>(field: &impl GridCells<N>) -> Option<GridExtent<N>> {
     let pyramid = field.pyramid();
     let span = pyramid.span(pyramid.top(), &|row, column| field.cell_span(row, column));
@@ -182,9 +184,9 @@ pub(super) fn search<N: Real>(
 
 /// Calls `visit` once with each part whose box overlaps the probe.
 ///
-/// The lines of the grid determine which cells lie under the probe. Up to `FEW_CELLS` are tested
-/// one by one; more are found by a descent of the pyramid, which skips blocks above or below the
-/// probe.
+/// The grid lines determine the range of cells under the probe. Up to [`FEW_CELLS`] cells are
+/// tested one by one. For more cells the pyramid is descended, which skips blocks above or below
+/// the probe.
 pub(super) fn overlapping<N: Real>(
     field: &impl GridCells<N>,
     probe: &FieldProbe<N>,
@@ -209,7 +211,7 @@ pub(super) fn overlapping<N: Real>(
     }
 }
 
-/// Up to this many cells are tested one by one.
+/// The maximum number of cells that [`overlapping`] tests one by one.
 const FEW_CELLS: usize = 32;
 
 /// Returns the range of cells between grid lines that have a point in common with `low..=high`. A
@@ -221,7 +223,7 @@ fn cells_between<N: Real>(lines: &[N], low: N, high: N) -> Range<usize> {
     } else {
         (lines.partition_point(|&x| x < low), lines.partition_point(|&x| x <= high))
     };
-    // A cell lies between its line and the next.
+    // Cell `i` lies between lines `i` and `i + 1`.
     before.saturating_sub(1)..min_index(until, if last == 0 { 1 } else { last })
 }
 

@@ -2,8 +2,8 @@
 
 /// The diagonal of a cell: the two corners that the common side of its two triangles joins.
 ///
-/// The field is seen from the front, with columns to the right and rows downwards. Triangle 0 has
-/// the side between the two corners in the cell's lower column index.
+/// Rows and columns are those of the grid of heights. Triangle 0 of a cell has the side that joins
+/// the two corners in the cell's lower column.
 ///
 /// ```
 /// use impinge::dim3::math::Vector;
@@ -75,14 +75,14 @@ impl Marks {
         Self { diagonals, bits: Vec::new(), ghosts: 0 }
     }
 
-    /// Returns these marks with the rule `diagonals`; single reversed diagonals are removed, holes
-    /// and ghosts stay.
+    /// Returns these marks with the rule `diagonals`. Exceptions from the former rule are removed;
+    /// holes and ghosts stay.
     pub(super) fn with_diagonals(mut self, diagonals: Diagonals) -> Self {
         self.bits.iter_mut().for_each(|bits| *bits &= !OTHER_DIAGONAL);
         Self { diagonals, ..self }
     }
 
-    /// The rule, and the bits of each cell if any has one.
+    /// Returns the rule and the bits of each cell; the bits are empty if no cell was ever marked.
     #[cfg(feature = "serde")]
     pub(super) fn parts(&self) -> (Diagonals, &[u8]) {
         (self.diagonals, &self.bits)
@@ -95,7 +95,7 @@ impl Marks {
         Self { diagonals, bits, ghosts }
     }
 
-    /// Whether part `k`, 0 or 1, of a cell is a hole.
+    /// Returns whether part `k`, 0 or 1, of a cell is a hole.
     pub(super) fn is_hole(&self, cell: usize, k: usize) -> bool {
         self.has(cell, 1 << k)
     }
@@ -104,8 +104,8 @@ impl Marks {
         self.set(cell, 1 << k, is_hole, cells);
     }
 
-    /// Whether the cell is a ghost: its parts take part in the seams around it, but no query finds
-    /// them.
+    /// Returns whether the cell is a ghost: its parts continue the surface across the seams around
+    /// it, but no query finds them.
     pub(super) fn is_ghost(&self, cell: usize) -> bool {
         self.has(cell, GHOST)
     }
@@ -120,7 +120,7 @@ impl Marks {
         self.set(cell, GHOST, is_ghost, cells);
     }
 
-    /// Whether queries skip part `k` of a cell: the part is a hole, or the cell is a ghost.
+    /// Returns whether queries skip part `k` of a cell: the part is a hole, or the cell is a ghost.
     pub(super) fn is_untouched(&self, cell: usize, k: usize) -> bool {
         self.has(cell, 1 << k | GHOST)
     }

@@ -44,22 +44,23 @@ use crate::shape::error::finite;
 /// turns the field upside down.
 ///
 /// **Front.** The front is the side towards which heights grow: +y, or −y if the scale's y
-/// component is negative. Both sides can be touched; after `one_sided` only the front.
+/// component is negative. Contacts arise on both sides, or only on the front after `one_sided`.
 ///
 /// **Seams.** Contacts treat the field as one surface (see [`Surface`](crate::shape::Surface)), by
 /// the rule and the tolerance of [`TriMesh`](crate::shape::TriMesh).
 /// [`Self::with_internal_edges_kept`] disables this.
 ///
-/// **Cells.** Four neighbouring heights form a cell of two triangles, parts `2 · cell` and `2 ·
-/// cell + 1`, divided along its [`Diagonal`]. The corners of a triangle run counter-clockwise seen
-/// from the front, so that in 3D `Face(0)` is the front. In 2D a cell is one part, the segment from
-/// one height to the next. Parts may be holes: a hole keeps its part index, but no search finds it,
-/// and a seam beside it is a border. Cells may be ghosts: no search finds a ghost, but the surface
-/// continues across the seams beside it. So nothing catches on the seams of a terrain of many
-/// fields (`with_ghost_border`).
+/// **Cells.** Four neighbouring heights form a cell of two triangles, parts `2 · cell` and
+/// `2 · cell + 1`, divided along its [`Diagonal`]. The corners of a triangle run counter-clockwise
+/// seen from the front, so that in 3D `Face(0)` is the front. In 2D a cell is one part, the segment
+/// from one height to the next. Parts may be holes: a hole keeps its part index, but no search
+/// finds it, and a seam beside it is a border. Cells may be ghosts: no search finds a ghost, but
+/// the surface continues across the seams beside it. So solids do not catch on the seams of a
+/// terrain made of many fields (`with_ghost_border`).
 ///
-/// Making it takes one pass over the heights, changing a height O(log n). Memory: about two numbers
-/// per height, and a byte per cell if there are holes or single cells with a diagonal of their own.
+/// Construction takes one pass over the heights; a change of one height costs O(log n). Memory:
+/// about two numbers per height, and a byte per cell once a cell is a hole, a ghost or has a
+/// diagonal of its own.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -105,27 +106,27 @@ impl<N: Real, const D: usize> HeightField<N, D> {
         &self.scale
     }
 
-    /// The number of cells, including holes.
+    /// Returns the number of cells, including holes and ghosts.
     #[must_use]
     pub fn num_cells(&self) -> usize {
         let [rows, columns] = self.pyramid.cells();
         rows * columns
     }
 
-    /// Whether nothing touches the field from behind.
+    /// Returns whether the field is one-sided: no contact arises from behind.
     #[must_use]
     pub const fn is_one_sided(&self) -> bool {
         self.is_one_sided
     }
 
-    /// Makes the field one-sided: nothing touches it from behind.
+    /// Makes the field one-sided: no contact arises from behind.
     #[must_use]
     pub const fn one_sided(mut self) -> Self {
         self.is_one_sided = true;
         self
     }
 
-    /// Whether contacts treat each part as a separate solid; see
+    /// Returns whether contacts treat each part as a separate solid; see
     /// [`Self::with_internal_edges_kept`].
     #[must_use]
     pub const fn keeps_internal_edges(&self) -> bool {
@@ -145,7 +146,7 @@ impl<N: Real, const D: usize> HeightField<N, D> {
         self.revision.with(&[self.is_one_sided, self.keeps_internal_edges])
     }
 
-    /// Returns the field with the scale `scale`; `depth` is its extent along z.
+    /// Returns the field with the scale `scale`; `depth` is the extent along z.
     ///
     /// # Errors
     /// If a coordinate is not finite.
@@ -156,15 +157,14 @@ impl<N: Real, const D: usize> HeightField<N, D> {
         Ok(Self { scale, revision: Revision::new(), ..scaled })
     }
 
-    /// Returns the field over a grid, without holes or ghosts: both sides can be touched, and
-    /// contacts treat the field as one surface.
+    /// Returns the two-sided field over a grid, without holes or ghosts and with forward diagonals.
     fn around(grid: Grid<N>, pyramid: Pyramid<N>, scale: Vector<N, D>) -> Self {
         let marks = Marks::new(Diagonals::Forward);
         let (is_one_sided, keeps_internal_edges, revision) = (false, false, Revision::new());
         Self { grid, pyramid, marks, scale, is_one_sided, keeps_internal_edges, revision }
     }
 
-    /// Whether the scale has an odd number of negative components.
+    /// Returns whether the scale has an odd number of negative components.
     fn is_mirrored(&self) -> bool {
         self.scale.iter().filter(|&&factor| factor < N::ZERO).count() % 2 == 1
     }

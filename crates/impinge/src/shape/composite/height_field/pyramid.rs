@@ -7,7 +7,7 @@ use crate::math::{Mapped, Real, max, min};
 /// The minimum and maximum height; `[∞, −∞]` for the empty span.
 pub(super) type HeightSpan<N> = [N; 2];
 
-/// Returns the empty span, which holes have.
+/// Returns the empty span, which holes and ghosts have.
 pub(super) fn no_span<N: Real>() -> HeightSpan<N> {
     [N::INFINITY, -N::INFINITY]
 }
@@ -17,8 +17,8 @@ pub(super) fn merged<N: Real>(a: HeightSpan<N>, b: HeightSpan<N>) -> HeightSpan<
 }
 
 /// Levels of blocks: 2 × 2 cells, then 2 × 2 of these blocks, … up to one block of all cells.
-/// Blocks at the far ends may be smaller. The spans of single cells are cheap to compute and not
-/// stored.
+/// Blocks in the last row or column may be smaller. The spans of single cells are cheap to compute
+/// and not stored.
 ///
 /// Memory: about two thirds of a scalar per cell.
 #[derive(Clone, Debug)]
@@ -36,8 +36,8 @@ struct PyramidLevel<N: Real> {
     spans: Vec<HeightSpan<N>>,
 }
 
-/// A block; at level 0 a cell. It covers `1 << level` rows from `row << level` on and as many
-/// columns from `column << level` on, fewer at the far ends.
+/// A block of cells; at level 0 a single cell. It covers the rows
+/// `row << level..(row + 1) << level` and the corresponding columns, clipped to the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct PyramidBlock {
     pub(super) level: usize,
@@ -57,7 +57,7 @@ impl PyramidBlock {
 }
 
 impl<N: Real> Pyramid<N> {
-    /// Builds the pyramid over the given counts of rows and columns of cells, at least one each.
+    /// Builds the pyramid; `cells` has the counts of rows and columns of cells, at least one each.
     pub(super) fn new(
         cells: [usize; 2],
         cell_span: impl Fn(usize, usize) -> HeightSpan<N>,
@@ -85,8 +85,8 @@ impl<N: Real> Pyramid<N> {
         Self { cells, levels: Vec::new() }
     }
 
-    /// Moves the levels out and leaves a pyramid without levels, so that the field can be borrowed
-    /// for `cell_span` during an update.
+    /// Moves the levels out and leaves a pyramid without levels, so that `cell_span` can borrow the
+    /// field during an update.
     pub(super) fn take(&mut self) -> Self {
         Self { cells: self.cells, levels: std::mem::take(&mut self.levels) }
     }

@@ -12,8 +12,8 @@ pub(super) struct FieldProbe<N: Real> {
 
 /// Distances and times are lowered by this many epsilon of their value, so that they are lower
 /// bounds: coordinates are subtracted (and divided) once, and at most three squares are summed. The
-/// excess serves rays: a ray between two cells must find the cell whose triangle the exact test
-/// hits.
+/// margin is larger than these errors for the sake of rays: a ray between two cells must find the
+/// cell whose triangle the exact test hits.
 const ROUNDING: f64 = 16.0;
 
 impl<N: Real> FieldProbe<N> {
@@ -44,7 +44,7 @@ impl<N: Real> FieldProbe<N> {
         meets.then_some(N::ZERO)
     }
 
-    /// Returns a lower bound of the distance to `other`.
+    /// Returns a lower bound of the distance to `other`; never `None`.
     pub(super) fn distance(&self, other: &GridExtent<N>) -> Option<N> {
         let mut gap = Vector::<N, 3>::zeros();
         for axis in 0..3 {
@@ -84,7 +84,7 @@ impl<N: Real> FieldProbe<N> {
     }
 }
 
-/// Returns `velocity` in 3D, with zero on the axes that 2D lacks; `None` if it is not finite.
+/// Returns `velocity` in 3D, with zero on axes that 2D lacks; `None` if a component is not finite.
 pub(super) fn lifted<N: Real, const D: usize>(velocity: &Vector<N, D>) -> Option<[N; 3]> {
     let mut lifted = [N::ZERO; 3];
     for axis in 0..D {

@@ -1,4 +1,4 @@
-//! Height fields of saved worlds.
+//! Conversion of height fields to and from the records of saved worlds.
 
 use super::marks::Marks;
 use super::{Diagonals, HeightField};
@@ -7,16 +7,17 @@ use crate::math::{Real, Vector};
 use crate::shape::ShapeError;
 use crate::shape::saved::FieldRecord;
 
-/// By the numbers that stand for them in data.
+/// The diagonal rules, indexed by their numbers in saved data.
 const DIAGONALS: [Diagonals; 3] = [Diagonals::Forward, Diagonals::Backward, Diagonals::Zigzag];
 
 impl<N: Real, const D: usize> HeightField<N, D> {
-    /// The field as data.
+    /// Returns the record of the field.
     pub(in crate::shape) fn record(&self) -> FieldRecord<N> {
         let (diagonals, marks) = self.marks.parts();
         let number = (0..).zip(DIAGONALS).find(|(_, known)| *known == diagonals);
         FieldRecord {
-            // No more than there are parts.
+            // The number of parts fits 32 bits, so the number of columns fits too, except in a 2D
+            // field of 2³² heights.
             columns: u32::try_from(self.grid.columns).unwrap_or(u32::MAX),
             heights: Numbers::of(self.grid.heights.iter().copied()),
             scale: Numbers::of(self.scale.iter().copied()),
@@ -29,7 +30,8 @@ impl<N: Real, const D: usize> HeightField<N, D> {
 }
 
 impl<N: Real> FieldRecord<N> {
-    /// The field of its data, made by the constructor of its dimension; what follows from its marks is to be rebuilt.
+    /// Restores the field by `make`, the constructor of its dimension. The caller must rebuild the
+    /// pyramid, which depends on the marks.
     pub(in crate::shape) fn make<const D: usize>(
         &self,
         make: impl FnOnce(Vec<N>, Vector<N, D>) -> Result<HeightField<N, D>, ShapeError>,

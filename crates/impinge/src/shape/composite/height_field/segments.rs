@@ -26,8 +26,8 @@ impl<N: Real> HeightField<N, 2> {
         or_panic(Self::try_new(heights, scale))
     }
 
-    /// Returns the field of the given heights, at least two. There are no holes, and both sides can
-    /// be touched.
+    /// Returns the field of the given heights, at least two. There are no holes, and contacts arise
+    /// on both sides.
     ///
     /// # Errors
     /// If there are fewer than two heights; if a component of the scale, a height, or a height
@@ -42,7 +42,7 @@ impl<N: Real> HeightField<N, 2> {
         Ok(field)
     }
 
-    /// Sets which cells are holes: exactly those for which `is_hole(cell)` is true.
+    /// Makes a cell a hole if `is_hole(cell)` is true, and no hole otherwise.
     #[must_use]
     pub fn with_holes(mut self, mut is_hole: impl FnMut(usize) -> bool) -> Self {
         let cells = self.num_cells();
@@ -53,7 +53,8 @@ impl<N: Real> HeightField<N, 2> {
         self
     }
 
-    /// The field scaled along the axes of its frame, about its origin: its own scale is multiplied.
+    /// Returns the field scaled along the axes of its frame, about its origin, by multiplying its
+    /// own scale.
     ///
     /// # Errors
     /// If a factor is zero or not finite, or a scaled coordinate is not finite.
@@ -91,7 +92,7 @@ impl<N: Real> HeightField<N, 2> {
         Some(segment).filter(|_| !self.marks.is_untouched(cell, 0))
     }
 
-    /// Whether the part is a hole. The index of a part equals the index of its cell.
+    /// Returns whether the part is a hole. The index of a part equals the index of its cell.
     ///
     /// # Panics
     /// If there is no such part.
@@ -100,7 +101,8 @@ impl<N: Real> HeightField<N, 2> {
         self.marks.is_hole(self.cell_of(part), 0)
     }
 
-    /// The scaled height of the line at `x`; `None` beside the field, at a hole and at a ghost.
+    /// Returns the scaled height of the line at `x`; `None` beside the field, at a hole and at a
+    /// ghost.
     #[must_use]
     pub fn height_at(&self, x: N) -> Option<N> {
         let ends = [-N::INFINITY, N::INFINITY].map(|y| Point::<N, 2>::new(x, y));
@@ -166,7 +168,7 @@ impl<N: Real> HeightField<N, 2> {
         (self.pyramid, self.revision) = (pyramid, Revision::new());
     }
 
-    /// Returns the field after its marks were replaced.
+    /// Rebuilds the pyramid after the marks were replaced.
     #[cfg(feature = "serde")]
     pub(in crate::shape) fn with_all_rebuilt(mut self) -> Self {
         self.rebuild();
@@ -185,7 +187,7 @@ impl<N: Real> HeightField<N, 2> {
     }
 }
 
-/// Returns the range of the unscaled heights of a cell.
+/// Returns the range of the unscaled heights at the two ends of a cell.
 fn step_span<N: Real>(grid: &Grid<N>, cell: usize) -> HeightSpan<N> {
     let [a, b] = [grid.heights[cell], grid.heights[cell + 1]];
     merged([a, a], [b, b])
@@ -242,7 +244,7 @@ impl<N: Real> CompositeShape<N, 2> for HeightField<N, 2> {
         u32::try_from(self.num_cells()).expect("32 bits number the segments")
     }
 
-    /// Also returns the segment of a hole.
+    /// Returns the segment of a part, also of a hole or a ghost.
     fn part(&self, part: u32) -> Part<'_, N, 2> {
         let cell = self.cell_of(part);
         let segment = Segment::new(self.point(cell), self.point(cell + 1));

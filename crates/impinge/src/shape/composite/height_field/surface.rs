@@ -70,12 +70,12 @@ impl<N: Real> OwnSurface<N, 3> for HeightField<N, 3> {
         has_seams.then(|| FaceSeams::new(own.front, self.is_one_sided, bend, |_| true))
     }
 
-    /// Grid points have distinct positions unless the field has no extent.
+    /// Returns true if internal edges are not kept and no two grid points coincide.
     fn has_regular_seams(&self) -> bool {
         !self.keeps_internal_edges && self.grid.has_extent()
     }
 
-    /// Whether the cell of the part, or one of the eight cells around it, is a ghost.
+    /// Returns whether the cell of the part, or one of the eight cells around it, is a ghost.
     fn is_beside_ghost(&self, part: u32) -> bool {
         let ([row, column], ..) = self.locate(part);
         let [rows, columns] = self.pyramid.cells();
@@ -87,7 +87,8 @@ impl<N: Real> OwnSurface<N, 3> for HeightField<N, 3> {
     }
 }
 
-/// The index of a triangle in its cell, then two corners of the cell.
+/// A triangle at a corner of a cell: its index in the cell, then its two other corners, as indices
+/// of the cell's corners.
 type FanTriangle = (usize, usize, usize);
 
 /// For each corner of a cell, the triangles at it: the index of the triangle and its two other
@@ -112,8 +113,8 @@ impl<N: Real> FieldFace<N> {
         Self { corners, points, front: normal_of(&points) }
     }
 
-    /// Returns the corner opposite the side with the ends `ends`; `None` if both ends are not among
-    /// the corners.
+    /// Returns the corner opposite the side with the ends `ends`. The ends must be corners of the
+    /// triangle; otherwise the result is the first corner that is not an end.
     fn beyond(&self, ends: &[GridPoint; 2]) -> Option<Point<N, 3>> {
         let at = self.corners.iter().position(|corner| !ends.contains(corner))?;
         Some(self.points[at])
@@ -157,7 +158,7 @@ impl<N: Real> HeightField<N, 3> {
         [point(corners[0]), point(corners[1]), point(corners[2])]
     }
 
-    /// Returns the unit normal on the front of a triangle; zero without area.
+    /// Returns the unit normal on the front of a triangle; zero for a triangle without area.
     fn front_of(&self, corners: &[GridPoint; 3]) -> Vector<N, 3> {
         normal_of(&self.points_of(corners))
     }
@@ -226,7 +227,7 @@ impl<N: Real> HeightField<N, 3> {
             .find(|other| other.contains(&a) && other.contains(&b) && other != own)
     }
 
-    /// Whether the field admits `normal` at a feature of a triangle. `beside` keeps the
+    /// Returns whether the field admits `normal` at a feature of a triangle. `beside` keeps the
     /// neighbourhood of the feature between calls.
     fn face_admits(
         &self,
@@ -253,8 +254,8 @@ impl<N: Real> HeightField<N, 3> {
             }
     }
 
-    /// Whether the field admits `normal` at a side of a triangle; uses the cached edge angle if it
-    /// is certain.
+    /// Returns whether the field admits `normal` at a side of a triangle; uses the cached edge
+    /// angle if it is certain.
     fn edge_admits(
         &self,
         own: &FieldFace<N>,
@@ -277,8 +278,8 @@ impl<N: Real> HeightField<N, 3> {
         is_across(&(end - start), normal) && seam.admits(self.is_one_sided)
     }
 
-    /// Whether the field admits `normal`, which is not the triangle's own normal, at a corner of
-    /// the triangle.
+    /// Returns whether the field admits `normal` at a corner of a triangle; `normal` is not the
+    /// normal of that triangle.
     fn vertex_admits(
         &self,
         own: &FieldFace<N>,
@@ -289,9 +290,9 @@ impl<N: Real> HeightField<N, 3> {
         self.point_admits_from(own.corners[corner % 3], star, (&own.front, false), normal)
     }
 
-    /// Whether the field admits, at a grid point, a normal that is not the triangle's own. `own`
-    /// has the front normal of the triangle, and whether another triangle at the point is known not
-    /// to be coplanar with it.
+    /// Returns whether the field admits `normal` at a grid point; `normal` is not the normal of the
+    /// triangle itself. `own` has the front normal of the triangle, and whether another triangle at
+    /// the point is known not to be coplanar with it.
     fn point_admits_from(
         &self,
         at: GridPoint,
@@ -410,15 +411,15 @@ impl<N: Real> HeightField<N, 2> {
         Some(if self.is_mirrored() { -left } else { left })
     }
 
-    /// Returns the component of `vector` along the front normal of a segment; 0 if the field has
+    /// Returns the component of `vector` along the front normal of a segment. 0 if the field has
     /// two sides or the segment has no length.
     fn height_over(&self, part: u32, vector: &Vector<N, 2>) -> N {
         let front = self.front(part).filter(|_| self.is_one_sided);
         front.map_or(N::ZERO, |front| front.dot(vector))
     }
 
-    /// Whether the point admits `normal`: no segment that leaves the point rises along it, and the
-    /// two segments are not collinear.
+    /// Returns whether the grid point `index` admits `normal`: no segment that leaves the point
+    /// rises along `normal`, and the two segments at the point are not collinear.
     fn point_admits(&self, part: u32, index: usize, normal: &Vector<N, 2>) -> bool {
         let own = self.along(part).unwrap_or_else(Vector::<N, 2>::zeros);
         let mut seam = Seam::of_segments(own, normal);

@@ -31,7 +31,7 @@ impl<N: Real> HeightField<N, 3> {
     }
 
     /// Returns the field of rows and columns of heights, at least two of each, given row by row.
-    /// All diagonals are forward, there are no holes, and both sides can be touched.
+    /// All diagonals are forward, there are no holes, and contacts arise on both sides.
     ///
     /// # Errors
     /// If there are fewer than two rows or columns, or the number of heights is not their product;
@@ -60,7 +60,8 @@ impl<N: Real> HeightField<N, 3> {
         self
     }
 
-    /// Sets which cells are holes: exactly those for which `is_hole(row, column)` is true.
+    /// Makes both triangles of a cell holes if `is_hole(row, column)` is true, and neither
+    /// otherwise.
     #[must_use]
     pub fn with_holes(mut self, mut is_hole: impl FnMut(usize, usize) -> bool) -> Self {
         let [rows, columns] = self.pyramid.cells();
@@ -74,7 +75,8 @@ impl<N: Real> HeightField<N, 3> {
         self
     }
 
-    /// The field scaled along the axes of its frame, about its origin: its own scale is multiplied.
+    /// Returns the field scaled along the axes of its frame, about its origin, by multiplying its
+    /// own scale.
     ///
     /// # Errors
     /// If a factor is zero or not finite, or a scaled coordinate is not finite.
@@ -83,13 +85,13 @@ impl<N: Real> HeightField<N, 3> {
         Ok(self.with_scale(scale, scale.z)?)
     }
 
-    /// The number of rows of heights, one more than rows of cells.
+    /// Returns the number of rows of heights, one more than rows of cells.
     #[must_use]
     pub const fn rows(&self) -> usize {
         self.pyramid.cells()[0] + 1
     }
 
-    /// The number of columns of heights, one more than columns of cells.
+    /// Returns the number of columns of heights, one more than columns of cells.
     #[must_use]
     pub const fn columns(&self) -> usize {
         self.grid.columns
@@ -140,7 +142,8 @@ impl<N: Real> HeightField<N, 3> {
         self.marks.diagonal([row, column], self.pyramid.cells()[1])
     }
 
-    /// Returns the two triangles of a cell; `None` for a triangle that is a hole or in a ghost.
+    /// Returns the two triangles of a cell; `None` for a triangle that is a hole or belongs to a
+    /// ghost.
     ///
     /// # Panics
     /// If there is no such cell.
@@ -153,7 +156,7 @@ impl<N: Real> HeightField<N, 3> {
         })
     }
 
-    /// Whether the part is a hole.
+    /// Returns whether the part is a hole.
     ///
     /// # Panics
     /// If there is no such part.
@@ -163,8 +166,8 @@ impl<N: Real> HeightField<N, 3> {
         self.marks.is_hole(cell, k)
     }
 
-    /// The scaled height of the surface at (x, z); `None` beside the field, at a hole and at a
-    /// ghost.
+    /// Returns the scaled height of the surface at (x, z); `None` beside the field, at a hole and
+    /// at a ghost.
     #[must_use]
     pub fn height_at(&self, x: N, z: N) -> Option<N> {
         let over = Vector::<N, 3>::new(x, N::ZERO, z);
@@ -179,7 +182,8 @@ impl<N: Real> HeightField<N, 3> {
     }
 }
 
-/// Modifications. They do not affect a world that holds the shape: shared shapes are immutable.
+/// Methods that modify the field. They do not affect a world that holds the shape: shared shapes
+/// are immutable.
 impl<N: Real> HeightField<N, 3> {
     /// Sets the unscaled height at a row and column.
     ///
@@ -239,7 +243,8 @@ impl<N: Real> HeightField<N, 3> {
         self.refresh(row, column);
     }
 
-    /// Changes the diagonal of a cell; its parts keep their numbers and their holes.
+    /// Changes the diagonal of a cell; its parts keep their indices and stay or become no holes as
+    /// before.
     ///
     /// # Panics
     /// If there is no such cell.
@@ -255,7 +260,7 @@ impl<N: Real> HeightField<N, 3> {
         (self.pyramid, self.revision) = (pyramid, Revision::new());
     }
 
-    /// Returns the field after its marks were replaced.
+    /// Rebuilds the pyramid after the marks were replaced.
     #[cfg(feature = "serde")]
     pub(in crate::shape) fn with_all_rebuilt(mut self) -> Self {
         self.rebuild();
@@ -316,13 +321,13 @@ impl<N: Real> HeightField<N, 3> {
         Triangle::of_finite(corners.map(|[row, column]| self.grid.point(row, column)))
     }
 
-    /// Whether triangle `k` of the cell at a row and column is a hole.
+    /// Returns whether triangle `k` of the cell at a row and column is a hole.
     pub(super) fn is_hole_in(&self, row: usize, column: usize, k: usize) -> bool {
         self.marks.is_hole(row * self.pyramid.cells()[1] + column, k)
     }
 }
 
-/// Returns the range of the unscaled heights of a cell, regardless of holes.
+/// Returns the range of the unscaled heights at the four corners of a cell, regardless of holes.
 fn square_span<N: Real>(grid: &Grid<N>, row: usize, column: usize) -> HeightSpan<N> {
     let above = row * grid.columns + column;
     let below = above + grid.columns;
@@ -416,7 +421,7 @@ impl<N: Real> CompositeShape<N, 3> for HeightField<N, 3> {
         u32::try_from(2 * self.num_cells()).expect("32 bits number the triangles")
     }
 
-    /// Also returns the triangle of a hole.
+    /// Returns the triangle of a part, also of a hole or a ghost.
     fn part(&self, part: u32) -> Part<'_, N, 3> {
         let triangle = self.triangle_of(self.corners(part));
         Part { pose: Pose::identity(), solid: PartSolid::Triangle(triangle) }

@@ -43,9 +43,9 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         }
     }
 
-    /// Calls `visit` with each other triangle at a side that has an area, and the direction from
-    /// the side into that triangle. The walk passes through zero-area triangles, whose sides are
-    /// collinear.
+    /// Calls `visit` with each other triangle that lies at a side and has an area. Also passes the
+    /// unit vector in the plane of that triangle, from the side into it. The walk passes through
+    /// zero-area triangles, whose sides are collinear.
     pub(super) fn each_beyond(
         &self,
         triangle: u32,
@@ -55,7 +55,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         self.each_along(triangle, side, |other, inward, _| visit(other, inward));
     }
 
-    /// Like [`Self::each_beyond`], but also passes the interval of the side along which the other
+    /// Runs [`Self::each_beyond`], and also passes the interval of the side along which the other
     /// triangle lies, measured from the start of the side; `None` for the whole side.
     fn each_along(
         &self,
@@ -93,8 +93,8 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         }
     }
 
-    /// Whether, for a side of a zero-area triangle, some interval of the side has no triangle with
-    /// an area beside it. False for a triangle with an area.
+    /// Returns whether some interval of a zero-area triangle's side has no triangle with an area
+    /// beside it. False for a triangle with an area.
     pub(super) fn is_exposed(&self, triangle: u32, side: usize) -> bool {
         if self.inward(triangle, side).is_some() {
             return false;
@@ -144,14 +144,14 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         }
     }
 
-    /// Whether the triangle is tall enough to certainly have an area; if false, it may still have
-    /// one.
+    /// Returns whether the triangle is tall enough to certainly have an area. If false, the
+    /// triangle may still have an area.
     pub(super) fn has_certain_area(&self, triangle: u32) -> bool {
         self.bends.has_certain_area(triangle, || is_tall(&self.corners(triangle)))
     }
 
-    /// Returns the unit vectors along the two sides of a triangle that leave a joint; sides without
-    /// length are left out.
+    /// Returns the unit vectors along the two sides of a triangle that leave a joint, except sides
+    /// without length.
     pub(super) fn leaving(&self, triangle: u32, joint: u32) -> SmallVec<[Vector<N, D>; 2]> {
         let (corners, at) = (self.corners(triangle), self.corner_at(triangle, joint));
         let side = |turn: usize| unit(&(corners[(at + turn) % 3] - corners[at]));
@@ -171,7 +171,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
     }
 
     /// Returns the unit vector in the triangle's plane, perpendicular to a side, towards the
-    /// opposite corner; `None` without area.
+    /// opposite corner. `None` for a triangle without area.
     pub(super) fn inward(&self, triangle: u32, side: usize) -> Option<Vector<N, D>> {
         let corners = self.corners(triangle);
         inward_of(&filled(|turn| corners[(side + turn) % 3]))
@@ -179,7 +179,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
 }
 
 /// Returns the unit vector in the plane of a triangle, perpendicular to the side between its first
-/// two corners, towards the third corner; `None` without area.
+/// two corners, towards the third corner. `None` for a triangle without area.
 pub(in crate::shape) fn inward_of<N: Real, const D: usize>(
     corners: &[Point<N, D>; 3],
 ) -> Option<Vector<N, D>> {
@@ -189,16 +189,16 @@ pub(in crate::shape) fn inward_of<N: Real, const D: usize>(
     let rest = if from_a < from_b { c - a } else { c - b };
     let without = |v: &Vector<N, D>| v - along * along.dot(v);
     let (inward, height) = unit(&without(&rest))?;
-    // The height over the longest side is the smallest height, and decides whether there is an
-    // area.
+    // The height over the longest side is the smallest of the three, and decides whether there is
+    // an area.
     let longest = max(length, max(from_a, from_b));
     let least = height * (length / longest);
     let has_area = least > rounding_error(corners, longest);
     has_area.then(|| unit_or(&without(&inward), inward))
 }
 
-/// Whether the height over the longest side is far above the rounding error that [`inward_of`] uses
-/// as the limit of an area.
+/// Returns whether the height over the longest side is far above the rounding error that
+/// [`inward_of`] uses as the limit of an area.
 fn is_tall<N: Real, const D: usize>(corners: &[Point<N, D>; 3]) -> bool {
     let [a, b, c] = corners;
     let (ab, ac, bc) = (b - a, c - a, c - b);
@@ -237,21 +237,21 @@ impl<N: Real, const D: usize> SideLine<N, D> {
         [min(one, other), max(one, other)]
     }
 
-    /// Whether an interval of the line overlaps the side by more than `slack`; true for a side
-    /// without length.
+    /// Returns whether an interval of the line overlaps the side by more than `slack`; true for a
+    /// side without length.
     fn overlaps(&self, span: &[N; 2]) -> bool {
         self.length == N::ZERO || min(span[1], self.length) - max(span[0], N::ZERO) > self.slack
     }
 }
 
-/// Whether `crossed` contains the side, or is full.
+/// Returns whether `crossed` contains the side, or is full.
 fn crossed_before<S>(crossed: &[(u32, usize, S)], triangle: u32, side: usize) -> bool {
     let is_same = |crossed: &(u32, usize, S)| (crossed.0, crossed.1) == (triangle, side);
     crossed.len() >= MAX_CROSSED || crossed.iter().any(is_same)
 }
 
-/// Returns the height over the longest side up to which a triangle has no area. It covers the
-/// rounding error of coordinate differences and of the coordinates themselves.
+/// Returns the maximum height over the longest side at which a triangle counts as having no area.
+/// It covers the rounding error of coordinate differences and of the coordinates themselves.
 pub(super) fn rounding_error<N: Real, const D: usize>(corners: &[Point<N, D>; 3], longest: N) -> N {
     let mut farthest = N::ZERO;
     for corner in corners {

@@ -1,9 +1,11 @@
 //! The cache of edge angles at the sides of a mesh's triangles, computed on first use.
 //!
 //! ```text
-//! bit   15 14 | 13          | 12     | 11 .. 8 | 7 .. 4 | 3 .. 0
-//!       unused| not plain   | plain  | side 2  | side 1 | side 0       UNKNOWN, 1 to 3, UNCLEAR
+//! bit   15 14 | 13             | 12           | 11 .. 8 | 7 .. 4 | 3 .. 0
+//!       unused| UNCERTAIN_AREA | CERTAIN_AREA | side 2  | side 1 | side 0
 //! ```
+//!
+//! The code of a side is `UNKNOWN`, 1 to 3, or `UNCLEAR`.
 
 use core::sync::atomic::{AtomicU16, Ordering};
 
@@ -11,10 +13,12 @@ use crate::shape::surface::bend::BendShape;
 
 /// The number of bits per side.
 const BITS: usize = 4;
-/// Codes of a side whose edge angle is not computed yet, and of one whose edge angle is uncertain.
+/// Codes of an edge angle: not computed yet, and uncertain. Codes 1 to 3 are flat, ridge and
+/// hollow.
 const UNKNOWN: u16 = 0;
 const UNCLEAR: u16 = 4;
-/// Flags above the bits of the sides: the triangle certainly has an area, or may have none.
+/// Flags above the bits of the sides: the triangle certainly has an area, or it may have none.
+/// Neither is set before the first use.
 const CERTAIN_AREA: u16 = 1 << 12;
 const UNCERTAIN_AREA: u16 = 1 << 13;
 
@@ -42,8 +46,8 @@ impl Bends {
         }
     }
 
-    /// Returns the cached edge angle of a side, or computes it with `find` and stores it; `None` if
-    /// it is uncertain.
+    /// Returns the cached shape of the edge angle at a side, or computes it with `find` and stores
+    /// it. `None` if it is uncertain.
     pub(super) fn at(
         &self,
         triangle: u32,

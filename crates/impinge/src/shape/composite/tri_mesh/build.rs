@@ -51,18 +51,18 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
 
     /// Returns the mesh with its ghosts replaced by `ghosts`: triangles of the surface around the
     /// mesh. A ghost is not a part and no query finds it, but the surface continues across the
-    /// seams beside it. So nothing catches on the seam between two tiles of a terrain, if each tile
-    /// has the other's border triangles as ghosts.
+    /// seams beside it. So solids do not catch on the seam between two tiles of a terrain, if each
+    /// tile has the other's border triangles as ghosts.
     ///
     /// Ghosts refer to the vertices of the mesh, and have the winding of its triangles. Pass all
     /// neighbours that share a corner with the border, not only those that share a side. Ghosts do
     /// not close a mesh: [`Self::neighbor`] returns a border for a side next to a ghost.
     ///
-    /// The cost is that of building the mesh.
+    /// The cost equals the cost of building the mesh.
     ///
     /// # Errors
-    /// If a ghost refers to a vertex that does not exist, with the index of the ghost counted after
-    /// the triangles; or if the corners do not fit 32-bit indices.
+    /// If a ghost refers to a vertex that does not exist, or the corners do not fit 32-bit indices.
+    /// The error counts ghosts after the triangles.
     ///
     /// ```
     /// use impinge::dim3::math::Point;
@@ -118,8 +118,8 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         })
     }
 
-    /// Merges vertices at the same position: vertices that repeat an earlier one are dropped, and
-    /// the triangles refer to the earlier one. The behaviour of the mesh is unchanged.
+    /// Merges vertices at the same position. Of these only the first is kept, and the triangles
+    /// refer to it. The behaviour of the mesh is unchanged.
     #[must_use]
     pub fn with_vertices_merged(self) -> Self {
         let (mut number, mut kept) = (Vec::with_capacity(self.vertices.len()), Vec::new());
@@ -148,7 +148,8 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
     }
 
     /// Returns the mesh scaled along the axes of its frame, about its origin. A mirroring scale
-    /// also flips the triangles, as [`Self::flipped`] does, so that the front stays in front.
+    /// also reverses the winding of the triangles, as [`Self::flipped`] does, so that fronts stay
+    /// fronts.
     ///
     /// # Errors
     /// If a scale is zero or not finite, or a coordinate becomes infinite.
@@ -229,7 +230,7 @@ pub(crate) fn box_of_corners<N: Real, const D: usize>(corners: &[Point<N, D>; 3]
     Aabb::from_points(corners).unwrap_or_else(Aabb::unbounded)
 }
 
-/// Returns the unit normals of all triangles, zero for those without area; an empty vector in 2D.
+/// Returns the unit normals of all triangles, zero for a triangle without area. Empty in 2D.
 fn normals_of<N: Space<D>, const D: usize>(
     vertices: &[Point<N, D>],
     triangles: &[[u32; 3]],

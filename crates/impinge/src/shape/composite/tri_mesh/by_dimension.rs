@@ -1,4 +1,4 @@
-//! Algorithms of meshes, and of shapes as data, that differ between 2D and 3D.
+//! Algorithms of meshes, and conversions of shapes for saved worlds, that differ between 2D and 3D.
 
 use super::rays::RayBounds;
 use super::{TriMesh, surface3};
@@ -19,8 +19,8 @@ use crate::tables::Here;
 /// The algorithms of meshes that differ by dimension.
 #[expect(unnameable_types, private_interfaces, reason = "for this crate alone")]
 pub trait MeshByDimension<N: Real, const D: usize> {
-    /// Returns the unit normal on the front of a triangle, zero without area; `None` in 2D, where
-    /// triangles have no front.
+    /// Returns the unit normal on the front of a triangle, zero for a triangle without area. `None`
+    /// in 2D, where triangles have no front.
     fn mesh_normal(corners: &[Point<N, D>; 3]) -> Option<Vector<N, D>>;
 
     /// Implements [`Surface::admits`](crate::shape::Surface::admits).
@@ -40,9 +40,9 @@ pub trait MeshByDimension<N: Real, const D: usize> {
         normals: [&Vector<N, D>; 2],
     ) -> [bool; 2];
 
-    /// [`Self::mesh_admits_in_turn`] at a corner, for normals that differ from the triangle's own.
-    /// `corner` has the index of the corner, and whether another triangle there is known not to be
-    /// coplanar with this triangle.
+    /// Runs [`Self::mesh_admits_in_turn`] at a corner, for normals that differ from the triangle's
+    /// own. `corner` has the index of the corner, and whether another triangle there is known not
+    /// to be coplanar with this triangle.
     fn mesh_corner_admits_in_turn(
         mesh: &TriMesh<N, D>,
         part: u32,
@@ -73,22 +73,24 @@ pub trait MeshByDimension<N: Real, const D: usize> {
         triangles: &[[u32; 3]],
     ) -> Vec<Triangles>;
 
-    /// Calls `visit` with the parts that a ray may hit; `visit` returns the new limit.
+    /// Calls `visit` with the parts that a ray may hit; `visit` returns the new time limit.
     fn mesh_parts_along(
         mesh: &TriMesh<N, D>,
         bounds: &RayBounds<'_, N, D>,
         visit: &mut dyn FnMut(u32, Part<'_, N, D>) -> N,
     );
 
-    /// A shape of one dimension alone as data; `None` for others.
+    /// Returns the record of a shape whose type exists in this dimension only; `None` for any other
+    /// type.
     #[cfg(feature = "serde")]
     fn shape_record(shape: &dyn Shape<N, D>) -> Option<ShapeRecord<N>>;
 
-    /// The shape of [`Self::shape_record`].
+    /// Restores the shape whose record [`Self::shape_record`] returned.
     #[cfg(feature = "serde")]
     fn make_shape(record: &ShapeRecord<N>) -> Result<ShapeHandle<N, D>, Damage>;
 
-    /// Which normal of a segment is that of its front, where segments have one.
+    /// Returns the function that maps the direction of a segment to the normal on its front; `None`
+    /// in 3D, where segments have no front.
     #[cfg(feature = "serde")]
     fn line_front() -> Option<Front<N, D>>;
 }

@@ -1,4 +1,4 @@
-//! The implementation of composite shape for meshes: triangles with the seams between them.
+//! Implementation of [`CompositeShape`] for meshes: the triangles and the seams between them.
 
 use super::MeshByDimension;
 use super::rays::RayBounds;
@@ -95,7 +95,7 @@ impl<N: Space<D>, const D: usize> Surface<N, D> for TriMesh<N, D> {
     }
 
     fn faces(&self, part: u32, center: &Point<N, D>) -> bool {
-        // A triangle without area has a zero normal and can be touched from both sides.
+        // A triangle without area has a zero normal; contacts arise on both its sides.
         let is_behind = || {
             let corner = self.vertices[self.triangles[part as usize][0] as usize];
             self.normals[part as usize].dot(&(center - corner)) < N::ZERO
@@ -188,7 +188,8 @@ pub(in crate::shape) fn aabb_at<N: Space<D>, const D: usize, const K: usize>(
         let rotated = Aabb::around_all(
             parts.as_flattened().iter().map(|vertex| Point::from(pose.vector(&corner(vertex)))),
         );
-        // A non-finite pose gives no box; then the box is unbounded.
+        // If the pose is not finite, there is no box around the vertices and the result is
+        // unbounded.
         return rotated.map_or_else(Aabb::unbounded, |rotated| {
             Aabb::of_rotated(rotated.mins().coords, rotated.maxs().coords, size, pose)
         });

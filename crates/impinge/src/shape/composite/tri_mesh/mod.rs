@@ -39,16 +39,15 @@ use crate::shape::{Revision, Triangle};
 /// with shared vertices. A corner in the middle of a side of another triangle does not join.
 ///
 /// **Sides.** In 3D the front of a triangle is the side from which its corners run
-/// counter-clockwise. A mesh has two sides, or one after `one_sided`: then nothing touches it from
-/// behind, and a solid inside a closed mesh is not pushed deeper. For the queries that all shapes
-/// have, a mesh is a skin without an inside, unless `solid` makes a closed mesh a body. `encloses`
-/// and `signed_distance` compute what a closed skin encloses. In 2D triangles are filled, and their
-/// winding is irrelevant.
+/// counter-clockwise. Contacts arise on both sides, or only on the front after `one_sided`, so that
+/// a solid inside a closed mesh is not pushed deeper. For most queries a mesh is a skin without an
+/// inside, unless `solid` makes a closed mesh a body. `encloses` and `signed_distance` compute what
+/// a closed skin encloses. In 2D triangles are filled, and their winding is irrelevant.
 ///
 /// **Seams.** Contacts treat the mesh as one surface (see [`Surface`](crate::shape::Surface)): at
-/// an edge or corner only normals of the whole surface are admitted, so that nothing catches on the
-/// edges of a floor. Faces whose normals differ by less than 0.57 degrees (a sine of 0.01) count as
-/// coplanar. [`Self::with_internal_edges_kept`] disables this.
+/// an edge or corner only normals of the whole surface are admitted, so that solids do not catch on
+/// the edges of a floor. Faces whose normals differ by less than 0.57 degrees (a sine of 0.01)
+/// count as coplanar. [`Self::with_internal_edges_kept`] disables this.
 ///
 /// **Degenerate triangles.** A triangle with repeated or collinear corners is kept, so that part
 /// indices do not change: it acts as a segment or a point.
@@ -75,10 +74,11 @@ pub struct TriMesh<N: Real, const D: usize> {
     /// The triangles, followed by the ghosts. Ghosts have entries in the topology and the normals,
     /// but are not parts.
     triangles: Vec<[u32; 3]>,
-    /// The number of ghosts, at the end of `triangles`.
+    /// The number of ghosts; they are the last elements of `triangles`.
     ghosts: usize,
     topology: Topology,
-    /// The unit normal on the front of each triangle; zero without area. Empty in 2D.
+    /// The unit normal on the front of each triangle; zero for a triangle without area. Empty in
+    /// 2D.
     normals: Vec<Vector<N, D>>,
     bends: Bends,
     tree: BoxTree<N, D>,
@@ -89,7 +89,7 @@ pub struct TriMesh<N: Real, const D: usize> {
     /// coincide.
     is_cycle: bool,
     is_one_sided: bool,
-    /// Whether `solid` was called; valid while [`Self::is_cycle`].
+    /// Whether `solid` was called; has an effect only while [`Self::is_cycle`] is true.
     is_solid: bool,
     keeps_internal_edges: bool,
     /// For each triangle, the first triangle of its connected piece; computed on first use.
@@ -131,7 +131,8 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         Triangle::of_finite(self.corners(index))
     }
 
-    /// Returns the neighbour across side 0 to 2 of a triangle; ghosts are not neighbours. O(1).
+    /// Returns the neighbour across the side `side`, 0 to 2, of a triangle. Ghosts are not
+    /// neighbours. O(1).
     ///
     /// # Panics
     /// If there is no such triangle or side.
@@ -156,8 +157,8 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         found
     }
 
-    /// Whether every side with a length has a neighbour, so that the surface in 3D has no border.
-    /// O(n).
+    /// Returns whether every side with a length has a neighbour, so that the surface in 3D has no
+    /// border. O(n).
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.each_side().all(|(triangle, side)| {
@@ -166,7 +167,8 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         })
     }
 
-    /// Whether no side has more than two triangles, and the fronts of all neighbours agree. O(n).
+    /// Returns whether no side has more than two triangles, and the fronts of all neighbours agree.
+    /// O(n).
     #[must_use]
     pub fn is_oriented(&self) -> bool {
         self.each_side().all(|(triangle, side)| match self.across(triangle, side) {
@@ -182,13 +184,13 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         &self.tree
     }
 
-    /// Whether the mesh is one-sided: nothing touches it from behind.
+    /// Returns whether the mesh is one-sided: no contact arises from behind.
     #[must_use]
     pub const fn is_one_sided(&self) -> bool {
         self.is_one_sided
     }
 
-    /// Whether contacts treat each triangle as a separate solid; see
+    /// Returns whether contacts treat each triangle as a separate solid; see
     /// [`Self::with_internal_edges_kept`].
     #[must_use]
     pub const fn keeps_internal_edges(&self) -> bool {
@@ -232,8 +234,8 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
 }
 
 impl<N: Real> TriMesh<N, 3> {
-    /// Whether the mesh bounds one or several volumes: each side with a length is traversed equally
-    /// often in both directions. O(1).
+    /// Returns whether the mesh bounds one or several volumes: each side with a length is traversed
+    /// equally often in both directions. O(1).
     ///
     /// True for every mesh that [is closed](Self::is_closed) and [oriented](Self::is_oriented).
     /// Also true if bodies share a side, which then has four triangles, or if triangles have
@@ -244,16 +246,16 @@ impl<N: Real> TriMesh<N, 3> {
         self.is_cycle
     }
 
-    /// Makes the mesh one-sided: nothing touches it from behind. The front of a triangle is the
-    /// side from which its corners run counter-clockwise. The fronts of neighbours should agree:
-    /// see [`Self::is_oriented`].
+    /// Makes the mesh one-sided: no contact arises from behind. The front of a triangle is the side
+    /// from which its corners run counter-clockwise. The fronts of neighbours should agree: see
+    /// [`Self::is_oriented`].
     #[must_use]
     pub const fn one_sided(mut self) -> Self {
         self.is_one_sided = true;
         self
     }
 
-    /// Returns the unit normal on the front of a triangle; `None` without area.
+    /// Returns the unit normal on the front of a triangle; `None` for a triangle without area.
     ///
     /// # Panics
     /// If there is no such triangle.

@@ -1,5 +1,5 @@
-//! Ray tests against the triangles of a mesh: 16 triangles at once are culled by the signs of
-//! areas.
+//! Ray tests against the triangles of a mesh. The signs of areas cull the triangles of a leaf block
+//! in one step.
 
 use core::hint::black_box;
 
@@ -52,8 +52,8 @@ impl<N: Real> TriMesh<N, 3> {
         tree.packed().leaves().iter().map(block).collect()
     }
 
-    /// Calls `visit` with the parts that pass two tests: the box, and the signs of the areas of the
-    /// triangle around the ray. If the direction is zero, only the box is tested.
+    /// Calls `visit` with the parts that pass two tests: the box, and the signs of the areas that
+    /// the sides span with the ray. If the direction is zero, only the box is tested.
     ///
     /// The box of a part is tested last. Where areas underflow, their signs are meaningless here
     /// and in the exact test, and only the box rejects the part.
@@ -112,8 +112,8 @@ impl<N: Real> TriMesh<N, 3> {
         }
     }
 
-    /// Loads a coordinate of each corner of a triangle that [`Self::corners_in`] will read, to
-    /// bring it into the cache.
+    /// Prefetches the corners of a triangle that [`Self::corners_in`] will read: loads one
+    /// coordinate of each. Does nothing if the blocks hold the corners.
     #[inline(always)]
     pub(crate) fn touch_corners(&self, index: u32) {
         let triangle = self.triangles.get(index as usize).filter(|_| !holds_all::<N>());
@@ -131,7 +131,7 @@ impl<N: Real> TriMesh<N, 3> {
     }
 }
 
-/// Whether blocks, which store `f32`, hold corners of the scalar `N` exactly.
+/// Returns whether blocks, which store `f32`, hold corners of the scalar `N` exactly.
 fn holds_all<N: Real>() -> bool {
     N::EPSILON.as_f64() >= f64::from(f32::EPSILON)
 }

@@ -1,4 +1,4 @@
-//! Meshes of saved worlds.
+//! Conversion of meshes to and from the records of saved worlds.
 
 use super::topology::Topology;
 use super::{TriMesh, entries};
@@ -7,7 +7,7 @@ use crate::math::numbers::{Damage, Numbers, ensure};
 use crate::shape::saved::MeshRecord;
 
 impl<N: Space<D>, const D: usize> TriMesh<N, D> {
-    /// The mesh as data.
+    /// Returns the record of the mesh.
     pub(in crate::shape) fn record(&self) -> MeshRecord<N> {
         let joints = &self.topology.joints;
         MeshRecord {
@@ -21,7 +21,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         }
     }
 
-    /// The mesh of its data.
+    /// Restores the mesh from its record.
     pub(in crate::shape) fn of_record(record: &MeshRecord<N>) -> Result<Self, Damage> {
         let (triangles, ghosts) = (record.parts()?, record.ghosts as usize);
         ensure(ghosts < triangles.len(), "all triangles of a mesh are ghosts")?;

@@ -7,8 +7,8 @@ use crate::shape::composite::joints::Joints;
 use crate::shape::composite::mesh_error::{MeshError, or_panic};
 
 impl<N: Real, const D: usize> TriMesh<N, D> {
-    /// Whether the mesh is a body, not a skin: `solid` was called, and no joined vertices have been
-    /// moved apart since. Always false in 2D, where triangles are filled.
+    /// Returns whether the mesh is a body, not a skin: `solid` was called, and no joined vertices
+    /// have been moved apart since. Always false in 2D, where triangles are filled.
     #[must_use]
     pub const fn is_solid(&self) -> bool {
         self.is_solid && self.is_cycle
@@ -43,10 +43,10 @@ impl<N: Real> TriMesh<N, 3> {
     /// A solid wholly inside touches the body: the distance is zero, the time of impact is zero,
     /// and the contact leads out through the nearest part of the surface. The depth is how far the
     /// solid extends below the plane through the nearest point of that part. Points inside belong
-    /// to the body, and rays that start inside hit it at once if cast against a solid. Contacts
-    /// outside are those of a [one-sided](Self::one_sided) mesh, but a solid that overlaps the
-    /// surface is touched wherever its centre is. Inner surfaces whose fronts face each other are
-    /// cavities: points in them are outside.
+    /// to the body. A ray that starts inside hits it at time 0 if the ray test treats shapes as
+    /// solid. Contacts outside are those of a [one-sided](Self::one_sided) mesh, but a solid that
+    /// overlaps the surface has contacts wherever its centre is. An inner surface whose front faces
+    /// its inside bounds a cavity; points in a cavity are outside the body.
     ///
     /// Later calls of [`Self::set_vertices`] are not checked: while joined vertices are apart, the
     /// mesh is a one-sided skin. [`Self::flipped`] makes it a skin permanently.
@@ -116,7 +116,8 @@ impl<N: Real> TriMesh<N, 3> {
             let corners = self.triangles[part as usize];
             [corners[side], corners[(side + 1) % 3]]
         };
-        // Counts the traversals of an edge in the given direction, and in the opposite one.
+        // Counts the traversals of an edge: in the direction from `from` to `to`, and in the
+        // opposite direction.
         let counts = |[from, to]: [u32; 2]| {
             let mut counts = [0; 2];
             for &part in joints.parts(from) {
@@ -140,8 +141,8 @@ impl<N: Real> TriMesh<N, 3> {
                 _ => {}
             }
         }
-        // Vertices that were moved to one position do not join: the joints are those of
-        // construction.
+        // The sides balance by position, but not by the joints of construction: vertices that were
+        // moved to one position do not join.
         MeshError::NotClosed { part: 0, edge: ends(0, 0) }
     }
 }

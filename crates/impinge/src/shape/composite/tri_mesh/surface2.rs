@@ -1,5 +1,5 @@
-//! The seam rule of filled triangles in 2D: the normals of the union of the triangles at a side or
-//! a vertex.
+//! The seam rule of filled triangles in 2D: the normals that their union admits at a side or a
+//! vertex.
 
 use super::TriMesh;
 use crate::math::{Real, Vector, cross2, max_component};
@@ -25,8 +25,9 @@ impl<N: Real> TriMesh<N, 2> {
         }
     }
 
-    /// Returns the normal of the triangle's border side that is nearest to `normal`, if within a
-    /// right angle of it; `None` if the triangle has no such side, as inside the shape.
+    /// Returns the normal of the triangle's border side that is nearest to `normal`, if the angle
+    /// between the two is less than a right angle. `None` if there is no such side, as for a
+    /// triangle inside the shape.
     pub(super) fn snapped_2d(&self, part: u32, normal: &Vector<N, 2>) -> Option<Vector<N, 2>> {
         let open = (0..3).filter_map(|side| self.open_normal(part, side));
         let facing = open.filter(|own| own.dot(normal) > N::ZERO);
@@ -40,19 +41,19 @@ impl<N: Real> TriMesh<N, 2> {
         self.is_open_along(part, side, &outward).then_some(outward)
     }
 
-    /// Whether no other triangle at a side lies on the side's `direction` half-plane.
+    /// Returns whether no other triangle at a side extends from the side towards `direction`.
     fn is_open_along(&self, part: u32, side: usize, direction: &Vector<N, 2>) -> bool {
         let mut is_open = true;
         self.each_beyond(part, side, |_, inward| is_open &= inward.dot(direction) <= slack());
         is_open
     }
 
-    /// Whether a side is on the border and has the outward normal `normal`; a zero-area triangle
-    /// may have both normals.
+    /// Returns whether a side is on the border and has the outward normal `normal`. A zero-area
+    /// triangle may have both normals.
     fn side_admits(&self, part: u32, side: usize, normal: &Vector<N, 2>) -> bool {
         match self.open_normal(part, side) {
             Some(own) => max_component(&(own - normal)) <= slack(),
-            // A triangle without area is a segment, which has both sides.
+            // A triangle without area is a segment; contacts arise on both its sides.
             None => {
                 self.inward(part, side).is_none()
                     && (self.is_open_along(part, side, normal) || self.is_exposed(part, side))
@@ -60,11 +61,12 @@ impl<N: Real> TriMesh<N, 2> {
         }
     }
 
-    /// Whether the corner admits `normal`: no side that leaves the corner rises along it, and the
-    /// two highest sides do not form a straight border.
+    /// Returns whether the corner admits `normal`: no side that leaves the corner rises along it,
+    /// and the two highest sides do not form a straight border.
     fn corner_admits(&self, part: u32, corner: usize, normal: &Vector<N, 2>) -> bool {
         let joint = self.joint_ends(part, corner)[0];
-        // The highest side on the left of the normal, and on the right; both start straight down.
+        // The side that rises highest along `normal` to its left, and to its right. Both start as
+        // the opposite of `normal`.
         let (mut is_highest, mut highest) = (true, [-normal; 2]);
         for &triangle in self.topology.joints.parts(joint) {
             for along in self.leaving(triangle, joint) {

@@ -8,8 +8,8 @@ use crate::shape::surface::bend::{Bend, BendShape};
 use crate::shape::surface::seam::{CornerEdges, Seam, is_across, slack};
 use crate::shape::{FaceSeams, FeatureId};
 
-/// Returns the unit normal on the side from which the corners run counter-clockwise; zero without
-/// area.
+/// Returns the unit normal on the side from which the corners run counter-clockwise; zero for a
+/// triangle without area.
 pub(in crate::shape) fn normal_of<N: Real>(corners: &[Point<N, 3>; 3]) -> Vector<N, 3> {
     let [a, b, c] = corners;
     let lengths = [length_of(&(b - a)), length_of(&(c - b)), length_of(&(a - c))];
@@ -66,7 +66,8 @@ impl<N: Real> TriMesh<N, 3> {
         }
     }
 
-    /// Implements [`Surface::snapped`](crate::shape::Surface::snapped) in 3D; `None` without area.
+    /// Implements [`Surface::snapped`](crate::shape::Surface::snapped) in 3D; `None` for a triangle
+    /// without area.
     pub(super) fn snapped_3d(&self, part: u32, normal: &Vector<N, 3>) -> Option<Vector<N, 3>> {
         let own = self.normal(part)?;
         let is_front = self.is_one_sided || own.dot(normal) >= N::ZERO;
@@ -77,8 +78,8 @@ impl<N: Real> TriMesh<N, 3> {
         self.normals[triangle as usize].dot(normal)
     }
 
-    /// Whether `normal` is the triangle's own normal, on the front or, for a mesh with two sides,
-    /// on the back.
+    /// Returns whether `normal` is the triangle's front normal or, on a mesh with two sides, its
+    /// back normal.
     fn is_own_normal(&self, part: u32, normal: &Vector<N, 3>) -> bool {
         self.snapped_3d(part, normal).is_some_and(|own| max_component(&(own - normal)) <= slack())
     }
@@ -94,7 +95,8 @@ impl<N: Real> TriMesh<N, 3> {
         let fronts = [part, other].map(|face| self.normals[face as usize]);
         let find = || {
             // If both triangles traverse the side in the same direction, their fronts disagree and
-            // they lie on the same side of it: there is no edge angle, but perhaps a rim.
+            // they lie on the same side of it. Then there is no edge angle, but the side may be a
+            // rim.
             let ends = self.joint_ends(part, side);
             let is_opposite = self
                 .side_between(other, ends)
@@ -105,8 +107,8 @@ impl<N: Real> TriMesh<N, 3> {
         Some(Bend::of(self.bends.at(part, side, find)?, fronts))
     }
 
-    /// Whether the edge admits `normal`: the edge is perpendicular to it, no face at the edge rises
-    /// along it, and the faces are not coplanar.
+    /// Returns whether the edge admits `normal`: `normal` is perpendicular to the edge, no face at
+    /// the edge rises along `normal`, and the faces are not coplanar.
     fn bent_edge_admits(
         &self,
         bend: Option<&Bend<N>>,
@@ -143,8 +145,9 @@ impl<N: Real> TriMesh<N, 3> {
         highest
     }
 
-    /// Whether the surface admits `normal`, which is not the triangle's own, at a corner. `is_bent`
-    /// is true if another triangle there is known not to be coplanar with this triangle.
+    /// Returns whether the surface admits `normal` at a corner; `normal` is not the normal of the
+    /// triangle itself. `is_bent` is true if another triangle there is known not to be coplanar
+    /// with this triangle.
     pub(super) fn vertex_admits(
         &self,
         part: u32,
@@ -155,8 +158,8 @@ impl<N: Real> TriMesh<N, 3> {
         let around = self.topology.joints.parts(joint);
         match self.edges_around(part, corner, normal).admit((own, is_bent), self.is_one_sided) {
             Some(false) => return false,
-            // Beyond a triangle without area, other triangles may lie, which this walk does not
-            // see.
+            // Other triangles may lie beyond a triangle without area. This walk around the corner
+            // does not find them.
             Some(true) if around.iter().all(|&triangle| self.has_certain_area(triangle)) => {
                 return true;
             }

@@ -45,8 +45,8 @@ pub(super) struct Topology {
     across: Vec<[u32; 3]>,
     /// Whether each side is traversed equally often in both directions.
     pub(super) is_cycle: bool,
-    /// Whether vertices moved since construction: joined vertices may be apart, and vertices at one
-    /// position may not be joined.
+    /// Whether vertices were moved since construction. Then joined vertices may be apart, and
+    /// vertices at one position may not be joined.
     pub(super) is_moved: bool,
 }
 
@@ -89,7 +89,7 @@ impl Topology {
         Self::of_joints(Joints::new(vertices, triangles), triangles)
     }
 
-    /// The adjacency of triangles that meet at these joints.
+    /// Computes the adjacency of triangles that meet at the given joints.
     pub(super) fn of_joints(joints: Joints, triangles: &[[u32; 3]]) -> Self {
         let mut across = vec![[BORDER; 3]; triangles.len()];
         let (mut is_cycle, (mut sides, ends)) = (true, sides_by_joint(&joints, triangles));
@@ -111,7 +111,7 @@ impl Topology {
         Some(self.across[triangle as usize][side]).filter(|&across| across < SEVERAL)
     }
 
-    /// Whether more than one triangle is across a side.
+    /// Returns whether more than one triangle is across a side.
     pub(super) fn has_several_across(&self, triangle: u32, side: usize) -> bool {
         self.across[triangle as usize][side] == SEVERAL
     }
@@ -121,8 +121,8 @@ impl Topology {
     }
 }
 
-/// Stores the neighbours of the triangles in `group`, a group of sides with equal ends in ascending
-/// order. A triangle without area may occur twice.
+/// Stores the neighbours of the triangles in `group`: sides with equal ends, in ascending order. A
+/// triangle without area may occur twice.
 fn link(group: &[TopologySide], across: &mut [[u32; 3]]) {
     for &(_, own, side, _) in group {
         let mut others = group.iter().map(|&(_, index, ..)| index).filter(|&index| index != own);

@@ -90,7 +90,7 @@ impl<N: Real> ContactManifoldGenerator<N, DIM> for OwnBalls<N> {
 pub(super) enum Policy {
     /// [`OwnBalls`] for two balls, the library's boxed algorithm for other pairs.
     Balls,
-    /// [`OwnBalls`] for all pairs, although its `update` refuses most of them.
+    /// [`OwnBalls`] for all pairs, although its `update` returns `false` for most of them.
     OnlyBalls,
     /// No algorithm.
     Nothing,

@@ -1,5 +1,5 @@
-//! Tests that custom shapes work in every query: an ellipsoid that only has support points, and a
-//! crate that delegates to a box.
+//! Tests that custom shapes work in every query: an ellipsoid that has only support points, and a
+//! wrapper that delegates to a box.
 
 use super::dim::bounding_volume::Aabb;
 use super::dim::math::{DIM, Isometry, Point, Pose, Real, Unit, Vector};
@@ -263,7 +263,7 @@ fn in_worlds<N: Real>() {
     assert!(shape.as_ref().as_shape::<Ball<N>>().is_none(), "and nothing else");
 }
 
-/// A shape that delegates to another one gives the other shape's results, to the bit.
+/// Asserts that a wrapper that delegates to a box gives the results of the box, bit for bit.
 fn crates<N: Real>() {
     let walls = Cuboid::new(vector::<N>(1.0, 0.5) + Vector::repeat(N::lit(0.25)));
     let own = Crate { walls, content: "apples" };

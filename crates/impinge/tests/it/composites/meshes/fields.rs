@@ -18,8 +18,8 @@ fn corners<N: Real, const D: usize>(shape: &dyn CompositeShape<N, D>) -> Vec<[f6
     all.map(|corner| std::array::from_fn(|axis| corner[axis].as_f64())).collect()
 }
 
-/// Asserts that both surfaces admit the same normals at all features: random normals, and the
-/// normals of parts.
+/// Asserts that both surfaces admit the same normals at all features, for random normals and the
+/// normals of parts. Returns the number of admitted normals.
 fn compare<N: Space<D>, const D: usize>(
     field: &dyn CompositeShape<N, D>,
     twin: &dyn CompositeShape<N, D>,
@@ -73,7 +73,8 @@ fn a_line_is_like_the_polyline_of_its_segments() {
     for reach in [1.0, 0.002, 0.0] {
         let heights = (0..30).map(|_| random.range(-reach, reach)).collect();
         let field = HeightField::<f64, 2>::new(heights, vector([29.0, 1.0]));
-        // The front of a field is on the left of its segments, that of a polyline on the right.
+        // The front of a field is on the left of its segments; the front of a polyline is on the
+        // right.
         let vertices = corners(&field).into_iter().map(|p| vector::<f64, 2>(p).into()).collect();
         let segments = (0..field.num_parts()).map(|i| [2 * i, 2 * i + 1]).collect();
         let twin = Polyline::<f64, 2>::new(vertices, segments);

@@ -32,7 +32,8 @@ fn moved_meshes_are_like_new_ones() {
     let (mut vertices, triangles) = grid(20, |x, y| [x - 10.0, y - 10.0, 0.0]);
     let mut cloth = TriMesh::<f32, 3>::new(points(&vertices), triangles.clone()).one_sided();
     for step in 0..24 {
-        // First small moves, then large ones, after which the order of the tree is useless.
+        // First small moves, then large ones, after which neighbours in the tree are no longer
+        // close to each other.
         let reach = if step < 8 { 0.3 } else { 12.0 };
         for vertex in &mut vertices {
             vertex.iter_mut().for_each(|x| *x = (*x + random.range(-reach, reach)) * 0.9);

@@ -10,7 +10,7 @@ fn up<N: Real>() -> Vector<N, 3> {
     vector([0.0, 0.0, 1.0])
 }
 
-/// All features of all parts.
+/// Iterates over all features of all parts.
 fn features(parts: u32) -> impl Iterator<Item = (u32, FeatureId)> {
     let of_part = |part| {
         let sides = (0..3).flat_map(|at| [FeatureId::Vertex(at), FeatureId::Edge(at)]);
@@ -58,8 +58,8 @@ fn a_flat_floor_has_its_normal_only() {
     check_flat(&mesh::<f32, 3>(&vertices, &triangles), &parts);
 }
 
-/// The long side of the first square has a vertex at its midpoint, and is closed by a triangle
-/// without area.
+/// One side of the first square has a vertex at its midpoint, which a triangle without area
+/// connects to its ends.
 #[test]
 fn a_filler_without_area_is_no_seam() {
     let vertices = [
@@ -207,7 +207,8 @@ fn a_corner_has_the_cone_over_the_normals_around_it() {
     }
 }
 
-/// Mirrors a normal at the apex. Negated, the result is a normal of the back of the pit.
+/// Rotates a normal by half a turn about the axis of the pyramid. Negated, the result is a normal
+/// of the back of the pit.
 fn pit_mirror(v: &Vector<f64, 3>) -> Vector<f64, 3> {
     vector([-v.x, -v.y, v.z])
 }

@@ -37,7 +37,7 @@ fn fronts_are_outside_but_in_cavities() {
     assert_eq!(skin(beside).try_solid().err(), Some(MeshError::InsideOut { part: 12 }));
     let hollow = joined(&[inverted(cuboid([1.0; 3], [0.5, 0.0, 0.0])), outer()]);
     assert!(skin(hollow).try_solid().is_ok(), "a cavity that comes first");
-    // A doubled sheet is closed, although it encloses nothing.
+    // Two equal triangles with opposite windings are closed, although they enclose nothing.
     let sheet = TriMesh::new(outer().0, vec![[0, 1, 2], [0, 2, 1]]);
     let sheet = sheet.try_solid().expect("closed");
     assert_eq!(

@@ -23,17 +23,17 @@ pub(crate) struct Form<N: Real, const D: usize> {
     pub(crate) shape: ShapeHandle<N, D>,
     /// Description of the solid, for messages.
     pub(crate) text: String,
-    /// The solid as the precise reference knows it; `None` for composites.
+    /// The solid in the representation of the precise reference; `None` for composites.
     pub(crate) precise: Option<precise::Solid<D>>,
     offs: Vec<Off<D>>,
     /// Greatest distance of a point of the solid from the local origin; zero for a half-space.
     pub(crate) reach: f64,
-    /// Error allowed for points beside the deepest one: a rounded part with a tilt is treated as
-    /// flat up to its end.
+    /// Error allowed for contact points other than the deepest: a tilted face of a rounded solid is
+    /// treated as flat up to its edges.
     pub(crate) beside: f64,
 }
 
-/// 1 / cosine - 1 of atan(1/2), the largest tilt of a part that is treated as flat.
+/// Allowed error per unit of radius: `1 / cos(a) - 1` for a face tilted by `a = atan(1 / 2)`.
 const LEANING: f64 = 0.1181;
 
 impl<N: Real, const D: usize> Form<N, D> {
@@ -46,7 +46,7 @@ impl<N: Real, const D: usize> Form<N, D> {
         Self { precise: Some(precise), ..self }
     }
 
-    /// Creates the form of a solid that the reference knows, inflated by a radius.
+    /// Creates the form of a solid of the reference, inflated by the radius `inflation`.
     fn known<S: Shape<N, D>>(shape: S, solid: &Solid<D>, inflation: f64) -> Self {
         let reach = solid.bounding_radius();
         let reach = if reach.is_finite() { reach + inflation } else { 0.0 };
@@ -58,7 +58,7 @@ impl<N: Real, const D: usize> Form<N, D> {
         }
     }
 
-    /// Creates the form of a composite of solids that the reference knows.
+    /// Creates the form of a composite whose parts are solids of the reference.
     fn composite<S: Shape<N, D>>(shape: S, parts: &[Solid<D>]) -> Self {
         let reach = parts.iter().map(Solid::bounding_radius).fold(0.0, f64::max);
         let offs = parts.iter().map(|part| metered(part, 0.0)).collect();
@@ -122,7 +122,8 @@ impl Draw<'_> {
         std::array::from_fn(|_| self.size::<N>())
     }
 
-    /// Returns the corners of a triangle or tetrahedron that is not thin.
+    /// Returns the corners of a segment, triangle or tetrahedron that is not thin. With `zeros`,
+    /// all corners lie on a line.
     fn corners<N: Real, const D: usize, const K: usize>(&mut self) -> [[f64; D]; K] {
         if self.sizes.zeros {
             return self.corners_of_line::<N, D, K>();
@@ -246,7 +247,8 @@ fn off_precise<const D: usize>(solid: &precise::Solid<D>, point: &[f64; D]) -> f
     precise::signed_distance(&dot, &place, solid, &origin).distance.to_f64()
 }
 
-/// Returns the union of balls along the second axis whose radii change linearly.
+/// Creates a tapered capsule along the y axis, with the radius `radii[0]` at `-half` and `radii[1]`
+/// at `half`.
 fn tapered<N: Space<D>, const D: usize>(half: f64, radii: [f64; 2]) -> Form<N, D> {
     let [low, high] = radii.map(N::lit);
     let shape = TaperedCapsule::<N, D>::new(N::lit(half), low, high);

@@ -25,38 +25,41 @@ use impinge_reference::geometry::vector::scale;
 use impinge_reference::random::Random;
 use turns::{Turns, turned3, turns2, turns3};
 
-/// Greatest error of points, in rounding errors of the size of the scene: the sum of both bounding
-/// radii, the distance of the origins, and that from the world's origin.
+/// Greatest error of contact points, in units of `EPSILON` times the size of the scene. That size
+/// is the sum of both bounding radii, the distance between the origins of the solids, and the
+/// distance of the first from the world's origin.
 const UNITS: f64 = 64.0;
-/// Greatest error for solids with a round side in `f64`, about 1e-8 of the scene: where all normals
-/// of a ring are nearly equally good, the search ends with an iteration along the ring.
+/// Greatest error in `f64` for solids with a curved side, in the units of [`UNITS`]: about 1e-8 of
+/// the size. If the separation is nearly the same along a circle of normals, the search ends with
+/// an iteration along that circle, which is only this accurate.
 const ROUND: f64 = 5e7;
 
-/// Returns the greatest error of the points of two kinds, in units.
+/// Returns the greatest error allowed for the contact points of two kinds, in units.
 fn allowed<N: Real>(names: [&str; 2]) -> f64 {
     let round = ["cylinder", "cone", "tapered", "compound"];
     let is_round = names.iter().any(|name| round.iter().any(|round| name.contains(round)));
     if is_round && N::EPSILON.as_f64() < 1e-10 { ROUND } else { UNITS }
 }
 
-/// Returns the number of pairs that are tested for each two kinds.
+/// Returns the number of random scenes for each ordered pair of kinds.
 fn rounds() -> usize {
     samples(2)
 }
 
-/// Signed distances relative to the least size; `None` puts the middle of one solid into that of
-/// the other.
+/// Signed distances as multiples of the bounding radius of the second solid, which counts as at
+/// least 0.1. `None` keeps the drawn position, usually with the origins close to each other.
 const GAPS: [Option<f64>; 7] =
     [Some(0.05), Some(1e-5), Some(0.0), Some(-1e-6), Some(-1e-2), Some(-0.3), None];
 
-/// The solids and rotations of one dimension.
+/// Generators of the solids and rotations of one dimension.
 struct Stage<N: Real, R, const D: usize> {
     names: &'static [&'static str],
     form: fn(usize, Sizes, &mut Random) -> Form<N, D>,
     turns: Turns<R>,
 }
 
-/// Errors of two kinds: how many of how many cases were wrong, the worst error, and its case.
+/// Statistics of one source of contacts and one pair of kinds: contacts tested, contacts beyond the
+/// allowed error, the worst error in units, and its description.
 #[derive(Default)]
 struct Wrong {
     asked: usize,
@@ -92,7 +95,8 @@ where
         };
         let aligned = (self.turns.straight)(random) * (self.turns.tilt)(lean, random);
         let turn = if random.chance(0.25) { (self.turns.any)(random) } else { aligned };
-        // The second solid is above the middle of the first, nearly so, or anywhere.
+        // The second solid is above or below the first: exactly, with an offset of 1e-7, or with
+        // any offset up to the sum of their bounding radii along each axis.
         let beside = *random.pick(&[0.0, 0.0, 1e-7, 1.0]);
         let reach = forms[0].reach + forms[1].reach;
         let mut away = scale(&random.vector::<D>(1.0), beside * reach);
@@ -218,8 +222,9 @@ where
         manifolds.flat_map(|(_, _, found)| found.contacts()).map(|found| found.contact).collect()
     }
 
-    /// Error of a contact in units of rounding, and its description. A contact of two convex solids
-    /// is exact; that of composites is the deepest point of a manifold along the normal of a face.
+    /// Returns the error of a contact in units of `self.unit`, and a description of the case. The
+    /// contact of two convex solids must lie exactly on both surfaces. A contact of composites is
+    /// the deepest point of a manifold, whose normal is that of a face.
     fn error(&self, found: &Contact<N, D>, source: &str) -> (f64, String) {
         let unit = self.unit;
         let of_composites =
@@ -262,8 +267,8 @@ fn in_space<N: Real>(seed: u64) {
     stage.check(seed);
 }
 
-/// The contact point of an upright cone on a solid with flat faces is its apex, however small the
-/// tilt of its axis.
+/// Tests that the apex of a cone is its contact point with a box if the normal points up, however
+/// small the tilt of the cone's axis.
 fn apex<N: Real>() {
     let mut random = Random::new(5);
     let sizes = Vector::<N, 3>::new(N::lit(5.0), N::TWO, N::lit(5.0));

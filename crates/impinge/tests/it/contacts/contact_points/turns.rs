@@ -8,7 +8,8 @@ use impinge_reference::random::Random;
 pub(crate) struct Turns<R> {
     /// A random rotation that maps axes to axes.
     pub(crate) straight: fn(&mut Random) -> R,
-    /// A rotation by an angle about an axis across the second one.
+    /// A rotation by the given angle, in radians, about a random axis perpendicular to the y axis.
+    /// In 2D the sign of the angle is random.
     pub(crate) tilt: fn(f64, &mut Random) -> R,
     pub(crate) any: fn(&mut Random) -> R,
 }
@@ -50,7 +51,8 @@ pub(crate) fn turned3<N: Real, const CLEAN: bool>(by: Vector<f64, 3>) -> UnitQua
     UnitQuaternion::new_normalize(turn.into_inner().coords.map(component::<N, CLEAN>).into())
 }
 
-/// A component of a rotation; with `CLEAN` it is zero if it is far below the rounding of 1.
+/// Converts a component of a rotation to `N`. `CLEAN` replaces magnitudes below `EPSILON / 64` by
+/// zero.
 fn component<N: Real, const CLEAN: bool>(x: f64) -> N {
     if CLEAN && x.abs() < N::EPSILON.as_f64() / 64.0 { N::ZERO } else { N::lit(x) }
 }

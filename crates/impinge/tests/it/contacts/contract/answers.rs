@@ -50,7 +50,8 @@ impl<N: Space<D>, const D: usize> Lone<N, D> {
     }
 }
 
-/// A world of scenes at the same position; only the two solids of each scene interact.
+/// A world of several scenes, whose poses may overlap: collision groups let only the two solids of
+/// a scene interact.
 pub(crate) struct Batch<N: Space<D>, const D: usize> {
     world: CollisionWorld<N, D, usize>,
     handles: Vec<[CollisionObjectHandle; 2]>,
@@ -90,7 +91,7 @@ where
         self.world.update();
     }
 
-    /// The points of each scene.
+    /// Returns the contact points of each scene.
     pub(crate) fn points(&self) -> Vec<Points<N, D>> {
         let mut points = vec![Vec::new(); self.handles.len()];
         for (object, _, manifold) in self.world.contact_manifolds() {

@@ -18,7 +18,7 @@ pub(crate) struct Judge<'a, N: Real, R, const D: usize> {
     pub(crate) stage: &'a Stage<N, R, D>,
     pub(crate) scene: &'a Scene<N, R, D>,
     pub(crate) names: [&'static str; 2],
-    /// Number of the scene among those of the same kinds.
+    /// Index of the scene among the scenes of its pair of kinds.
     pub(crate) number: usize,
     pub(crate) report: &'a mut Report,
 }
@@ -32,7 +32,7 @@ fn deepest<N: Real, const D: usize>(points: &Points<N, D>) -> Option<&TrackedCon
     )
 }
 
-/// Returns `true` if both have equal contacts and kinematics, whatever the ids.
+/// Returns `true` if both have equal contacts and kinematics; ids are ignored.
 pub(crate) fn are_same<N: Real, const D: usize>(one: &Points<N, D>, two: &Points<N, D>) -> bool {
     one.len() == two.len()
         && one.iter().zip(two).all(|(a, b)| a.contact == b.contact && a.kinematic == b.kinematic)
@@ -93,8 +93,9 @@ where
         separation_along(one, &poses[0], two, &poses[1], normal)
     }
 
-    /// Signed distance by the precise reference: for all pairs in 2D and all pairs without curved faces, and for some
-    /// of the others, which the reference has to search.
+    /// Returns the signed distance by the precise reference, for all pairs in 2D and all pairs
+    /// without curved faces. For other pairs the reference has to search, so only some scenes have
+    /// a result. `None` also if the reference has not converged to 1e-17 of the size.
     fn truth(&self) -> Option<Precise<D>> {
         let is_quick = D == 2 || !self.names.iter().any(|name| is_curved(name));
         let is_sampled = [3, 9].contains(&(self.number % (SCENES / 2)));
@@ -113,9 +114,9 @@ where
         self.scene.forms[0].reach + self.scene.forms[1].reach + (at[1] - at[0]).norm()
     }
 
-    /// Law 1: the depth is minus the separation. The normal separates the solids by as much, which proves that the
-    /// depth is not too small. That it is not too large is proved by the points if the solids are apart, else by the
-    /// reference.
+    /// Law 1: the depth is minus the separation. The separation along the contact normal equals
+    /// minus the depth, so the depth is not too small. The positions of the points prove that it is
+    /// not too large if the solids are apart; otherwise the reference does.
     fn depth(&mut self, found: &Points<N, D>) {
         let unit = N::EPSILON.as_f64() * self.size();
         let (allowed, scene) = (promised::<N, D>(self.names), self.scene);
@@ -146,7 +147,8 @@ where
     /// normal.
     fn on_both(&mut self, found: &Points<N, D>) {
         let allowed = points_promised::<N, D>(self.names, self.scene.is_degenerate);
-        // Points as deep as the deepest one up to rounding may lie beside it.
+        // Several points may be equally deep up to rounding, so one of them must satisfy the strict
+        // bound.
         let slack = N::lit(promised::<N, D>(self.names) * self.size()) * N::EPSILON;
         let least = deepest(found).map_or(N::ZERO, |point| point.contact.depth - slack);
         let mut off_deepest = f64::INFINITY;
@@ -166,9 +168,11 @@ where
         }
     }
 
-    /// How many units a point lies off the surfaces, or its two positions lie off the line along the normal. Beside the
-    /// deepest point a rounded part that leans is treated as flat; `forgiven` is the share of that error which is
-    /// subtracted. Two edges that the angular prediction could make parallel share the points half-way between them.
+    /// Returns the error of a point in units: the distance of its positions from the surfaces, or
+    /// the mismatch between their offset and the depth along the normal. At points other than the
+    /// deepest, a tilted face of a rounded solid is treated as flat; the fraction `forgiven` of
+    /// that allowance is subtracted. If the angular prediction makes two edges parallel, their
+    /// points lie halfway between the edges.
     fn off(&self, point: &TrackedContact<N, D>, forgiven: f64, count: usize) -> f64 {
         let (scene, contact) = (self.scene, &point.contact);
         let is_halfway = D == 3 && count <= 2;
@@ -183,7 +187,7 @@ where
         if most == 0.0 { 0.0 } else { most / scene.unit() }
     }
 
-    /// Law 3: there are at most as many points as asked for, and the deepest is always among them.
+    /// Law 3: a manifold has at most `max_points` points, and always the deepest one.
     fn at_most(&mut self, found: &Points<N, D>) {
         self.holds("3 at most", found.len() <= 1 << (D - 1), || format!("{found:?}"));
         let (scene, unit) = (self.scene, N::EPSILON.as_f64() * self.size());
@@ -249,8 +253,9 @@ where
         }
     }
 
-    /// Law 6: `contact` has a contact exactly where the manifold has one, with the same depth. If the prediction equals
-    /// the distance up to rounding they may differ, but not whether the solids touch.
+    /// Law 6: `contact` returns a contact exactly if the manifold has points, with the same depth.
+    /// They may differ if the prediction equals the distance up to rounding, unless the prediction
+    /// is zero.
     fn agrees(&mut self, found: &Points<N, D>) {
         let ([pose1, pose2], [shape1, shape2]) = (&self.scene.poses, self.scene.shapes());
         let unit = N::EPSILON.as_f64() * self.size();
@@ -279,8 +284,8 @@ where
         }
     }
 
-    /// Law 4: if the same two features, which no other point has, meet before and after, the id stays; a new id never
-    /// existed before.
+    /// Law 4: a point keeps its id if it is the only one with its pair of features before and
+    /// after. A new id has never been used before.
     pub(crate) fn names(
         &mut self,
         before: &Points<N, D>,
@@ -293,15 +298,14 @@ where
             let mut on = points.iter().filter(|point| features(point) == wanted);
             on.next().filter(|_| on.next().is_none()).copied()
         };
-        // Ids may also change where a solid turns another side to the other one, and at crossings of edges of length
-        // zero.
+        // Ids may also change if the normal rotates by more than 41 degrees, and where edges cross
+        // in scenes with sizes of zero.
         let is_edge = |id: &FeatureId| matches!(id, FeatureId::Edge(_));
         let may_begin = |old: &TrackedContact<N, D>, new: &TrackedContact<N, D>| {
             old.contact.normal.dot(&new.contact.normal) < N::lit(0.75)
                 || self.scene.is_degenerate && features(new).iter().all(is_edge)
         };
-        // All points of a round rim are on one feature, also those that were not selected, so features do not identify
-        // them.
+        // All points of a circular rim lie on one feature, so features do not identify them.
         let is_named = !self.names.iter().any(|name| is_of_revolution(name));
         let mut ids: Vec<ContactId> = Vec::new();
         for point in after {

@@ -1,14 +1,16 @@
-//! Tests the contract of contacts (`ARCHITECTURE.md`) for every two kinds of convex solids, where users rely on it:
-//! `contact`, a generator alone, and worlds of 1, 7, 8, 9 and 20 pairs of these kinds. Each pair of kinds has twenty
-//! scenes: apart within the prediction, touching, shallow, deep and one inside the other; aligned, nearly aligned and
-//! arbitrarily rotated; some with sizes of zero, far from the origin, or of very different sizes; with and without an
-//! angular prediction; with predictions equal to the distance or slightly less. Each scene is also scaled by 2⁻²⁰ and
-//! 2²⁰.
+//! Tests the contract of contacts (`ARCHITECTURE.md`) for every two kinds of convex solids.
+//! Contacts come from `contact`, from a generator alone, and from worlds of 1, 7, 8, 9 and 20 pairs
+//! of these kinds. Each pair of kinds has twenty scenes: apart within the prediction, touching,
+//! shallow, deep and one inside the other; aligned, nearly aligned and arbitrarily rotated; some
+//! with sizes of zero, far from the origin, or of very different sizes; with and without an angular
+//! prediction; with predictions equal to the distance or slightly less. Each scene is also scaled
+//! by 2⁻²⁰ and 2²⁰.
 //!
-//! Numbers are compared with the reference, not with another path of the library: the depths of all pairs in 2D and of
-//! all pairs without curved faces. For the others the reference has to search for the normal, so it is used for one
-//! scene in five; the rest are checked by the separation along their normal and by the positions of their points. The
-//! area that points span is tested in `cases/manifolds.rs`.
+//! Depths are compared with the reference, not with another path of the library, for all pairs in
+//! 2D and for all pairs without curved faces. For other pairs the reference has to search for the
+//! normal, so it is used for one scene in five. The rest are checked by the separation along their
+//! normal and by the positions of their points. The area that points span is tested in
+//! `cases/manifolds.rs`.
 
 use crate::contacts::contact_points::{forms, turns};
 use crate::support::samples::samples;
@@ -35,12 +37,13 @@ use turns::{turns2, turns3};
 /// Numbers of pairs in a world: part of a batch, one less than a batch, a batch, and one more.
 const BATCHES: [usize; 4] = [1, 7, 8, 9];
 
-/// How often the twenty scenes of each two kinds are tested: once by default, more often with more samples.
+/// Returns how often the twenty scenes of each pair of kinds are tested: once by default, more
+/// often with more samples.
 fn rounds() -> u64 {
     1 + samples(1) as u64 / 100
 }
 
-/// All scenes of two kinds; in every other one the second kind comes first.
+/// All scenes of a pair of kinds. Scenes with odd numbers exchange the two kinds.
 struct Kinds<'a, N: Real, R, const D: usize> {
     stage: &'a Stage<N, R, D>,
     names: [&'static str; 2],
@@ -106,13 +109,14 @@ where
         }
     }
 
-    /// Law 5: the bits of a pair do not depend on the batch that it is computed in.
+    /// Law 5: the contacts of a pair have the same bits alone and in any batch.
     fn is_as_alone(&self, number: usize, [alone, found]: [&Points<N, D>; 2], report: &mut Report) {
         let what = || format!("alone {alone:?}, in a batch {found:?}");
         self.judge(number, report).holds("5 batches", are_same(alone, found), what);
     }
 
-    /// Moves all scenes a small step and back, in one world and each alone: ids stay, and both give the same points.
+    /// Moves the second solid of each scene a small step and back, in one world of all scenes and
+    /// alone. Asserts that both keep the same ids and give equal contacts.
     fn in_motion(&self, report: &mut Report) {
         let mut batch = Batch::new(&self.scenes);
         let mut lones: Vec<Lone<N, D>> = (0..SCENES).map(|_| Lone::new()).collect();

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-/// How often a law was tested for two kinds, how often it was violated, and the worst case.
+/// Statistics of one law and one pair of kinds: results tested, violations, the worst error, and
+/// its description.
 #[derive(Default)]
 struct Tally {
     asked: usize,
@@ -36,17 +37,17 @@ impl Report {
         }
     }
 
-    /// Notes whether a law that is true or false was kept.
+    /// Notes whether a law without a measure of error holds.
     pub(crate) fn holds(&mut self, law: String, holds: bool, what: impl FnOnce() -> String) {
         self.within(law, if holds { 0.0 } else { 1.0 }, 0.5, what);
     }
 
-    /// How many results were tested.
+    /// Returns the number of results tested.
     pub(crate) fn asked(&self) -> usize {
         self.tallies.values().map(|tally| tally.asked).sum()
     }
 
-    /// A line for each violated law, except for known violations.
+    /// Returns a line for each violated law, except for known violations.
     pub(crate) fn broken(&self, is_known: fn(&str) -> bool) -> Vec<String> {
         let broken = self.tallies.iter().filter(|(law, tally)| tally.broken > 0 && !is_known(law));
         let line = |(law, tally): (&String, &Tally)| {

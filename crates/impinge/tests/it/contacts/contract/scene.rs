@@ -10,11 +10,11 @@ use impinge_reference::random::Random;
 use super::forms::{Form, Sizes};
 use super::turns::Turns;
 
-/// Number of scenes of each two kinds: each gap with each alignment.
+/// Number of scenes per pair of kinds: every gap with every alignment.
 pub(crate) const SCENES: usize = GAPS.len() * 4;
 
-/// Signed distances relative to the size of the smaller solid; `None` puts one nearly into the
-/// middle of the other.
+/// Signed distances as multiples of the smaller bounding radius, which counts as at least 0.01.
+/// `None` keeps the drawn position, usually with the origins close to each other.
 const GAPS: [Option<f64>; 5] = [Some(0.05), Some(0.0), Some(-1e-4), Some(-0.3), None];
 
 /// Rotation of one solid relative to the other.
@@ -25,7 +25,7 @@ enum Alignment {
     Aligned,
     /// Aligned except for an angle of 1e-2 to 1e-7.
     Nearly,
-    /// Aligned except for an angle barely above rounding.
+    /// Aligned except for an angle of `EPSILON / 16` to `16 * EPSILON` radians.
     Hardly,
 }
 
@@ -49,7 +49,7 @@ enum Setup {
 const SETUPS: [Setup; 6] =
     [Setup::Plain, Setup::Plain, Setup::Degenerate, Setup::Far, Setup::Turned, Setup::Unlike];
 
-/// The solids, rotations and poses that differ by dimension.
+/// The functions that depend on the dimension.
 pub(crate) struct Stage<N: Real, R, const D: usize> {
     pub(crate) names: &'static [&'static str],
     pub(crate) form: fn(usize, Sizes, &mut Random) -> Form<N, D>,
@@ -131,8 +131,8 @@ where
         (self.form)(recipe.kind, recipe.sizes, &mut Random::new(recipe.seed))
     }
 
-    /// Poses with the first solid at the origin, and the second one well above or below it, or
-    /// nearly in its middle.
+    /// Returns poses with the first solid at the origin, and the second one well above or below it,
+    /// or, without a gap, at about the same height.
     fn places(
         &self,
         length: f64,
@@ -152,7 +152,8 @@ where
                 (self.turns.straight)(random) * (self.turns.tilt)(lean, random)
             }
         };
-        // The second solid is above the middle of the first, nearly so, or anywhere.
+        // The second solid is above or below the first: exactly, with an offset of 1e-7, or with
+        // any offset up to `length` along each axis.
         let beside = *random.pick(&[0.0, 0.0, 1e-7, 1.0]);
         let mut away = scale(&random.vector::<D>(1.0), beside * length);
         away[1] = length * *random.pick(if gap.is_some() { &[1.5, -1.5] } else { &[0.0, 0.01] });
@@ -264,9 +265,9 @@ where
         poses
     }
 
-    /// A rounding error of the size of the scene: the sum of both bounding radii, of the distance
-    /// between the origins, and of that from the world's origin, since points are in world
-    /// coordinates.
+    /// Returns the unit of errors of points: `EPSILON` times the size of the scene. That size is
+    /// the sum of both bounding radii, the distance between the origins of the solids, and the
+    /// distance of the first from the world's origin, since points are in world coordinates.
     pub(crate) fn unit(&self) -> f64 {
         let at = self.poses.each_ref().map(|pose| pose.translation.vector.map(N::as_f64));
         let size = self.forms[0].reach + self.forms[1].reach;

@@ -1,4 +1,4 @@
-//! The tolerances of `guide/guarantees.md`, in rounding errors of the size of the scene.
+//! The tolerances of `guide/guarantees.md`, in units of `EPSILON` times the size of the scene.
 
 use impinge::math::Real;
 
@@ -12,7 +12,7 @@ pub(crate) fn is_of_revolution(name: &str) -> bool {
     name.contains("cylinder") || name.contains("cone")
 }
 
-/// Returns the greatest error of the depth of two kinds, in units.
+/// Returns the guaranteed bound of the depth error for two kinds, in units.
 pub(crate) fn promised<N: Real, const D: usize>(names: [&str; 2]) -> f64 {
     let is_double = N::EPSILON.as_f64() < 1e-10;
     let of_revolution = names.iter().any(|name| is_of_revolution(name));
@@ -23,14 +23,15 @@ pub(crate) fn promised<N: Real, const D: usize>(names: [&str; 2]) -> f64 {
     }
 }
 
-/// Returns `true` if the least depth is guaranteed. It is not for a solid much smaller than a ball
-/// of a tapered capsule, inside the middle of that ball.
+/// Returns `true` if the depth is guaranteed to be the least. It is not if one solid is a tapered
+/// capsule and one lies in the middle of the other, much larger one.
 pub(crate) fn is_promised(names: [&str; 2], is_swallowed: bool) -> bool {
     !(is_swallowed && names.iter().any(|name| name.contains("tapered")))
 }
 
-/// Greatest error of the points of two kinds, in units. Where all normals of a ring are nearly equally good, the search
-/// ends with an iteration along the ring, in `f64` at 1e-8 of the scene; cylinders and cones with sizes of zero have a
+/// Returns the guaranteed bound of the error of points for two kinds, in units. If the separation
+/// is nearly the same along a circle of normals, the search ends with an iteration along that
+/// circle, accurate to 1e-8 of the scene in `f64`. Cylinders and cones with sizes of zero have a
 /// larger error.
 pub(crate) fn points_promised<N: Real, const D: usize>(
     names: [&str; 2],
@@ -47,10 +48,10 @@ pub(crate) fn points_promised<N: Real, const D: usize>(
     }
 }
 
-/// Laws that some scenes are known to violate, each with the dimension.
+/// Laws that some scenes are known to violate, each with the dimension in which they do.
 const KNOWN: [(&str, usize); 1] = [
-    // The product of four lengths that decides whether axes cross underflows in `f32` at 2⁻²⁰ of the size, so a point
-    // at an end of an axis has the feature of the axis.
+    // The product of four lengths that decides whether axes cross underflows in `f32` at 2⁻²⁰ of
+    // the size. A point at an end of an axis then gets the feature of the whole axis.
     ("5 scaled, capsule and capsule", 3),
 ];
 

@@ -18,7 +18,7 @@ pub(crate) fn cast<N: Real>(points: &[P3]) -> Vec<Point<N, 3>> {
     points.iter().map(|p| Point::from(p.coords.map(N::lit))).collect()
 }
 
-/// The points scaled to about 1, and the rounding unit at that scale.
+/// Returns the points scaled to about 1, and the rounding unit at that scale.
 fn normalized<N: Real>(points: &[Point<N, 3>]) -> (Vec<P3>, f64) {
     let exact: Vec<P3> = points.iter().map(|p| Point::from(p.coords.map(Real::as_f64))).collect();
     let size =
@@ -80,8 +80,8 @@ pub(crate) fn check<N: Real>(points: &[Point<N, 3>], hull: &IndexedHull<N>) -> M
     measured
 }
 
-/// By how much the points extend beyond the vertices along the axes and diagonals, at most. This
-/// finds points cut off at the rim of a flat set, where no face points.
+/// Returns the largest distance by which points extend beyond the vertices along the axes and
+/// diagonals. This finds points that are cut off at the rim of a flat set, where no face points.
 fn cut_off<N: Real>(points: &[P3], hull: &IndexedHull<N>) -> f64 {
     let reach = |along: &Vector<f64, 3>, points: &mut dyn Iterator<Item = &P3>| {
         points.map(|p| along.dot(&p.coords)).fold(f64::NEG_INFINITY, f64::max)
@@ -96,13 +96,14 @@ fn cut_off<N: Real>(points: &[P3], hull: &IndexedHull<N>) -> f64 {
     missing.fold(0.0, f64::max)
 }
 
-/// The hull of points given as `f64`, computed with the scalar `N` and checked against the
-/// documented tolerance of 8 units.
+/// Returns the hull of points given as `f64`. It is computed with the scalar `N` and checked
+/// against the documented tolerance of 8 units.
 pub(crate) fn hull_of<N: Real>(name: &str, points: &[P3]) -> IndexedHull<N> {
     hull_within::<N>(8.0, name, points)
 }
 
-/// The hull with the limit `outside` on how far points lie in front of faces.
+/// Returns the hull of points, and asserts that no point lies more than `outside` units in front of
+/// a face.
 pub(crate) fn hull_within<N: Real>(outside: f64, name: &str, points: &[P3]) -> IndexedHull<N> {
     let points = cast::<N>(points);
     let hull = convex_hull3(&points).unwrap_or_else(|error| panic!("{name}: {error}"));

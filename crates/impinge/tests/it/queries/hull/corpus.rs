@@ -35,7 +35,7 @@ fn points2<N: Real>(value: &Value) -> Vec<Point<N, 2>> {
     points.iter().map(numbers).map(|p| Point::<N, 2>::new(N::lit(p[0]), N::lit(p[1]))).collect()
 }
 
-/// The points of the convex shapes of all pair cases.
+/// Returns the points of the convex shapes of all pair cases.
 fn shapes(kinds: &[&str]) -> Vec<Value> {
     let mut shapes = Vec::new();
     for file in ["narrow_phase_cases.json", "regression_cases.json"] {
@@ -85,7 +85,8 @@ fn polygons_of_the_corpus() {
     polygons::<f64>();
 }
 
-/// Either the hull passes the checks, or the points are refused as degenerate or too few.
+/// Asserts that the hull passes the checks, or that the points are refused as degenerate or too
+/// few.
 fn hull_or_flat<N: Real>(points: &[P3]) {
     match convex_hull3(&cast::<N>(points)) {
         Ok(_) => assert!(!hull_of::<N>("hard", points).faces.is_empty(), "faces"),

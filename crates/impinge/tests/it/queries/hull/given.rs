@@ -8,7 +8,7 @@ use impinge::transformation::{convex_hull3, convex_shape2, convex_shape3};
 use super::checks::cast;
 use super::points::{P3, ball, cube, grid, octahedron, prism, sphere, turned};
 
-/// Solids with whole and rounded coordinates; large, tiny and far from the origin.
+/// Returns solids with whole and rounded coordinates; some are large, tiny or far from the origin.
 fn solids() -> Vec<Vec<P3>> {
     let plain = [cube(), octahedron(), prism(7), grid(3), ball(60), sphere(40)];
     let around = [(1.0, 0.0), (1e-12, 0.0), (1e12, 0.0), (1.0, 100.0)];
@@ -18,7 +18,7 @@ fn solids() -> Vec<Vec<P3>> {
     plain.iter().cloned().chain(moved).collect()
 }
 
-/// The faces of a hull cut into triangles, every other one with reversed winding.
+/// Returns the faces of a hull cut into triangles, every other one with reversed winding.
 fn triangles<N: Real>(points: &[Point<N, 3>]) -> Vec<[u32; 3]> {
     let index = |&index: &usize| u32::try_from(index).expect("few points");
     let faces = convex_hull3(points).expect("a solid").faces;
@@ -65,7 +65,8 @@ fn faces_that_are_given_are_those_of_the_hull<N: Real>() {
     assert_eq!(none, Err(ShapeError::TooFewPoints { given: 0, needed: 4 }), "nothing");
 }
 
-/// Dimension of the shape: 0 for a point, 1 for a segment, 2 for flat shapes, 3 for solids.
+/// Returns the dimension of the shape: 0 for a point, 1 for a segment, 2 for flat shapes, 3 for
+/// solids.
 fn dimension<N: Space<3>>(shape: &ShapeHandle<N, 3>) -> usize {
     let is_point = |segment: &Segment<N, 3>| segment.a() == segment.b();
     if let Some(segment) = shape.as_shape::<Segment<N, 3>>() {
@@ -75,8 +76,8 @@ fn dimension<N: Space<3>>(shape: &ShapeHandle<N, 3>) -> usize {
     if is_flat { 2 } else { 3 }
 }
 
-/// The hull of equal points, of points on a line, in a plane, and of a solid has the matching
-/// shape, at any position and size.
+/// Asserts that hulls have the dimension that their points span, from a single point to a solid, at
+/// any position and size.
 fn hulls_are_what_their_points_span<N: Real>() {
     let flat = |points: Vec<P3>| -> Vec<P3> {
         points.into_iter().map(|p| P3::new(p.x, p.y, 0.25)).collect()
@@ -120,8 +121,8 @@ fn hulls_are_what_their_points_span<N: Real>() {
     assert_eq!(convex_shape2(&line[..1]).expect("one").local_aabb().mins(), &line[0], "a point");
 }
 
-/// `first_hit_where` gives the first of all hits that the condition accepts, here hits on fronts,
-/// on backs, or all of them, for rays at a closed surface.
+/// Asserts that `first_hit_where` returns the first of all hits that the condition accepts: here
+/// hits on fronts, on backs, or all hits, for rays at a closed surface.
 fn hits_that_count_are_the_first_of_them<N: Real>() {
     use impinge::bounding_volume::Ray;
     use impinge::shape::FeatureId;

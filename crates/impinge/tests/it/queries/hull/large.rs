@@ -1,5 +1,5 @@
-//! Tests hulls of 100000 points: most of them inside, all of them vertices, flat sets, copies, tiny and huge
-//! coordinates.
+//! Tests hulls of 100000 points: most of them inside, all of them vertices, flat sets, copies, tiny
+//! and huge coordinates.
 
 use impinge::math::{Point, Real};
 use impinge::shape::{ConvexHull, ConvexPolygon};
@@ -10,7 +10,7 @@ use super::points::{Numbers, P3, ball, sphere};
 
 const COUNT: usize = 100_000;
 
-/// Points on the six faces of a cube, and its corners: many points in each plane.
+/// Returns points on the six faces of a cube, and its corners: many points in each plane.
 fn on_a_cube() -> Vec<P3> {
     let mut numbers = Numbers::new(23);
     let mut corners = Vec::with_capacity(COUNT);
@@ -26,7 +26,7 @@ fn on_a_cube() -> Vec<P3> {
     corners
 }
 
-/// `COUNT` points, each of the given ones several times.
+/// Returns `COUNT` points: the given points, each repeated.
 fn doubled(points: &[P3]) -> Vec<P3> {
     points.iter().cycle().take(COUNT).copied().collect()
 }

@@ -37,7 +37,7 @@ pub(crate) fn sphere(count: usize) -> Vec<P3> {
     inside.take(count).map(|v| P3::from(v.normalize())).collect()
 }
 
-/// The points with whole coordinates from 0 to `count - 1`.
+/// Returns the points with whole coordinates from 0 to `count - 1`.
 pub(crate) fn grid(count: u32) -> Vec<P3> {
     let axis = move || (0..count).map(f64::from);
     axis().flat_map(|x| axis().flat_map(move |y| axis().map(move |z| P3::new(x, y, z)))).collect()
@@ -52,7 +52,7 @@ pub(crate) fn octahedron() -> Vec<P3> {
     (0..3).flat_map(|i| [P3::from(axis(i)), P3::from(-axis(i))]).collect()
 }
 
-/// A regular prism of height 2 with corners on the unit circle.
+/// Returns a regular prism of height 2 with corners on the unit circle.
 pub(crate) fn prism(sides: u32) -> Vec<P3> {
     let corner = |i: u32, z: f64| {
         let angle = std::f64::consts::TAU * f64::from(i) / f64::from(sides);
@@ -61,13 +61,14 @@ pub(crate) fn prism(sides: u32) -> Vec<P3> {
     (0..sides).flat_map(|i| [corner(i, -1.0), corner(i, 1.0)]).collect()
 }
 
-/// The points rotated, scaled and moved; the rounding bends planes that were exactly flat.
+/// Returns the points rotated, scaled and moved; rounding bends planes that were exactly flat.
 pub(crate) fn turned(points: &[P3], scale: f64, offset: f64) -> Vec<P3> {
     let turn = Isometry3::rotation(Vector::<f64, 3>::new(0.3, -0.9, 1.7));
     points.iter().map(|p| turn * p * scale + Vector::<f64, 3>::repeat(offset)).collect()
 }
 
-/// Points on the two large faces of a flat box of the given thickness, with noise.
+/// Returns points on the two large faces of a flat box of the given thickness, displaced inwards by
+/// small amounts.
 pub(crate) fn slab(thickness: f64) -> Vec<P3> {
     let mut numbers = Numbers::new(3);
     (0..500)

@@ -119,8 +119,8 @@ fn a_feature_that_is_not_there_is_named() {
     let _ = ConvexHull::<f32>::from_points(&cast(&cube())).vertex(FeatureId::Vertex(8));
 }
 
-/// Boxes and spheres contain the support points, boxes touch them, and `reach` bounds their
-/// distance.
+/// Asserts that boxes and spheres contain the support points, that boxes touch them, and that
+/// `reach` bounds their distance.
 fn bounds<N: Real, const D: usize>(
     shape: &dyn Shape<N, D>,
     directions: &[Vector<N, D>],

@@ -12,8 +12,8 @@ fn counts<N: Real>(name: &str, points: &[P3]) -> (usize, usize) {
     (hull.vertices.len(), hull.faces.len())
 }
 
-/// Solids with known numbers of vertices and faces: as given, and rotated, small, large and far
-/// away.
+/// Tests solids with known numbers of vertices and faces: unchanged, and rotated, small, large and
+/// far away.
 fn known_solids<N: Real>() {
     let tetrahedron: Vec<P3> =
         cube().into_iter().filter(|p| (p.x + p.y + p.z) % 2.0 == 0.0).collect();
@@ -74,7 +74,8 @@ fn random_points() {
     random::<f64>();
 }
 
-/// Few different whole coordinates, so that most points share planes and lines with many others.
+/// Tests points with few different whole coordinates, so that most points share planes and lines
+/// with many others.
 fn small_grids<N: Real>() {
     let mut numbers = Numbers::new(33);
     let (mut solids, mut flat) = (0, 0);
@@ -104,8 +105,8 @@ fn points_of_small_grids() {
     small_grids::<f64>();
 }
 
-/// Clouds of a few rounding units in size around the corners of a solid, on its edges and on its
-/// faces.
+/// Tests clouds of points, a few rounding units in size, around the corners of a solid, on its
+/// edges and on its faces.
 fn noise<N: Real>() {
     let mut numbers = Numbers::new(17);
     for units in [0.5, 1.0, 2.0, 4.0, 8.0, 30.0, 1e3] {
@@ -139,7 +140,8 @@ fn clouds_of_rounding_size() {
     noise::<f64>();
 }
 
-/// A smooth surface sampled so finely that neighbouring points lie in one plane up to rounding.
+/// Tests a smooth surface sampled so finely that neighbouring points lie in one plane up to
+/// rounding.
 #[test]
 fn samples_finer_than_rounding() {
     for sides in [1000, 6000] {
@@ -172,7 +174,7 @@ fn slabs<N: Real>() {
     }
 }
 
-/// Prisms barely thicker than rounding: every corner of the outline is a vertex of the hull.
+/// Tests prisms barely thicker than rounding: every corner of the outline is a vertex of the hull.
 fn sheets<N: Real>() {
     for sides in [3, 5, 16, 40] {
         for units in [1e3, 30.0, 10.0, 7.0, 5.0, 4.0] {

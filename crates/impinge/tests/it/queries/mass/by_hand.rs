@@ -188,8 +188,8 @@ fn rounded_areas() {
     assert_alike(&unit(&line), &unit(&Capsule::<f64, 2>::new(3.0, r)), 1e-8, "a stadium");
 }
 
-/// A cube is rounded face by face as a hull, and by a product formula as a box; the two share no
-/// code.
+/// Compares a hull, which is rounded face by face, with a box, which is rounded by a product
+/// formula. The two share no code.
 #[test]
 fn rounded_polytopes_are_rounded_boxes() {
     let half = V3::new(0.5, 1.25, 2.0);
@@ -244,7 +244,7 @@ fn sizes_of_zero<N: Inertia<2> + Inertia<3>>() {
     }
     let point = unit(&Segment::new(a, a));
     assert_eq!(point, (0.0, a.coords.map(N::as_f64), Matrix::<f64, 3>::zeros()), "a point");
-    // A rod has no inertia about its own axis, so the inverse is zero there.
+    // A segment has no inertia about its own axis, so the inverse is zero there.
     let rod = mass_properties(&Segment::new(a, b), one).expect("a rod");
     let expected =
         Matrix::<N, 3>::from_diagonal(&Vector::<N, 3>::new(N::lit(1.5), zero, N::lit(1.5)));

@@ -1,4 +1,4 @@
-//! Compares the mass properties of every kind of solid with a count of the grid points in it.
+//! Compares the mass properties of every kind of solid with a count of the sample points in it.
 
 use crate::support::composite_support::{Piece, Pieces};
 use crate::support::shape_table::{self, Shapes};
@@ -15,12 +15,12 @@ use impinge_reference::random::Random;
 
 use super::{Found, Inertia, assert_alike, p3, unit};
 
-/// Number of cells along each axis in `D` dimensions.
+/// Returns the number of cells along each axis in `D` dimensions.
 fn cells<const D: usize>() -> usize {
     [0, 0, 300, 44][D]
 }
 
-/// The inertia in the form of the dimension; see [`Inertia`].
+/// Converts counted mass properties to the form of [`Inertia`].
 fn found<const D: usize>(mass: &Mass<D>) -> Found<D> {
     let tensor = Matrix::<f64, D>::from_fn(|row, column| mass.inertia()[row][column]);
     let tensor = if D == 2 {
@@ -33,8 +33,8 @@ fn found<const D: usize>(mass: &Mass<D>) -> Found<D> {
     (mass.measure, Vector::<f64, D>::from(mass.center), tensor)
 }
 
-/// Returns mass properties from a count of the grid points in a solid's box that are inside the
-/// solid.
+/// Returns mass properties from a count of the sample points, one in each cell of the box of a
+/// solid, that are inside the solid.
 fn count<const D: usize>(
     shape: &dyn Shape<f64, D>,
     is_inside: impl FnMut(&[f64; D]) -> bool,
@@ -54,7 +54,8 @@ fn check<const D: usize>(
     assert_alike(&unit(shape), &count(shape, is_inside), 1.2e-2, name);
 }
 
-/// Decides whether points are inside by the level functions of other tests.
+/// Compares with counts in which the level functions of [`solids`] decide whether a point is
+/// inside.
 fn by_levels<const D: usize>(make: fn(&mut Rng) -> Vec<solids::Solid<f64, D>>)
 where
     f64: Inertia<D>,
@@ -80,7 +81,7 @@ fn solids_of_random_sizes() {
     by_levels::<3>(solids::space_solids);
 }
 
-/// Decides whether points are inside by the library's point queries.
+/// Compares with counts in which the point queries of the library decide whether a point is inside.
 fn by_points<R, const D: usize>(shapes: &Shapes<f64, D>, origin: &Isometry<f64, R, D>)
 where
     f64: Inertia<D>,
@@ -169,7 +170,7 @@ fn compounds_with_densities() {
     );
     let found = super::wide(&body.expect("solids"));
     assert_alike(&found, &super::wide(&(whole + heavy)), 1e-2, "nested");
-    // A composite of the tests with the same parts.
+    // A custom composite with equal parts.
     let parts = vec![
         (
             Pose::from(at(-2.0, 0.0, 2.0)),

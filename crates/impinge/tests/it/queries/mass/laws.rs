@@ -16,8 +16,8 @@ use super::{Inertia, assert_alike, p3, unit, wide};
 
 type V3 = Vector<f64, 3>;
 
-/// Scaling a shape by a power of two scales its mass properties exactly. Segments and flat
-/// triangles, whose measure is a length or an area, are tested separately.
+/// Asserts that scaling a shape by a power of two scales its mass properties exactly. Segments and
+/// flat triangles, whose measure is a length or an area, have their own test.
 fn scales_exactly<N: Inertia<D>, const D: usize>(table: fn(N) -> Shapes<N, D>) {
     let (plain, mut tried) = (table(N::ONE), 0);
     for power in [0.0625, 1024.0, 1.0 / 1_048_576.0] {
@@ -176,7 +176,7 @@ fn sums_do_not_depend_on_the_order() {
     assert!((found.inertia()[(0, 0)] / expected - 1.0).abs() < 1e-14, "a shell");
 }
 
-/// The parallel axis theorem, tested with a body and its mirror image.
+/// Tests the parallel axis theorem with a body and its mirror image.
 #[test]
 fn inertia_about_other_points() {
     let body = mass_properties(&Cuboid::new(V3::new(1.0, 2.0, 3.0)), 0.7).expect("a box");
@@ -235,7 +235,8 @@ fn far_from_the_origin() {
     far_away::<f64>();
 }
 
-/// Thin solids in any direction: each principal moment is precise, and the inverses are positive.
+/// Tests thin solids in any direction: each principal moment is precise, and the inverses are
+/// positive.
 fn needles<N: Inertia<3> + Space<3, Isometry = Isometry3<N>>>(thin: f64, share: f64) {
     let random = &mut Random(3, false);
     for _ in 0..20 {

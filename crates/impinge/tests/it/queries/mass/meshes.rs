@@ -56,7 +56,7 @@ fn closed_meshes<N: Inertia<3>>() {
         (found.2[(1, 1)] - (inner.2[(1, 1)] + 8.0 * 4.0) * 2.0).abs() < share * 80.0,
         "{found:?}"
     );
-    // A sheet of two sides encloses no volume.
+    // Two coincident triangles with opposite windings enclose no volume.
     let (vertices, _) = cuboid([1.0; 3], [5.0; 3], false);
     let sheet = mesh::<N>(&[(vertices, vec![[0, 1, 2], [2, 1, 0]])]);
     let found = unit(&sheet);

@@ -86,8 +86,8 @@ fn solids_of_the_plane_by_support_points() {
     assert_eq!(unit(&line).0, 0.0, "a line");
 }
 
-/// Round, flat and thin solids along the axes and across them; the tolerances are those of the
-/// documentation.
+/// Tests round, flat and thin solids along the axes and across them; the tolerances are those of
+/// the documentation.
 #[test]
 fn solids_of_space_by_support_points() {
     let random = &mut Random(5, false);
@@ -168,7 +168,8 @@ fn a_shape_may_know_better() {
     assert_eq!(wide(&found.expect("it says so")), wide(&expected.expect("a ball")), "what it says");
 }
 
-/// A mesh behind a custom type: with `true` as a shape that stands for the mesh, else as a surface.
+/// A mesh wrapped in a custom type. With `true`, the geometry of the wrapper is the mesh; otherwise
+/// it is a custom composite with the surface of the mesh.
 #[derive(Debug)]
 struct Wrapped(TriMesh<f64, 3>, bool);
 

@@ -17,7 +17,7 @@ impl Random {
         u32::try_from((self.0 >> 33) % u64::from(bound)).expect("below a u32")
     }
 
-    /// True once in `n` calls on average.
+    /// Returns `true` once in `n` calls on average.
     pub(crate) fn one_in(&mut self, n: u32) -> bool {
         self.below(n) == 0
     }

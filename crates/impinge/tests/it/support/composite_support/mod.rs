@@ -52,7 +52,7 @@ impl<N: Space<D>, const D: usize> Pieces<N, D> {
         Self { tree: BoxTree::from_boxes(&boxes), parts }
     }
 
-    /// A mesh whose triangles are in its own frame.
+    /// Returns a mesh of triangles in the frame of the composite.
     pub fn mesh(points: &[Point<N, D>], triangles: &[[u32; 3]]) -> Self {
         let corner = |index: u32| points[index as usize];
         let one = |t: &[u32; 3]| Triangle::new(corner(t[0]), corner(t[1]), corner(t[2]));
@@ -66,7 +66,7 @@ impl<N: Space<D>, const D: usize> Pieces<N, D> {
         Self::new(points.windows(2).map(|ends| (Pose::identity(), one(ends))).collect())
     }
 
-    /// One solid at a pose.
+    /// Returns a composite of one solid at a pose.
     pub fn wrapped(pose: Pose<N, D>, piece: Piece<N, D>) -> Self {
         Self::new(vec![(pose, piece)])
     }

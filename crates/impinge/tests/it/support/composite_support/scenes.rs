@@ -41,8 +41,8 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Maker<N, R,
         ShapeHandle::from_arc((self.sample)(kinds[at], random, scale).into())
     }
 
-    /// `count` parts of size `scale` within five times that distance: a third are triangles and a
-    /// third segments, both in the frame of the composite.
+    /// Returns `count` parts of size `scale`, within a distance of five times `scale`. A third are
+    /// triangles and a third segments, both in the frame of the composite.
     pub fn scene(&self, random: &mut Random, count: usize, scale: N) -> Scene<N, R, D> {
         let mut parts = Vec::new();
         for _ in 0..count {
@@ -76,7 +76,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Scene<N, R, D> {
         Self { places: parts.into_iter().map(|(m, _)| m).collect(), fast, slow }
     }
 
-    /// Least signed distance of a part from a solid.
+    /// Returns the least signed distance of a part from a solid.
     pub fn brute(&self, m: &Isometry<N, R, D>, m2: &Isometry<N, R, D>, g2: &dyn Shape<N, D>) -> N {
         let one = |part: usize| {
             let (_, piece) = &self.fast.parts[part];

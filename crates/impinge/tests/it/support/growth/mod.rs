@@ -14,7 +14,7 @@ use impinge::shape::{
 
 use crate::support::slides::{Random, Sliding};
 
-/// A shape that counts the calls to it: a composite those about its parts, a box those for its
+/// A shape that counts calls: for a composite the calls about its parts, for a box the calls for
 /// support points.
 #[derive(Debug)]
 struct Counted<S> {
@@ -91,7 +91,7 @@ where
     }
 }
 
-/// A box without a known kind.
+/// A box that queries know only by its support points.
 #[derive(Debug)]
 struct Crate<const D: usize>(Counted<Cuboid<f64, D>>);
 
@@ -119,7 +119,8 @@ fn heights(random: &mut Random, count: u32) -> Vec<f64> {
     (0..count).map(|_| 0.3 * random.unit()).collect()
 }
 
-/// Number of unit cells along a plate with this half extent, and some beside it.
+/// Returns the number of unit cells along a surface that extends two cells beyond a plate of half
+/// extent `half` on each side.
 fn cells(half: u32) -> u32 {
     2 * half + 4
 }
@@ -144,7 +145,7 @@ fn field(half: u32) -> HeightField<f64, 3> {
     HeightField::<f64, 3>::new(points, points, heights, Vector::<f64, 3>::new(extent, 1.0, extent))
 }
 
-/// Triangles around one common corner, like the roof of a tent.
+/// Returns a fan of `8 half²` triangles around one corner, on the surface of a flat cone.
 fn fan(half: u32) -> TriMesh<f64, 3> {
     let count = 8 * half * half;
     let place = |at: u32| {
@@ -182,8 +183,8 @@ fn field2(half: u32) -> HeightField<f64, 2> {
     HeightField::<f64, 2>::new(heights(&mut random, n + 1), extents)
 }
 
-/// Number of calls for each part of the surface while a large box moves over it: for a box of the
-/// library, and for one known by its support points only.
+/// Returns the number of calls per part of the surface while a large box moves over it: for a
+/// built-in box, and for a box known only by its support points.
 fn asked_for_each_part<S, const D: usize>(ground: S, half: u32) -> [f64; 2]
 where
     f64: Space<D>,

@@ -145,15 +145,15 @@ fn standing<N: Real>(shape: &Value) -> UnitQuaternion<N> {
     }
 }
 
-/// Position of the origin of the corpus's shape in the library's frame: height fields of the
-/// library are centred.
+/// Returns the position, in the frame of the library, of the origin of a shape of the corpus:
+/// height fields of the library are centred.
 fn offset<N: Real>(shape: &Value) -> Translation<N, 3> {
     let size = shape.get("origin_corner").map(|_| vector::<N, 3>(&shape["size"]));
     let half = size.map(|size| Vector::<N, 3>::new(size.x, N::ZERO, size.z) * N::HALF);
     Translation::from(half.unwrap_or_else(Vector::<N, 3>::zeros))
 }
 
-/// Translation of a pose, under either of its names; the origin if there is none.
+/// Returns the translation of a pose, under either of its names; zero if there is none.
 fn translation<N: Real, const D: usize>(pose: &Value) -> Translation<N, D> {
     let value = pose.get("t").or_else(|| pose.get("translation"));
     Translation::from(value.map_or_else(Vector::<N, D>::zeros, vector))

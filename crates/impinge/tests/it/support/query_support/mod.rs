@@ -25,7 +25,8 @@ impl<N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Placed<N, R, D> {
         self.pose.transform_point(&map.support_point(&local))
     }
 
-    /// Approximate upper bound on the distance of the solid's points from the world origin.
+    /// Returns an approximate upper bound on the distance of the points of the solid from the world
+    /// origin.
     pub fn extent(&self) -> N {
         let geometry = self.shape.geometry();
         let reach = geometry.as_support_map().map_or(N::ZERO, |map| map.reach() + map.rounding());
@@ -33,7 +34,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Placed<N, R, D> {
     }
 }
 
-/// Signed distance; -∞ only for two half-spaces that overlap without bound.
+/// Returns the signed distance; -∞ only for two half-spaces that overlap without bound.
 pub fn signed<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     solid1: &Placed<N, R, D>,
     solid2: &Placed<N, R, D>,
@@ -42,7 +43,7 @@ pub fn signed<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     found.map_or(-N::INFINITY, |found| -found.depth)
 }
 
-/// Separation along a direction from the first solid to the second.
+/// Returns the separation along a direction from the first solid to the second.
 pub fn gap_along<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     solid1: &Placed<N, R, D>,
     solid2: &Placed<N, R, D>,

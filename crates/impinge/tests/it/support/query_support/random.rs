@@ -27,7 +27,7 @@ impl Random {
         low + (high - low) * (self.signed() * 0.5 + 0.5)
     }
 
-    /// 1; with the flag, 0 in half of the calls.
+    /// Returns 1; with the flag, returns 0 in half of the calls.
     pub fn size_or_zero(&mut self) -> f64 {
         if self.1 && self.bits() & 1 == 0 { 0.0 } else { 1.0 }
     }

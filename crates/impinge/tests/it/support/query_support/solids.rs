@@ -1,4 +1,4 @@
-//! Solids that only the tests have: queries know them by their support points.
+//! Solids that only the tests have; queries know them only by their support points.
 
 use impinge::bounding_volume::Aabb;
 use impinge::math::{Point, Real, Vector};

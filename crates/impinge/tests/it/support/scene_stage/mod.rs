@@ -149,7 +149,7 @@ impl<N: Play<D>, const D: usize> Player<N, D> {
         Self { scene, scale, step: 0, handles, world }
     }
 
-    /// Number of steps played.
+    /// Returns the number of steps played.
     pub(crate) const fn step_number(&self) -> u32 {
         self.step
     }

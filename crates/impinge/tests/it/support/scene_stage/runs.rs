@@ -27,7 +27,7 @@ pub(crate) struct Run<const D: usize> {
 }
 
 impl<const D: usize> Run<D> {
-    /// Key of this scene with a scalar in the golden file.
+    /// Returns the key of this scene with a scalar in the golden file.
     pub(crate) fn key(&self, scalar: &str) -> String {
         let name = self.scene.name.replace(' ', "-").replace('%', "percent");
         format!("{name} {D} {scalar}")

@@ -12,7 +12,7 @@ use super::query_support::solids::RoundHull;
 
 pub(crate) type Shapes<N, const D: usize> = Vec<(&'static str, ShapeHandle<N, D>)>;
 
-/// The shapes of both dimensions, a few times `s` large.
+/// Returns the shapes of both dimensions, a few times `s` large.
 fn common<N: Space<D>, const D: usize>(s: N, corners: &[Point<N, D>; 3]) -> Shapes<N, D> {
     let [a, b, c] = *corners;
     let half = Vector::<N, D>::from_fn(|axis, _| s * N::lit([1.0, 0.5, 2.0][axis]));

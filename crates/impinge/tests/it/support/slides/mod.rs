@@ -46,8 +46,8 @@ pub enum Pattern {
 pub const PATTERNS: [Pattern; 5] =
     [Pattern::Slash, Pattern::Backslash, Pattern::Zigzag, Pattern::Random, Pattern::Soup];
 
-/// A floor of `2 n²` triangles: `n` cells of size `cell` in each direction around `center`.
-/// `height` gives the y of each vertex.
+/// Returns a floor of `2 n²` triangles: `n` cells of size `cell` in each direction around `center`.
+/// `height` returns the y coordinate of each vertex.
 pub fn grid<N: Real + Space<3>>(
     n: u32,
     cell: f64,
@@ -203,7 +203,7 @@ pub fn slide<N, R, const D: usize>(
     assert!(steps > 0, "{name}: slid");
 }
 
-/// Height of the lowest point of a solid at a pose.
+/// Returns the height of the lowest point of a solid at a pose.
 pub fn lowest<N: Real>(solid: &dyn Shape<N, 3>, turned: &Isometry3<N>) -> N {
     let pose = Pose::from_isometry(turned);
     let geometry = solid.geometry();

@@ -81,8 +81,8 @@ pub(crate) struct Solid<N: Real, const D: usize> {
     pub(crate) level: Debugless<D>,
     /// A point inside.
     pub(crate) center: Vector<f64, D>,
-    /// Greatest distance of the solid's points from the local origin, or of those at which rays
-    /// aim.
+    /// Largest distance of the points of the solid from the local origin. For a half-space, the
+    /// scale of the points at which rays aim.
     pub(crate) size: f64,
 }
 
@@ -125,7 +125,7 @@ fn to_segment<const D: usize>(p: &Vector<f64, D>, a: &Vector<f64, D>, b: &Vector
     (p - (a + (b - a) * t.clamp(0.0, 1.0))).norm()
 }
 
-/// An ellipsoid (in 2D an ellipse) that the library knows by its support points only.
+/// An ellipsoid (in 2D an ellipse) that queries know only by its support points.
 #[derive(Debug)]
 pub(crate) struct Ellipsoid<N: Real, const D: usize>(pub(crate) Vector<N, D>);
 
@@ -150,7 +150,7 @@ impl<N: Real, const D: usize> Shape<N, D> for Ellipsoid<N, D> {
     }
 }
 
-/// A box with rounded edges, known by its support points and its rounding only.
+/// A box with rounded edges that queries know only by its support points and its radius.
 #[derive(Debug)]
 pub(crate) struct RoundBox<N: Real, const D: usize>(pub(crate) Cuboid<N, D>, pub(crate) N);
 
@@ -179,7 +179,7 @@ fn beyond<const D: usize>(p: &Vector<f64, D>, half: &Vector<f64, D>) -> Vector<f
     p.abs() - half
 }
 
-/// Solids of random sizes that exist in every dimension.
+/// Returns solids of random sizes that exist in every dimension.
 pub(crate) fn common<N: Real, const D: usize>(rng: &mut Rng) -> Vec<Solid<N, D>> {
     let radius = rng.between(0.25, 2.0);
     let half = Vector::<f64, D>::from_fn(|_, _| rng.between(0.25, 2.0));
@@ -284,7 +284,7 @@ pub(crate) fn plane_solids<N: Real>(rng: &mut Rng) -> Vec<Solid<N, 2>> {
     solids
 }
 
-/// Eight random corners, and one on each half axis, so that the hull contains the origin.
+/// Returns eight random corners, and one on each half axis, so that the hull contains the origin.
 fn hull_corners<const D: usize>(rng: &mut Rng) -> Vec<Vector<f64, D>> {
     let mut corners: Vec<_> = (0..8).map(|_| rng.vector::<D>(2.0)).collect();
     for axis in 0..D {
@@ -297,7 +297,8 @@ fn hull_corners<const D: usize>(rng: &mut Rng) -> Vec<Vector<f64, D>> {
     corners
 }
 
-/// Height above the highest of all planes through `D` corners that have all corners on one side.
+/// Returns the function of the height above the highest of all planes through `D` corners that have
+/// all corners on one side.
 fn hull_level<const D: usize>(
     corners: Vec<Vector<f64, D>>,
     normal: impl Fn(&[Vector<f64, D>], [usize; D]) -> Vector<f64, D>,

@@ -9,10 +9,10 @@ use impinge::world::{CollisionGroups, CollisionWorld};
 
 /// A scalar and dimension in which tests can place objects.
 pub(crate) trait Stage<const D: usize>: Space<D> {
-    /// The unrotated pose at these coordinates.
+    /// Returns the pose without rotation at these coordinates.
     fn at(coordinates: [f64; D]) -> Self::Isometry;
 
-    /// Returns the unrotated pose at `x` on the first axis.
+    /// Returns the pose without rotation at `x` on the first axis.
     fn on_x(x: f64) -> Self::Isometry {
         let mut coordinates = [0.0; D];
         coordinates[0] = x;

@@ -30,22 +30,23 @@ const ROOM: u32 = 3;
 
 /// A scalar and dimension with rotations that do not round.
 pub(crate) trait Grid<const D: usize>: Stage<D> {
-    /// A pose with a random rotation that permutes the axes.
+    /// Returns a pose with a random rotation that permutes the axes, for the world and for the
+    /// reference.
     fn posed(coordinates: [f64; D], random: &mut Random) -> (Self::Isometry, Pose<D>);
 
     /// Registers a filter that refuses pairs whose indices add up to a multiple of `number`.
     fn register(world: &mut CollisionWorld<Self, D, u64>, name: &str, number: usize);
 
-    /// Names what [`Self::register`] registers.
+    /// Adds to a registry the name of the filter that [`Self::register`] registers.
     #[cfg(feature = "serde")]
     fn name(registry: Registry<Self, D, u64>, name: &str, number: usize) -> Registry<Self, D, u64>;
 
-    /// Shapes of all sorts, a few times as large as a number.
+    /// Returns shapes of all kinds, a few times `size` large.
     #[cfg(feature = "serde")]
     fn all_shapes(size: f64) -> Shapes<Self, D>;
 }
 
-/// Filter that accepts pairs whose sum of indices is not a multiple of the number.
+/// A filter that accepts pairs whose sum of indices is not a multiple of the number.
 struct NotMultipleOf(usize);
 
 impl NotMultipleOf {

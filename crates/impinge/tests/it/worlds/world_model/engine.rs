@@ -147,7 +147,7 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         self.world.validate_with(&allows).expect("the parts of the world agree");
     }
 
-    /// The pairs of each object are all pairs of the world that contain it.
+    /// Asserts that the pairs of each object are all pairs of the world that contain it.
     pub(super) fn check_pairs_of_objects(&mut self) {
         let contacts = self.world.contact_pairs().map(|(a, b, _)| [a.handle(), b.handle()]);
         let proximities = self.world.proximity_pairs().map(|(a, b, _)| [a.handle(), b.handle()]);
@@ -164,7 +164,8 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         assert!(gone, "no pairs of removed objects");
     }
 
-    /// The data of every object in an event are available, whether it lives or was removed.
+    /// Asserts that the data of every object in an event are available, whether it lives or was
+    /// removed.
     pub(super) fn check_data(&self) {
         for handle in self.named() {
             let living = self.world.collision_object(handle);
@@ -175,7 +176,7 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         }
     }
 
-    /// After an update the world keeps no removed object other than those in events.
+    /// Asserts that after an update the world keeps no removed object except those in events.
     pub(super) fn check_removed(&mut self) {
         let named = self.named();
         for &stale in &self.stale {

@@ -26,7 +26,7 @@ pub(super) const FILTERS: [usize; 2] = [3, 5];
 
 pub(super) type World<N, const D: usize> = CollisionWorld<N, D, u64>;
 
-/// A new world; those with even seeds reuse the contacts of pairs that hardly move.
+/// Returns a new world; one with an even seed reuses the contacts of pairs that hardly move.
 pub(super) fn new_world<N: Grid<D>, const D: usize>(seed: u64) -> World<N, D> {
     let mut world = World::new(N::lit(0.125));
     if seed.is_multiple_of(2) {
@@ -63,14 +63,15 @@ fn shape<N: Grid<D>, const D: usize>(random: &mut Random) -> ShapeHandle<N, D> {
     ShapeHandle::new(Compound::new(children))
 }
 
-/// Performs the operation that a seed stands for; equal worlds stay equal. Validates the world after an update.
+/// Performs the operation that `seed` determines; equal worlds stay equal. Validates the world
+/// after an update.
 fn operate<N: Grid<D>, const D: usize>(world: &mut World<N, D>, seed: u64) {
     if is_updated_by(world, seed) {
         world.validate().expect("the parts of the world agree");
     }
 }
 
-/// Performs the operation that a seed stands for; returns whether it is an update.
+/// Performs the operation that `seed` determines; returns whether it is an update.
 pub(super) fn is_updated_by<N: Grid<D>, const D: usize>(
     world: &mut World<N, D>,
     seed: u64,
@@ -115,7 +116,7 @@ pub(super) fn is_updated_by<N: Grid<D>, const D: usize>(
     false
 }
 
-/// Digest of everything that a world reports, in order.
+/// Returns the digest of everything that a world reports, in order.
 pub(super) fn digest<N: Grid<D>, const D: usize>(world: &World<N, D>) -> u64 {
     let mut digest = Digest::new();
     for object in world.collision_objects() {

@@ -1,4 +1,5 @@
-//! Random operations, and worlds that are saved and restored in between: they come to what the worlds come to that go on.
+//! Compares restored worlds with the worlds from which they were saved, after equal random
+//! operations.
 
 use impinge::math::{Point, Vector};
 use impinge::shape::{Polyline, ShapeHandle, TriMesh};
@@ -9,7 +10,7 @@ use super::draw::Grid;
 use super::forks::{FILTERS, World, digest, is_updated_by, new_world, position};
 use crate::support::samples::samples;
 
-/// How long a restored world goes on beside the one that it was saved from.
+/// The largest number of operations that are compared before the restored world is replaced.
 const TOGETHER: usize = 200;
 
 fn registry<N: Grid<D>, const D: usize>() -> Registry<N, D, u64> {
@@ -17,7 +18,7 @@ fn registry<N: Grid<D>, const D: usize>() -> Registry<N, D, u64> {
     FILTERS.into_iter().fold(Registry::new(), named)
 }
 
-/// Saved as text or as bytes, and restored.
+/// Saves a world as text or as bytes, and restores it.
 fn restored<N: Grid<D>, const D: usize>(world: &World<N, D>, as_text: bool) -> World<N, D> {
     let registry = registry();
     if as_text {
@@ -31,7 +32,8 @@ fn restored<N: Grid<D>, const D: usize>(world: &World<N, D>, as_text: bool) -> W
     }
 }
 
-/// The shapes that can be saved; those of the user's own in the table cannot.
+/// Returns the shapes that can be saved, and their mirror images. Custom shapes of the table cannot
+/// be saved.
 fn shapes<N: Grid<D>, const D: usize>() -> Vec<ShapeHandle<N, D>> {
     let own = ["support map", "pieces"];
     let shapes = N::all_shapes(0.5).into_iter().filter(|(name, _)| !own.contains(name));
@@ -44,7 +46,8 @@ fn shapes<N: Grid<D>, const D: usize>() -> Vec<ShapeHandle<N, D>> {
     shapes
 }
 
-/// Operations of other tests, with shapes of all sorts, some of which are moved.
+/// Performs the operation that `seed` determines: one of [`is_updated_by`], another shape of any
+/// kind, moved vertices of a mesh or polyline, or new positions of all objects.
 fn change<N: Grid<D>, const D: usize>(
     world: &mut World<N, D>,
     shapes: &[ShapeHandle<N, D>],
@@ -76,7 +79,7 @@ fn change<N: Grid<D>, const D: usize>(
     }
 }
 
-/// The points, each a little elsewhere.
+/// Returns the points, each displaced by up to 0.1 along each axis.
 fn moved<N: Grid<D>, const D: usize>(
     points: &[Point<N, D>],
     random: &mut Random,
@@ -87,7 +90,8 @@ fn moved<N: Grid<D>, const D: usize>(
     points.iter().map(&mut move_one).collect()
 }
 
-/// A world, and one that was restored from it.
+/// Performs equal operations on a world and on a restored copy, and compares their digests after
+/// each.
 fn run<N: Grid<D>, const D: usize>(seed: u64) {
     let (random, shapes) = (&mut Random::new(seed), shapes::<N, D>());
     let mut world = new_world::<N, D>(seed);
@@ -125,7 +129,8 @@ fn restored_worlds_go_on_in_space() {
     run::<f64, 3>(3);
 }
 
-/// Whatever is done to the bytes of a world, it is refused or makes a world that can be used.
+/// Cuts off the bytes of a saved world or flips some of their bits. They are refused, or restored
+/// as a world that can be used.
 #[test]
 fn damaged_worlds_are_refused_or_valid() {
     damage::<f32, 2>(1);
@@ -166,7 +171,8 @@ fn damage<N: Grid<D>, const D: usize>(seed: u64) {
     assert!(refused > 100 && read > 100, "{refused} refused, {read} read");
 }
 
-/// Does all sorts of things to a world of which nothing is known but that it was read.
+/// Performs random operations on a world that was restored from damaged bytes, and reads its
+/// contacts.
 fn use_up<N: Grid<D>, const D: usize>(
     world: &mut World<N, D>,
     shapes: &[ShapeHandle<N, D>],
@@ -180,7 +186,8 @@ fn use_up<N: Grid<D>, const D: usize>(
     read(world);
 }
 
-/// Reads all contacts in every way; numbers may be anything.
+/// Asserts that views and manifolds have equal numbers of contacts of positive depth, where depths
+/// may be NaN or infinite. Reads the events too.
 fn read<N: Grid<D>, const D: usize>(world: &World<N, D>) {
     let points = world.contact_views().flat_map(|(_, _, view)| view.contacts());
     let points = points.filter(|point| point.contact.depth > N::ZERO).count();

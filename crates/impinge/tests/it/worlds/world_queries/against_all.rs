@@ -112,7 +112,7 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         }
     }
 
-    /// Makes changes that no update has seen.
+    /// Changes objects without an update.
     fn disturb(&mut self) {
         let handles: Vec<_> = self.world.collision_objects().map(Object::handle).collect();
         for &handle in handles.iter().skip(1) {
@@ -130,7 +130,7 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         self.add(8);
     }
 
-    /// Makes a change that no update has seen, or updates the world.
+    /// Changes one or all objects without an update, or updates the world.
     fn change_one(&mut self) {
         let handles: Vec<_> = self.world.collision_objects().map(Object::handle).collect();
         let handle = *self.random.pick(&handles[1..]);
@@ -341,7 +341,7 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
     }
 }
 
-/// Queries before the first update, after an update, after changes that no update has seen, and
+/// Runs queries before the first update, after an update, after changes since that update, and
 /// after the next update.
 fn play<N: Stage<D>, const D: usize>(seed: u64, offset: f64, is_ordered: bool) {
     let mut scene = Scene::<N, D>::new(seed, offset, is_ordered);
@@ -365,7 +365,8 @@ fn everywhere<N: Stage<D>, const D: usize>() {
     play::<N, D>(3, 1e6, true);
 }
 
-/// Queries after each change, so that the last update knows few or many of the boxes.
+/// Runs a query after each change, so that the boxes of the last update are valid for few or for
+/// many objects.
 fn changes_one_by_one<N: Stage<D>, const D: usize>() {
     let mut scene = Scene::<N, D>::new(5, 0.0, true);
     for change in 0..500 {

@@ -157,7 +157,7 @@ where
     assert!(found.iter().copied().eq(expected.chain([None])), "each meets the next one");
 }
 
-/// A world of half-spaces, whose boxes are unbounded on one side or on all sides.
+/// Tests a world of half-spaces, whose boxes are unbounded on one side or on all sides.
 fn planes<N: Stage<D>, const D: usize>() {
     let mut world = World::<N, D>::new(N::lit(0.1));
     let level = add(&mut world, [0.0; D], &ground());
@@ -187,7 +187,7 @@ fn planes<N: Stage<D>, const D: usize>() {
     }
 }
 
-/// Solids of size zero are found like any others.
+/// Tests that solids of size zero are found like all others.
 fn zero_sizes<N: Stage<D>, const D: usize>() {
     let mut world = World::<N, D>::new(N::ZERO);
     let dot = ball::<N, D>(0.0);

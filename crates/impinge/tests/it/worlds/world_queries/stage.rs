@@ -16,7 +16,7 @@ use impinge::shape::{
 use impinge::world::{CollisionGroups, CollisionObject, CollisionWorld, NearObject, QueryFilter};
 use impinge_reference::random::Random;
 
-/// The data of an object: a serial number.
+/// A world whose objects have a serial number as data.
 pub(crate) type World<N, const D: usize> = CollisionWorld<N, D, usize>;
 pub(crate) type Object<N, const D: usize> = CollisionObject<N, D, usize>;
 pub(crate) type Filter<'a, N, const D: usize> = QueryFilter<'a, N, D, usize>;
@@ -162,7 +162,7 @@ fn random_solid<N: Space<D>, const D: usize>(random: &mut Random) -> ShapeHandle
     }
 }
 
-/// Returns the half-space below zero on the last axis.
+/// Returns the half-space of points whose last coordinate is at most zero.
 pub(crate) fn ground<N: Space<D>, const D: usize>() -> ShapeHandle<N, D> {
     let up = Vector::<N, D>::from_fn(|axis, _| if axis + 1 == D { N::ONE } else { N::ZERO });
     ShapeHandle::new(Plane::new(Unit::new_unchecked(up)))

@@ -1,5 +1,5 @@
-//! Separating axis test of `L` pairs of boxes in 2D: `collide/separation/boxes/rectangle_axes.rs`
-//! in lanes.
+//! Separating axis test of `L` pairs of boxes in 2D, as in
+//! `collide/separation/boxes/rectangle_axes.rs`.
 
 use super::super::{Boxes, is_finite};
 use crate::math::lanes::{dot, either_mask, lit};
@@ -45,7 +45,7 @@ impl<V> Boxes<V, 2> {
         lit::<S, N, V>(simd, 4.0) * V::all(simd, N::EPSILON) * size
     }
 
-    /// Returns the axis with the largest gap, with the bits of `Rectangles::best_axis`.
+    /// Returns the axis with the largest gap, bit-identical to `Rectangles::best_axis`.
     #[inline(always)]
     pub(super) fn best_side<S: Simd, N: Real, M>(&self, simd: S) -> BestSide<V, M>
     where
@@ -71,8 +71,8 @@ impl<V> Boxes<V, 2> {
         BestSide { is_second, is_y, normal, gap, rounding_error, is_finite }
     }
 
-    /// Returns the best axis of each box. Of equal gaps, the side that comes first in the box's
-    /// outline wins.
+    /// Returns the best axis of each box. In a tie, the side that comes first in the box's outline
+    /// wins.
     #[inline(always)]
     fn best_sides<S: Simd, N: Real, M>(&self, simd: S) -> (AxisSide<V, M>, AxisSide<V, M>)
     where
@@ -90,8 +90,8 @@ impl<V> Boxes<V, 2> {
             |i| t[i].abs() - self.half1[i] - extent2[i],
         );
         let is = [t[0].simd_ge(zero), t[1].simd_gt(zero)];
-        // Ties go by the order in the outline: below, right, above, left. So x wins only if its
-        // side is the right one and that of y the upper one.
+        // Ties are resolved by the order of the sides in the outline: bottom, right, top, left. So
+        // x wins a tie only if its side is the right one and the side of y is the top.
         let is_y = gaps[1].simd_gt(gaps[0]) | (gaps[1].simd_eq(gaps[0]) & !(is[0] & is[1]));
         let first = side(gaps, is_y, is);
         let offset2 = [dot(&r[0], t), dot(&r[1], t)];
@@ -100,8 +100,8 @@ impl<V> Boxes<V, 2> {
             |j| offset2[j].abs() - self.half2[j] - dot(&abs_rotation[j], &self.half1),
         );
         let is = [offset2[0].simd_gt(zero), offset2[1].simd_ge(zero)];
-        // The side of the second box is opposite to the normal: x wins only if its side is right
-        // and that of y above.
+        // The side of the second box faces against the normal. So x wins a tie only if both signs
+        // are negative: its side is the right one and the side of y is the top.
         let is_y = gaps[1].simd_gt(gaps[0]) | (gaps[1].simd_eq(gaps[0]) & (is[0] | is[1]));
         (first, side(gaps, is_y, is))
     }

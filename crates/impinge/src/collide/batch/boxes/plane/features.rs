@@ -12,16 +12,16 @@ use crate::collide::batch::boxes::choose::SlotFeatures;
 use crate::math::Real;
 use crate::shape::FeatureId;
 
-/// Features of one side: the side itself, its end at the negative coordinate, its end at the
-/// positive one.
+/// Features of one side: the side itself, its end at the negative coordinate, and its end at the
+/// positive coordinate.
 type PartFeatures = [FeatureId; 3];
 
-/// Features of the four sides of a box, indexed by the axis across the side, plus 2 if it is on the
-/// positive side.
+/// Features of the four sides of a box. The index is the axis perpendicular to the side, plus 2 if
+/// the side is at the positive coordinate.
 static SIDES: [PartFeatures; 4] =
     [parts(0, false), parts(1, false), parts(0, true), parts(1, true)];
 
-/// Returns the vertex with the given signs of its coordinates, on `axis` and on the other axis.
+/// Returns the vertex whose coordinates on `axis` and on the other axis have these signs.
 const fn vertex(axis: usize, is_positive: bool, other_is_positive: bool) -> FeatureId {
     FeatureId::Vertex((is_positive as u32) << axis | (other_is_positive as u32) << (1 - axis))
 }
@@ -51,11 +51,13 @@ pub(super) struct SideFeatures {
     pub(super) at_ends: u8,
 }
 
-/// Mask of the bits of `sides` that a code holds. Below: the positions of `at_end` and `sides` in a
-/// code, and bit 31, which every code has set.
+/// Mask of the bits of `sides` that are stored in a code.
 const SIDE_BITS: u8 = 63;
+/// Position of `at_end` in a code.
 const AT_END_AT: u32 = 5;
+/// Position of the bits of `sides` in a code.
 const SIDES_AT: u32 = 7;
+/// Bit that is set in every code.
 const MARK: u32 = 1 << 31;
 
 impl SideFeatures {

@@ -1,14 +1,17 @@
-//! Boxes in 2D: the separating axis test, and the overlap of both sides, in lanes.
+//! Boxes in 2D: separating axis test and overlap of both sides, for several pairs at a time.
 //!
 //! ```text
-//!    upper   0 *---.___            slot 0, 1   ends of the upper side, by place along the lower
-//!                      '---* 1     slot 2, 3   ends of the lower side: low end, high end
+//!    upper   0 *---.___            slot 0, 1   ends of the upper side
+//!                      '---* 1     slot 2, 3   ends of the lower side
 //!    lower     2 *========* 3      at_ends     two bits for each slot: at the first or second end
-//!                                              of the other side, in the order of places
+//!                                              of the other side
 //!
-//!   byte `sides` of a pair, from bit 0 on: lower side is across y, and faces up; upper side is
-//!   across its own y, and on its positive side; lower side is the second box's; upper ends swapped;
-//!   beyond the prediction; slots are filled. `features` encodes bits 0..6 in a code.
+//!   The ends of both sides are ordered by their coordinate along the lower side.
+//!   Bits of the byte `sides` of a pair, of which `features` encodes bits 0 to 5 in a code:
+//!     0  lower side is perpendicular to y        4  lower side belongs to the second box
+//!     1  lower side is at the positive end       5  ends of the upper side are swapped
+//!     2  upper side is perpendicular to its y    6  pair is beyond the prediction
+//!     3  upper side is at the positive end       7  slots are filled
 //! ```
 
 mod axis;
@@ -27,8 +30,8 @@ use crate::math::lanes::{bits, lit};
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 
-/// Number of slots: two ends of the upper side, by coordinate along the lower, then two of the
-/// lower side.
+/// Number of slots: two for the ends of the upper side, ordered by coordinate along the lower side,
+/// then two for the ends of the lower side.
 const SLOTS: usize = 4;
 
 /// Results of the kernel for `L` pairs.
@@ -42,21 +45,18 @@ pub(in super::super) struct LaneSides<N: Real, const L: usize> {
     size: [N; L],
     /// Unit normal from the first box to the second, in the frame of the first.
     normal: [[N; L]; 2],
-    /// Flags of the pairs, in the order of the figure: before `turn` one mask per flag, after it
-    /// one byte per pair. Lanes where: the lower side is across y; it is at the positive
-    /// coordinate; the upper side is across the y axis of its box; it is at the positive
-    /// coordinate; the lower side is the second box's; the upper ends are swapped; the pair is
-    /// beyond the prediction; slots are filled.
+    /// Flags of the pairs, in the order of the figure: before `turn` one mask over the lanes for
+    /// each flag, after it one byte for each pair.
     sides: [u8; 8],
-    /// Two masks for each slot: lanes where it is at the first end of the other side, and at the
-    /// second. After `turn`, one byte per pair.
+    /// Two masks for each slot: lanes where it is at the first and at the second end of the other
+    /// side. After `turn`, one byte for each pair.
     at_ends: [u8; 2 * SLOTS],
-    /// One byte per pair: in the low half the filled slots, in the high half the slots whose height
-    /// is the gap, up to rounding.
+    /// One byte for each pair after `turn`: in the low half the filled slots, in the high half the
+    /// slots whose height is the gap, up to rounding.
     filled: [u8; 8],
 }
 
-/// Pairs of 2D boxes.
+/// Kernel for pairs of boxes in 2D.
 pub(in super::super) struct Boxes2;
 
 impl<N: Real, const L: usize> LaneSides<N, L> {
@@ -124,7 +124,7 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
         let is_near = axis.gap.simd_le(prediction) & axis.is_finite;
         let is_apart = bits(is_apart & axis.is_finite);
         let is_candidate = bits(is_near) & inputs.is_usable;
-        // These flags hold if the kernel returns after the axis.
+        // These flags are final if the kernel returns after the axis test.
         self.sides = [0, 0, 0, 0, 0, 0, is_apart, 0];
         if is_candidate == 0 {
             return;

@@ -6,11 +6,11 @@
 //! lower end is used: the corner that faces the other box.
 //!
 //! ```text
-//!      height |    *-- ends[1]               place: coordinate along the lower side, origin in its
-//!             | .-'                                 middle; from -half to half
+//!      height |    *-- ends[1]               coordinate: along the lower side, zero in its middle;
+//!             | .-'                                      from -half to half
 //!    ends[0]  *'                             height: above the lower side
 //!      -half ===================== half
-//!                place ->
+//!                coordinate ->
 //! ```
 
 use super::super::admit::{Admission, Slots};
@@ -24,17 +24,17 @@ use crate::shape::FACING_SINE_SQUARED;
 
 /// The lower side of each pair, and the upper side in the frame of the lower side's box.
 pub(super) struct BoxSides<V, M> {
-    /// Lanes where the axis across the lower side is y.
+    /// Lanes where the lower side is perpendicular to the y axis of its box.
     pub(super) is_y: M,
-    /// Lanes where the lower side is at the positive coordinate of that axis.
+    /// Lanes where the lower side is at the positive end of that axis.
     pub(super) is_upward: M,
-    /// Coordinate of the lower side on the axis across it.
+    /// Coordinate of the lower side along the axis perpendicular to it.
     level: V,
     /// Half the length of the lower side.
     half: V,
-    /// Lanes where the axis across the upper side is the y axis of the upper box.
+    /// Lanes where the upper side is perpendicular to the y axis of its own box.
     pub(super) is_own_y: M,
-    /// Lanes where the upper side is at the positive coordinate of that axis.
+    /// Lanes where the upper side is at the positive end of that axis.
     pub(super) is_positive: M,
     /// Lanes where the end of the upper side with the smaller `coordinate` is at the positive end,
     /// in the frame of the upper box.
@@ -45,7 +45,7 @@ pub(super) struct BoxSides<V, M> {
     length: V,
     /// Lanes where the upper side is tilted too far, so that only its lower end is used.
     is_corner: M,
-    /// Lanes where the second of `ends` is the one that faces the lower box.
+    /// Lanes where `ends[1]`, not `ends[0]`, faces the lower box.
     is_second_lower: M,
     /// Lengths up to this are rounding errors.
     pub(super) tolerance: V,
@@ -215,8 +215,8 @@ impl<V, M> BoxSides<V, M> {
         self.beside(simd, End { coordinate, height }, along, self.length)
     }
 
-    /// Compares a point with a side of the given length, on which it has the coordinate `along`,
-    /// measured from its first end.
+    /// Compares a point with a side of length `length`; `along` is the point's coordinate along
+    /// this side, measured from its first end.
     #[inline(always)]
     fn beside<S: Simd, N: Real>(
         &self,
@@ -249,8 +249,9 @@ struct Upper<V, M> {
 }
 
 impl<V, M> Upper<V, M> {
-    /// Finds the incident side of the other box, above the reference side at height `level`;
-    /// `is_upward` says which way the reference side faces.
+    /// Finds the incident side of the other box, above the reference side. `level` is the
+    /// coordinate of the reference side along the axis perpendicular to it; `is_upward` are the
+    /// lanes where the side is at the positive end of that axis.
     #[inline(always)]
     fn facing<S: Simd, N: Real>(
         simd: S,

@@ -1,17 +1,18 @@
-//! Separating axis test of `L` pairs of boxes: `collide/separation/boxes/cuboid_axes.rs` in lanes.
+//! Separating axis test of `L` pairs of boxes in 3D, as in
+//! `collide/separation/boxes/cuboid_axes.rs`.
 
 use super::super::{Boxes, is_finite};
 use crate::math::lanes::{dot, lit};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
 
-/// Separating axis of each pair, across a face or across two edges, and the gap along it.
+/// Separating axis of each pair, perpendicular to a face or to two edges, and the gap along it.
 pub(super) struct BestAxis<V, M> {
     /// Index of the axis that the best face is perpendicular to, as a value of the scalar type.
     pub(super) face: V,
-    /// Lanes where the separating axis is across a face of the second box.
+    /// Lanes where the separating axis is perpendicular to a face of the second box.
     pub(super) is_second: M,
-    /// Lanes where the separating axis is across two edges, one of each box.
+    /// Lanes where the separating axis is perpendicular to two edges, one of each box.
     pub(super) is_edges: M,
     /// Unit vector from the first box to the second, in the frame of the first.
     pub(super) normal: [V; 3],
@@ -65,7 +66,7 @@ impl<V> Boxes<V, 3> {
         lit::<S, N, V>(simd, 4.0) * V::all(simd, N::EPSILON) * (sizes + farthest)
     }
 
-    /// Returns the axis with the largest gap, with the bits of `BoxPair::best_axis`.
+    /// Returns the axis with the largest gap, bit-identical to `BoxPair::best_axis`.
     #[inline(always)]
     pub(super) fn best_axis<S: Simd, N: Real>(&self, simd: S) -> BestAxis<V, V::Mask>
     where
@@ -86,8 +87,8 @@ impl<V> Boxes<V, 3> {
         BestAxis { face, is_second, is_edges, normal, gap, rounding_error, is_finite }
     }
 
-    /// Returns the face with the largest gap: the index of its axis, the lanes where it is the
-    /// second box's, and the gap.
+    /// Returns the face with the largest gap: the index of its axis, the lanes where the face
+    /// belongs to the second box, and the gap.
     #[inline(always)]
     fn best_face<S: Simd, N: Real>(&self, simd: S, abs_rotation: &[[V; 3]; 3]) -> (V, V::Mask, V)
     where
@@ -114,8 +115,8 @@ impl<V> Boxes<V, 3> {
         (best, is_second, gap)
     }
 
-    /// Returns the pair of edges with the largest gap, if it exceeds `bound`: the index of the
-    /// edge's axis in each box, both -1 if no pair does, and the gap.
+    /// Returns the pair of edges with the largest gap, if this gap exceeds `bound`: the index of
+    /// the edge's axis in each box, and the gap. Both indices are -1 if no pair exceeds `bound`.
     #[inline(always)]
     fn best_edges<S: Simd, N: Real>(
         &self,

@@ -6,14 +6,14 @@
 //!         8..24   crossing of two sides:              8 + 8 * arm + 4 * (arm's negative end)
 //!                                                       + 2 * axis + (axis' negative end)
 //!           1 ---------- 0
-//!          /  5 --------/x---- 4     x: the side at the positive end of arm 0 crosses that at the
-//!         /   |        /       |        positive end of axis 1: slot 8 + 0 + 0 + 2 + 0
+//!          /  5 --------/x---- 4     x: the side at the positive end of arm 0 crosses the side at
+//!         /   |        /       |        the positive end of axis 1: slot 8 + 0 + 0 + 2 + 0
 //!        2 ---------- 3        |
 //!             6 -------------- 7
 //! ```
 //!
-//! The mask `valid` says which of the 24 slots are filled, so no candidate is moved before the
-//! final choice. `features` uses the same order of slots.
+//! The mask `valid` marks the filled slots among the 24, so no candidate is moved before the final
+//! choice. `features` uses the same order of slots.
 
 use super::super::admit::{Admission, Limits, Slots};
 use super::SLOTS;
@@ -31,8 +31,8 @@ pub(super) const CORNERS: usize = 8;
 pub(super) const SIGNS: [[bool; 2]; 4] =
     [[true, true], [false, true], [false, false], [true, false]];
 
-/// Positions of the 8 corners relative to the other face, as masks over the lanes, by axis of the
-/// other face.
+/// Positions of the 8 corners relative to the other face, as masks over the lanes, indexed by axis
+/// of the other face.
 pub(super) struct Corners {
     /// Lanes where the corner is at an end of the other face along that axis, up to the tolerance.
     pub(super) at_end: [[u8; CORNERS]; 2],
@@ -66,8 +66,8 @@ fn signed<S: Simd, V: Wide<S>>(value: V, is_positive: bool) -> V {
     if is_positive { value } else { -value }
 }
 
-/// Returns the signs of one end, the lower or the upper one, of the side at the end `sign` of
-/// `arm`.
+/// Returns the signs of one end of the parallelogram's side at the end `sign` of `arm`. `upper` is
+/// the sign of this end along the other arm.
 const fn ends(arm: usize, sign: bool, upper: bool) -> [bool; 2] {
     if arm == 0 { [sign, upper] } else { [upper, sign] }
 }
@@ -176,7 +176,8 @@ where
     }
 
     /// Compares a point with the other face. `inside` are its signed distances to the nearest sides
-    /// along both axes, positive inside; of `coordinates` on these axes only the signs are used.
+    /// along both axes, positive inside. Only the signs of `coordinates`, along these axes, are
+    /// used.
     #[inline(always)]
     fn compare(
         &self,
@@ -242,8 +243,8 @@ where
         let leaves = before.simd_gt(tolerance) & after.simd_lt(-tolerance);
         let enters = before.simd_lt(-tolerance) & after.simd_gt(tolerance);
         if M::LEN == 1 && !(leaves | enters).any_true() {
-            // Most sides of a lone pair do not cross; among 8 pairs some do, so the test would not
-            // pay.
+            // Most sides of a single pair do not cross. Among 8 pairs some do, so the test would
+            // not pay.
             (self.slots.valid[slot], self.slots.level[slot]) = (0, 0);
             return;
         }

@@ -11,10 +11,11 @@
 //!      +---------------+                 '------------'
 //! ```
 //!
-//! `w` is the axis of the box across the rectangle; `u` and `v` are its next two axes in cyclic
-//! order ("in turn"), along the sides. `across` are half the lengths of these sides. `height` is
-//! the height of `c` above the rectangle, along the normal; `climbs` is the height of each arm's
-//! end above `c`, and `widths` are the distances of `c` from the sides at the ends of the arms.
+//! `w` is the axis of the box perpendicular to the rectangle; `u` and `v` are its next two axes in
+//! cyclic order ("in turn"), along the sides. `across` are half the lengths of these sides.
+//! `height` is the height of `c` above the rectangle, along the normal; `climbs` is the height of
+//! each arm's end above `c`, and `widths` are the distances of `c` from the sides at the ends of
+//! the arms.
 
 use super::super::{Boxes, other, tolerance};
 use super::axis::{BestAxis, of_three, which};
@@ -27,13 +28,12 @@ use crate::math::{Real, Wide, filled};
 pub(super) struct FacesInLanes<V, M> {
     /// Lanes where the rectangle belongs to the second box.
     pub(super) is_second: M,
-    /// Lanes where the rectangle belongs to the second box and the separating axis is across edges,
-    /// so the normal is tilted against the rectangle.
+    /// Lanes where the rectangle belongs to the second box and the separating axis is perpendicular
+    /// to two edges, so that the normal is tilted against the rectangle.
     is_tilted: M,
-    /// Lanes where the axis across the rectangle is the first, the second, the third axis of its
-    /// box.
+    /// For each axis of the rectangle's box, the lanes where it is perpendicular to the rectangle.
     pub(super) is_w: [M; 3],
-    /// Unit normal away from the rectangle's box, by the axes `w`, `u`, `v`.
+    /// Components of the unit normal away from the rectangle's box, along `w`, `u` and `v`.
     toward: [V; 3],
     /// Lanes where the rectangle is at the positive end of the axis `w`.
     pub(super) is_upward: M,
@@ -43,8 +43,7 @@ pub(super) struct FacesInLanes<V, M> {
     pub(super) across: [V; 2],
     /// Components of the normal along `u` and `v`: its tilt.
     tilt: [V; 2],
-    /// Lanes where the axis across the parallelogram is the first, the second, the third axis of
-    /// its own box.
+    /// For each axis of the parallelogram's box, the lanes where it is perpendicular to the face.
     pub(super) is_m: [M; 3],
     /// Lanes where the parallelogram's face is at the positive end of that axis.
     pub(super) is_positive: M,
@@ -59,7 +58,7 @@ pub(super) struct FacesInLanes<V, M> {
     pub(super) arms: [[V; 2]; 2],
     /// Height of the centre above the rectangle, along the normal.
     pub(super) height: V,
-    /// How much higher the end of each arm is than the centre.
+    /// Height of the end of each arm above the centre, along the normal.
     pub(super) climbs: [V; 2],
     /// Cross product of the arms: a quarter of the area, with a sign.
     pub(super) area: V,
@@ -67,11 +66,11 @@ pub(super) struct FacesInLanes<V, M> {
     pub(super) widths: [V; 2],
     /// Lengths up to this are rounding errors.
     pub(super) tolerance: V,
-    /// Lanes where no width of either face is below four tolerances.
+    /// Lanes where the half widths of both faces exceed four tolerances.
     pub(super) is_fit: M,
 }
 
-/// Returns the components on the selected axis, on the next, and on the one after, in cyclic order.
+/// Returns the components along the selected axis and along the next two axes in cyclic order.
 #[inline(always)]
 fn in_turn<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], v: &[V; 3]) -> [V; 3] {
     filled(
@@ -80,8 +79,8 @@ fn in_turn<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], v: &[V; 3]) -> [V; 3] {
     )
 }
 
-/// Returns the mask of the component of largest magnitude for each axis; of equals, the first one
-/// is set.
+/// Returns, for each axis, the lanes where its component has the largest magnitude; the first axis
+/// wins a tie.
 #[inline(always)]
 fn largest<S: Simd, V: Wide<S>>(v: &[V; 3]) -> [V::Mask; 3] {
     let (first, second, third) = (v[0].abs(), v[1].abs(), v[2].abs());
@@ -100,10 +99,9 @@ fn sign<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, is_positive: V::Mask)
 struct Below<V, M> {
     /// Lanes where the rectangle is a face of the second box.
     is_second: M,
-    /// Lanes where the axis across the rectangle is the first, the second, the third axis of its
-    /// box.
+    /// For each axis of the rectangle's box, the lanes where it is perpendicular to the rectangle.
     is_w: [M; 3],
-    /// Unit normal away from the rectangle's box, by the axes of that box.
+    /// Unit normal away from the rectangle's box, in the frame of that box.
     toward: [V; 3],
     /// The components of `toward` along `w`, `u`, `v`.
     in_turn: [V; 3],
@@ -112,9 +110,9 @@ struct Below<V, M> {
     half: [V; 3],
 }
 
-/// Chooses the rectangle. If the separating axis is across a face, it is that face. If it is across
-/// edges, it is the most aligned face of the first box or, if that is tilted too far and the second
-/// box's is not, the most aligned face of the second.
+/// Chooses the rectangle. A separating axis perpendicular to a face selects this face. If it is
+/// perpendicular to two edges, the rectangle is the most aligned face of the first box or, if only
+/// that face is tilted too far, the most aligned face of the second box.
 #[inline(always)]
 fn below<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     simd: S,
@@ -147,9 +145,9 @@ fn below<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     }
 }
 
-/// For lanes whose separating axis is across edges, returns the normal away from the box whose face
-/// becomes the rectangle. The mask has, of all lanes, those where the rectangle is the second
-/// box's.
+/// For lanes whose separating axis is perpendicular to two edges, returns the normal away from the
+/// box whose face becomes the rectangle. The mask has all lanes where the rectangle belongs to the
+/// second box, also for other separating axes.
 #[inline(always)]
 fn between_edges<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     simd: S,
@@ -183,8 +181,8 @@ fn arm<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], axes: [&[V; 3]; 3], length: V) ->
     [x * length, y * length, z * length]
 }
 
-/// Projects a vector, given by `w`, `u`, `v`, along the normal onto the rectangle's plane. Returns
-/// its coordinates `u`, `v` there, and its height along the normal.
+/// Projects a vector with the components `w`, `u`, `v` along the normal onto the rectangle's plane.
+/// Returns its coordinates `u`, `v` there, and its height along the normal.
 #[inline(always)]
 fn projected<S: Simd, V: Wide<S>>([w, u, v]: [V; 3], toward: &[V; 3]) -> ([V; 2], V) {
     let height = w / toward[0];
@@ -197,8 +195,7 @@ pub(super) fn cross<S: Simd, V: Wide<S>>(a: &[V; 2], b: &[V; 2]) -> V {
 }
 
 impl<V, M> FacesInLanes<V, M> {
-    /// Finds the rectangle from the separating axis, and the parallelogram from the other box: `up`
-    /// leads from the centre of the other box to the centre of its face.
+    /// Finds the rectangle from the separating axis, and the parallelogram from the other box.
     #[inline(always)]
     pub(super) fn of_axis<S: Simd, N: Real>(
         simd: S,

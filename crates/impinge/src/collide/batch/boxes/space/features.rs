@@ -1,4 +1,4 @@
-//! Features and codes of the slots of one pair in 3D, and the slots of given features.
+//! Features and codes of the slots of one pair in 3D, and the lookup of a slot by its features.
 //!
 //! ```text
 //!   parts of a face: 3 * p + q, p along its first axis, q along its second;
@@ -31,11 +31,13 @@ const NONE: u8 = u8::MAX;
 struct FaceFeatures {
     /// Feature of each part.
     parts: [FeatureId; PARTS],
-    /// Part that each feature is, by kind and index; [`NONE`] for features of other faces.
+    /// Part of the face with each feature, indexed by kind and feature index; [`NONE`] for features
+    /// of other faces.
     part_of: [u8; 3 * NUMBERS],
 }
 
-/// The six faces of a box, by axis, and by whether they are on its positive side.
+/// Features of the six faces of a box, indexed by axis and by whether the face is at its positive
+/// end.
 static FACES: [[FaceFeatures; 2]; 3] = [
     [FaceFeatures::new(0, false), FaceFeatures::new(0, true)],
     [FaceFeatures::new(1, false), FaceFeatures::new(1, true)],
@@ -43,7 +45,7 @@ static FACES: [[FaceFeatures; 2]; 3] = [
 ];
 
 impl FaceFeatures {
-    /// Lists the features of the face at one end of `axis`.
+    /// Computes the features of the face at one end of `axis`.
     const fn new(axis: usize, is_positive: bool) -> Self {
         let mut parts = [face(axis, is_positive); PARTS];
         let mut part_of = [NONE; 3 * NUMBERS];
@@ -75,25 +77,27 @@ const fn index_of(id: FeatureId) -> usize {
     if number < NUMBERS { NUMBERS * kind + number } else { usize::MAX }
 }
 
-/// Returns the vertex with these signs of its coordinates.
+/// Returns a vertex. Each pair holds an axis and whether the vertex has a positive coordinate
+/// there.
 const fn vertex([a, b, c]: [(usize, bool); 3]) -> FeatureId {
     FeatureId::Vertex((a.1 as u32) << a.0 | (b.1 as u32) << b.0 | (c.1 as u32) << c.0)
 }
 
-/// Returns the edge along `axis`, given its signs on the next axis and on the one after.
+/// Returns the edge along `axis`; `next` and `after` are the signs of its coordinates on the next
+/// two axes in cyclic order.
 const fn edge(axis: usize, next: bool, after: bool) -> FeatureId {
     const FIRST: [u32; 3] = [0, 4, 8];
     FeatureId::Edge(FIRST[axis] + next as u32 + 2 * after as u32)
 }
 
-/// Returns the face on one side of an axis.
+/// Returns the face at one end of an axis.
 const fn face(axis: usize, is_positive: bool) -> FeatureId {
     const FIRST: [u32; 3] = [0, 2, 4];
     FeatureId::Face(FIRST[axis] + !is_positive as u32)
 }
 
-/// Returns the feature of one part of the face across `w`; `first` and `second` are as in the
-/// figure.
+/// Returns the feature of one part of the face perpendicular to `w`; `first` and `second` are `p`
+/// and `q` of the figure.
 const fn part_of_face(w: usize, is_positive: bool, [first, second]: [u8; 2]) -> FeatureId {
     let (u, v) = ((w + 1) % 3, (w + 2) % 3);
     match (first, second) {
@@ -107,7 +111,7 @@ const fn part_of_face(w: usize, is_positive: bool, [first, second]: [u8; 2]) -> 
 /// Parts of the four sides of a face: at the positive and negative end of its first axis, then of
 /// its second.
 const SIDES: [u8; 4] = [7, 1, 5, 3];
-/// Part that each corner of a face is, in the order of the slots.
+/// Part of a face at each of its corners, in the order of the slots.
 const OWN: [u8; 4] = own_parts();
 /// Number of pairs of parts; pair `9 * r + p` has part `r` of the rectangle and `p` of the
 /// parallelogram.
@@ -124,7 +128,7 @@ const fn own_parts() -> [u8; 4] {
     own
 }
 
-/// Pair of parts of each slot; for a corner only its own part's share of the sum.
+/// Pair of parts of each slot. For a corner, only the contribution of the corner's own face.
 const OWN_PAIRS: [u8; PLACES] = own_pairs();
 
 const fn own_pairs() -> [u8; PLACES] {
@@ -183,7 +187,7 @@ const fn slots_of() -> [[u8; 2]; PAIRS] {
     all
 }
 
-/// A set lowest bit in each of 8 bytes.
+/// Eight bytes, each with only its lowest bit set.
 const ONES: u64 = 0x0101_0101_0101_0101;
 
 /// Features of the slots of one pair.
@@ -192,7 +196,7 @@ pub(super) struct BoxPairFeatures {
     parallelogram: &'static FaceFeatures,
     /// Whether the rectangle is a face of the second box.
     is_second: bool,
-    /// Byte of the faces, shifted to its position in a code.
+    /// Byte of the faces, shifted to its position in a code, and [`MARK`].
     faces: u32,
     /// Pair of parts of each slot.
     pairs: [u8; PLACES],
@@ -204,18 +208,19 @@ const PLACES: usize = 32;
 const PARTS_AT: u32 = 5;
 /// Position of the byte of the faces in a code.
 const FACES_AT: u32 = 12;
-/// Set in every code.
+/// Bit that is set in every code.
 const MARK: u32 = 1 << 31;
 /// Mask of the bits of a pair of parts.
 const PAIR_BITS: u32 = 127;
 
 impl BoxPairFeatures {
-    /// Computes the features for two faces, given decoded and as the byte `bits`; `parts` is from
-    /// [`parts_at`].
+    /// Computes the features for two faces. `bits` encodes the faces `sides` in one byte; `parts`
+    /// is the result of [`parts_at`].
     #[inline(always)]
     pub(super) fn new(sides: &FaceSides, bits: u8, parts: u64) -> Self {
         let mut pairs = OWN_PAIRS;
-        // A byte for each corner: its own part's share, to which the other face's part is added.
+        // For each corner a byte: the contribution of its own face, to which that of the other face
+        // is added.
         let own = u64::from_le_bytes([
             pairs[0], pairs[1], pairs[2], pairs[3], pairs[4], pairs[5], pairs[6], pairs[7],
         ]);

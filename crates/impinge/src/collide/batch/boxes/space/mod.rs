@@ -1,11 +1,11 @@
 //! Boxes in 3D: the separating axis test, and the corners of the common area of both faces.
 //!
 //! ```text
-//!   find:    axis -> faces -> clip (24 slots) -> admit        masks: one byte per slot or flag
-//!   turn:    Columns: bytes 0..3 the valid slots of a pair (24 bits), 3..6 the level ones,
-//!            6 its faces: rectangle's axis (2 bits) and side, parallelogram's axis and side,
-//!            bit 6: the rectangle is the second box's
-//!   settle:  choose, names
+//!   find:            axis -> faces -> clip (24 slots) -> admit    a mask per slot or flag
+//!   turn:            Columns: bytes 0..3 the valid slots of a pair (24 bits), 3..6 the level,
+//!                    6 its faces: axis (2 bits) and side of the rectangle, then of the face of the
+//!                    parallelogram, then a bit set if the rectangle belongs to the second box
+//!   write_manifold:  choose, features
 //! ```
 
 mod axis;
@@ -27,7 +27,7 @@ use crate::math::lanes::{bits, lit};
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide, filled};
 
-/// Number of slots of a pair; `clip` has their order.
+/// Number of slots of a pair; `clip` defines their order.
 const SLOTS: usize = 24;
 
 /// Results of the kernel for `L` pairs.
@@ -42,9 +42,12 @@ pub(in super::super) struct LaneFaces<N: Real, const L: usize> {
     size: [N; L],
     /// Unit normal from the first box to the second, in the frame of the first.
     normal: [[N; L]; 3],
-    /// Masks. Lanes where: the axis across the rectangle is the first; it is the second; the
-    /// rectangle is at the positive end of it; three more for the parallelogram, in its own box;
-    /// the rectangle is the second box's.
+    /// One mask over the lanes for each flag:
+    ///
+    /// - 0, 1: the rectangle is perpendicular to the first or to the second axis of its box;
+    /// - 2: the rectangle is at the positive end of its axis;
+    /// - 3, 4, 5: the same three flags of the parallelogram's face, in its own box;
+    /// - 6: the rectangle belongs to the second box.
     sides: [u8; 8],
     /// Bits of the lanes beyond the prediction, which have no points.
     is_apart: u8,
@@ -53,7 +56,7 @@ pub(in super::super) struct LaneFaces<N: Real, const L: usize> {
     columns: Columns,
 }
 
-/// Pairs of 3D boxes.
+/// Kernel for pairs of boxes in 3D.
 pub(in super::super) struct Boxes3;
 
 impl<N: Real, const L: usize> LaneFaces<N, L> {
@@ -215,7 +218,7 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
     }
 }
 
-/// The reference faces of one pair.
+/// The reference faces of one pair, and whether the rectangle belongs to the second box.
 struct FaceSides {
     rectangle: FaceSide,
     parallelogram: FaceSide,
@@ -233,8 +236,8 @@ impl FaceSides {
     }
 }
 
-/// Transposed masks, by row and lane: three bytes of the filled slots, three of the level ones, and
-/// one of the faces.
+/// Transposed masks, by row and lane: three bytes of the filled slots, three of the level slots,
+/// and one of the faces.
 struct Columns([[u8; 8]; 7]);
 
 impl Columns {
@@ -270,7 +273,7 @@ impl Columns {
     }
 }
 
-/// Returns the 8 bytes from index `first` on.
+/// Returns `bytes[first..first + 8]`.
 #[inline(always)]
 fn part(bytes: &[u8; SLOTS], first: usize) -> [u8; 8] {
     filled(

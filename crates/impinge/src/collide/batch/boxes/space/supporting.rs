@@ -12,9 +12,9 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 use crate::shape::FACING_SINE_SQUARED;
 
-/// Supporting part of a face, by the two axes `i` of the face. `is_free[i]`: lanes where the part
-/// extends along the axis. `is_positive[i]`: for the other lanes, those where it is at the axis's
-/// positive end.
+/// Supporting part of a face, indexed by the two axes `i` of the face. `is_free[i]` are the lanes
+/// where the part extends along axis `i`. For the other lanes, `is_positive[i]` are those where the
+/// part is at the positive end of axis `i`.
 #[derive(Clone, Copy)]
 pub(super) struct SupportingParts<M> {
     is_free: [M; 2],
@@ -23,8 +23,8 @@ pub(super) struct SupportingParts<M> {
 
 impl<M> SupportingParts<M> {
     /// Computes the part from the components `tilt` of a unit vector along the two axes of the
-    /// face. `is_middle` are the lanes where the face is across the second axis of the box; they
-    /// break ties.
+    /// face. `is_middle` are the lanes where the face is perpendicular to the second axis of the
+    /// box, where a tie frees the second axis of the face.
     #[inline(always)]
     pub(super) fn of<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>>(
         simd: S,
@@ -38,7 +38,8 @@ impl<M> SupportingParts<M> {
         let squares = [tilt[0] * tilt[0], tilt[1] * tilt[1]];
         let is_all = Self::is_all(simd, tilt);
         let [one, other] = [tilt[0].abs(), tilt[1].abs()];
-        // The axis with the smaller tilt is free first; ties go by the order of the box's axes.
+        // The axis with the smaller tilt is free first; a tie is resolved by the order of the box's
+        // axes.
         let is_first_weaker = one.simd_lt(other) | (one.simd_eq(other) & !is_middle);
         Self {
             is_free: [
@@ -87,8 +88,9 @@ impl<M> SupportingParts<M> {
         self.is_free[1 - axis] & (self.is_free[axis] | self.is_at(axis, is_positive))
     }
 
-    /// Returns the lanes where a point at some ends of the face (`at_end`), on the positive sides
-    /// or not (`beyond`), belongs to the part, if the part is more than a corner.
+    /// Returns the lanes where a point of the face belongs to a part that is a side or the whole
+    /// face. For each axis, `at_end` are the lanes where the point is at an end of the face, and
+    /// `beyond` the lanes where its coordinate is positive.
     #[inline(always)]
     pub(super) fn has_position<S: Simd>(&self, at_end: &[M; 2], beyond: &[M; 2]) -> M
     where
@@ -99,7 +101,8 @@ impl<M> SupportingParts<M> {
             & (self.is_free[1] | (at_end[1] & !y & self.is_free[0]))
     }
 
-    /// Returns the lanes where the part, unless it extends along `axis`, is at the given end of it.
+    /// For lanes where the part does not extend along `axis`, returns those where it is at the
+    /// given end.
     #[inline(always)]
     fn is_at<S: Simd>(&self, axis: usize, is_positive: bool) -> M
     where
