@@ -194,7 +194,7 @@ pub mod world {
 
 /// Queries of one shape or of two shapes.
 pub mod query {
-    pub use crate::narrow_phase::{ContactPrediction, contact_manifolds};
+    pub use crate::narrow_phase::{ContactPrediction, contact_manifolds, each_contact_manifold};
     pub use crate::query::{
         Barycentric, ContactId, ImpactOptions, ImpactStatus, MassError, PointLocation, PointQuery,
         Proximity, RayCast, RigidMotion, closest_points, contact, distance, impact,

@@ -56,8 +56,8 @@ pub use query_type::{ContactQuery, GeometricQueryType, ProximityQuery};
 pub(crate) use query_type::{PackedQuery, PairQuery};
 pub use reuse::ReuseError;
 pub(crate) use state::{CompositeState, ContactState, KeptContacts};
-pub use stateless::contact_manifolds;
-pub(crate) use stateless::{contact_manifolds_at, manifolds_of_placed};
+pub(crate) use stateless::{ContactQuestion, contact_manifolds_at, each_manifold_at};
+pub use stateless::{contact_manifolds, each_contact_manifold};
 pub use stream::{ContactStream, StreamManifold, StreamPoint};
 pub use traits::{
     ContactAlgorithm, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,

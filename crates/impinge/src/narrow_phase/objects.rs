@@ -128,6 +128,11 @@ impl<N: Space<D>, const D: usize> PlacedSolids<N, D> for ObjectTable<N, D> {
     fn placed(&self, object: u32) -> (&Pose<N, D>, Geometry<'_, N, D>) {
         (self.pose(object), self.shape(object).geometry())
     }
+
+    #[inline]
+    fn pose(&self, object: u32) -> &Pose<N, D> {
+        Self::pose(self, object)
+    }
 }
 
 impl<N: Space<D>, const D: usize> ObjectTable<N, D> {

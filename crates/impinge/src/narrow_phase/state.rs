@@ -2,7 +2,6 @@
 //!
 //! A world computes the same bits for a pair as a generator that serves this pair alone.
 
-use super::ObjectTable;
 use super::group::PairKey;
 use crate::collide::far::ReachBounds;
 use crate::collide::pair::{Ordered, is_swapped};
@@ -14,7 +13,9 @@ use crate::collide::{
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector};
 use crate::memory::clone_fields;
 use crate::query::composite::{Touched, touched};
-use crate::query::{ContactManifold, ManifoldView, PairRef, Placement, Proximity, materialise};
+use crate::query::{
+    ContactManifold, ManifoldView, PairRef, PlacedSolids, Placement, Proximity, materialise,
+};
 use crate::shape::{Geometry, Kind, Shape};
 use crate::tables::ByDimension;
 use crate::tables::entries;
@@ -318,13 +319,13 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
     #[inline]
     pub(super) fn view<'a>(
         &'a self,
-        table: &'a ObjectTable<N, D>,
+        solids: &'a impl PlacedSolids<N, D>,
         key: PairKey,
         number: u64,
     ) -> ManifoldView<'a, N, D> {
-        let pose1 = table.pose(self.frame_object(key));
+        let pose1 = solids.pose(self.frame_object(key));
         let placement = Placement { pose1, pair: number, is_swapped: self.kept.swapped };
-        ManifoldView::of_convex(&self.kept.contacts, placement, PairRef::new(table, key))
+        ManifoldView::of_convex(&self.kept.contacts, placement, PairRef::new(solids, key))
     }
 }
 
@@ -395,14 +396,14 @@ impl<N: Space<D>, const D: usize> CompositeState<N, D> {
     #[inline]
     pub(super) fn view<'a>(
         &'a self,
-        table: &'a ObjectTable<N, D>,
+        solids: &'a impl PlacedSolids<N, D>,
         key: PairKey,
         number: u64,
         patch: usize,
     ) -> Option<ManifoldView<'a, N, D>> {
-        let pose1 = table.pose(self.frame_object(key));
+        let pose1 = solids.pose(self.frame_object(key));
         let placement = Placement { pose1, pair: number, is_swapped: self.swapped };
-        self.contacts.view(patch, placement, PairRef::new(table, key))
+        self.contacts.view(patch, placement, PairRef::new(solids, key))
     }
 }
 

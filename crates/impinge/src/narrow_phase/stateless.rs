@@ -1,11 +1,10 @@
 //! Contact manifolds of two placed shapes, without a world and without state.
 
 use super::generator::{PairContacts, conforming_points};
-use super::state::KeptPoints;
 use super::traits::ContactPrediction;
-use crate::collide::{AtIsometry, ManifoldRequest, Placed, Solid};
-use crate::math::{AbstractRotation, Isometry, IsometryRef, Mapped, Space};
-use crate::query::ContactManifold;
+use crate::collide::{AtIsometry, Placed, Solid};
+use crate::math::{AbstractRotation, Isometry, IsometryRef, Mapped, Real, Space};
+use crate::query::{ContactManifold, ManifoldView};
 use crate::shape::Shape;
 use crate::tables::entries;
 
@@ -50,41 +49,84 @@ pub fn contact_manifolds<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>
     prediction: &ContactPrediction<N>,
     max_points: Option<usize>,
 ) -> Vec<ContactManifold<N, D>> {
-    entries::contact_manifolds(R::view(m1), g1, R::view(m2), g2, prediction, max_points)
+    let question = ContactQuestion { prediction: *prediction, max_points };
+    entries::contact_manifolds(R::view(m1), g1, R::view(m2), g2, &question)
+}
+
+/// Calls `each` with a view of each manifold that [`contact_manifolds`] returns, in the same order.
+///
+/// For callers that need points, normals and depths alone: kinematics are not computed, and for two
+/// convex shapes nothing is allocated. Two boxes with four contacts take about half the time of
+/// [`contact_manifolds`].
+///
+/// ```
+/// use impinge::dim3::math::{Isometry, Vector};
+/// use impinge::dim3::query::{ContactPrediction, each_contact_manifold};
+/// use impinge::dim3::shape::Cuboid;
+///
+/// let (floor, parcel) = (Cuboid::new(Vector::new(9.0_f64, 1.0, 9.0)), Cuboid::new(Vector::repeat(0.5)));
+/// let (here, there) = (Isometry::identity(), Isometry::translation(2.0, 1.5625, 0.0));
+/// let (near, mut depths) = (ContactPrediction::new(0.125, 0.0, 0.0), Vec::new());
+/// each_contact_manifold(&here, &floor, &there, &parcel, &near, None, |manifold| {
+///     depths.extend(manifold.contacts().map(|point| point.contact.depth));
+/// });
+/// assert_eq!(depths, [-0.0625; 4]);
+/// ```
+pub fn each_contact_manifold<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
+    m1: &Isometry<N, R, D>,
+    g1: &dyn Shape<N, D>,
+    m2: &Isometry<N, R, D>,
+    g2: &dyn Shape<N, D>,
+    prediction: &ContactPrediction<N>,
+    max_points: Option<usize>,
+    mut each: impl FnMut(ManifoldView<'_, N, D>),
+) {
+    let question = ContactQuestion { prediction: *prediction, max_points };
+    entries::each_contact_manifold(R::view(m1), g1, R::view(m2), g2, &question, &mut each);
+}
+
+/// The parameters of a contact query for two shapes.
+pub(crate) struct ContactQuestion<N: Real> {
+    prediction: ContactPrediction<N>,
+    /// The largest number of points of a manifold; `None` for the default of the dimension.
+    max_points: Option<usize>,
 }
 
 /// Implements [`contact_manifolds`].
-#[inline]
 pub(crate) fn contact_manifolds_at<N: Space<D>, const D: usize>(
     isometry1: IsometryRef<'_, N, D>,
     shape1: &dyn Shape<N, D>,
     isometry2: IsometryRef<'_, N, D>,
     shape2: &dyn Shape<N, D>,
-    prediction: &ContactPrediction<N>,
-    max_points: Option<usize>,
+    question: &ContactQuestion<N>,
 ) -> Vec<ContactManifold<N, D>> {
-    let (one, other) = (AtIsometry::new(isometry1, shape1), AtIsometry::new(isometry2, shape2));
-    let Some([placed1, placed2]) = Placed::within(&one, &other, prediction.linear()) else {
-        return Vec::new();
-    };
-    if !(placed1.pose.is_finite() && placed2.pose.is_finite()) {
-        return Vec::new();
-    }
-    let max_points = max_points.unwrap_or(conforming_points::<D>()).max(1);
-    entries::manifolds_of_placed(&[placed1, placed2], &prediction.request(max_points))
+    let mut manifolds = Vec::new();
+    let mut keep = |view: ManifoldView<'_, N, D>| manifolds.push(view.to_manifold());
+    entries::each_contact_manifold(isometry1, shape1, isometry2, shape2, question, &mut keep);
+    manifolds
 }
 
-/// Returns the manifolds with at least one contact of two placed shapes. The pair identifier in
-/// their contact ids is 0.
-pub(crate) fn manifolds_of_placed<N: Space<D>, const D: usize>(
-    placed: &[Placed<'_, N, D>; 2],
-    request: &ManifoldRequest<N>,
-) -> Vec<ContactManifold<N, D>> {
+/// Implements [`each_contact_manifold`]. The pair identifier in the contact ids is 0.
+pub(crate) fn each_manifold_at<N: Space<D>, const D: usize>(
+    isometry1: IsometryRef<'_, N, D>,
+    shape1: &dyn Shape<N, D>,
+    isometry2: IsometryRef<'_, N, D>,
+    shape2: &dyn Shape<N, D>,
+    question: &ContactQuestion<N>,
+    each: &mut dyn FnMut(ManifoldView<'_, N, D>),
+) {
+    let ContactQuestion { prediction, max_points } = question;
+    let (one, other) = (AtIsometry::new(isometry1, shape1), AtIsometry::new(isometry2, shape2));
+    let Some(placed) = Placed::within(&one, &other, prediction.linear()) else { return };
+    if !placed.iter().all(|placed| placed.pose.is_finite()) {
+        return;
+    }
+    let request = prediction.request(max_points.unwrap_or(conforming_points::<D>()).max(1));
     let has_composite = placed.iter().any(|placed| placed.shape.as_composite().is_some());
     let mut contacts = PairContacts::new(has_composite);
-    let [one, other] = placed;
-    let (poses, shapes) = ([one.pose, other.pose], [one.shape, other.shape]);
+    let (poses, shapes) =
+        (placed.each_ref().mapped(|placed| placed.pose), placed.map(|placed| placed.shape));
     let [one, other] = shapes.mapped(Solid::of);
-    contacts.update((&poses, shapes), [one.as_ref(), other.as_ref()], request);
-    if contacts.len() == 0 { Vec::new() } else { contacts.manifolds(placed, 0, Vec::new()) }
+    contacts.update((&poses, shapes), [one.as_ref(), other.as_ref()], &request);
+    contacts.each_view(&placed, 0, each);
 }

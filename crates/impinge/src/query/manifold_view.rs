@@ -11,7 +11,7 @@ use super::{
     Contact, ContactId, ContactKinematic, ContactManifold, Placement, TrackedContact, composite,
 };
 use crate::collide::mesh::Patch;
-use crate::collide::{Pair, RawManifold, RawPoint};
+use crate::collide::{Pair, Placed, RawManifold, RawPoint};
 use crate::math::{Point, Pose, Real, Space, Unit, Vector};
 use crate::shape::{FeatureId, Geometry};
 
@@ -126,6 +126,20 @@ pub(crate) struct PairRef<'a, N: Real, const D: usize> {
 pub(crate) trait PlacedSolids<N: Real, const D: usize>: Sync {
     /// Returns the pose and the geometry of an object.
     fn placed(&self, object: u32) -> (&Pose<N, D>, Geometry<'_, N, D>);
+
+    /// Returns the pose of an object.
+    #[inline]
+    fn pose(&self, object: u32) -> &Pose<N, D> {
+        self.placed(object).0
+    }
+}
+
+/// A pair without a world: the objects 0 and 1.
+impl<N: Real, const D: usize> PlacedSolids<N, D> for [Placed<'_, N, D>; 2] {
+    fn placed(&self, object: u32) -> (&Pose<N, D>, Geometry<'_, N, D>) {
+        let Placed { pose, shape } = &self[object as usize];
+        (pose, *shape)
+    }
 }
 
 impl<'a, N: Real, const D: usize> PairRef<'a, N, D> {

@@ -3,14 +3,14 @@
 use super::{ByDimension, Here, compiled};
 use crate::bounding_volume::Ray;
 use crate::broad_phase::PairFinder;
-use crate::collide::{ManifoldRequest, Placed, mesh, separation};
+use crate::collide::{Placed, mesh, separation};
 use crate::convex::Separation;
 #[cfg(feature = "debug_render")]
 use crate::debug_render::Sketch;
 use crate::math::{self, IsometryRef, Point, Pose, Vector};
 use crate::narrow_phase::{
-    self, CompositeState, ContactPrediction, ContactState, DefaultNarrowPhase, Events, IdAllocator,
-    KeptContacts, ObjectTable, PairManifoldGenerator,
+    self, CompositeState, ContactPrediction, ContactQuestion, ContactState, DefaultNarrowPhase,
+    Events, IdAllocator, KeptContacts, ObjectTable, PairManifoldGenerator,
 };
 use crate::query::composite::{self, PartPoint, RayQuestion};
 use crate::query::point::{self, SurfacePoint};
@@ -130,12 +130,6 @@ compiled! {
         old: Vec<ContactManifold<N, D>>,
     ) -> Vec<ContactManifold<N, D>> = PairManifoldGenerator::read;
 
-    /// Computes the manifolds of two placed shapes without the contacts of an earlier step.
-    fn manifolds_of_placed(
-        placed: &[Placed<'_, N, D>; 2],
-        request: &ManifoldRequest<N>,
-    ) -> Vec<ContactManifold<N, D>> = narrow_phase::manifolds_of_placed;
-
     /// Returns the manifold of two convex solids in the public form; reuses the memory of `old`.
     fn public_manifold(
         state: &ContactState<N, D>,
@@ -236,9 +230,19 @@ compiled! {
         shape1: &dyn Shape<N, D>,
         isometry2: IsometryRef<'_, N, D>,
         shape2: &dyn Shape<N, D>,
-        prediction: &ContactPrediction<N>,
-        max_points: Option<usize>,
+        question: &ContactQuestion<N>,
     ) -> Vec<ContactManifold<N, D>> = narrow_phase::contact_manifolds_at;
+
+    /// Calls `each` with a view of each manifold of two shapes, computed without the contacts of an
+    /// earlier step.
+    fn each_contact_manifold(
+        isometry1: IsometryRef<'_, N, D>,
+        shape1: &dyn Shape<N, D>,
+        isometry2: IsometryRef<'_, N, D>,
+        shape2: &dyn Shape<N, D>,
+        question: &ContactQuestion<N>,
+        each: &mut dyn FnMut(ManifoldView<'_, N, D>),
+    ) = narrow_phase::each_manifold_at;
 
     /// Creates a shape at a pose that moves with a constant velocity.
     fn moving<'a>(

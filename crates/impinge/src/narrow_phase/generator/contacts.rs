@@ -3,7 +3,7 @@
 use crate::collide::{ManifoldRequest, Placed, Solid};
 use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::narrow_phase::state::{CompositeState, ContactState, KeptContacts, KeptPoints};
-use crate::query::ContactManifold;
+use crate::query::{ContactManifold, ManifoldView};
 use crate::shape::Geometry;
 
 /// The stored contacts of a single pair.
@@ -84,6 +84,23 @@ impl<N: Space<D>, const D: usize> PairContacts<N, D> {
             Self::Convex(state) => state.update_alone((poses, shapes), copies, request),
             Self::Composite(state) => {
                 state.update_between(&placed(poses, shapes), false, request);
+            }
+        }
+    }
+
+    /// Calls `each` with a view of each manifold; `number` is the pair identifier in contact ids.
+    pub(in crate::narrow_phase) fn each_view(
+        &self,
+        placed: &[Placed<'_, N, D>; 2],
+        number: u64,
+        each: &mut dyn FnMut(ManifoldView<'_, N, D>),
+    ) {
+        match self {
+            Self::Convex(state) if state.len() == 0 => {}
+            Self::Convex(state) => each(state.view(placed, [0, 1], number)),
+            Self::Composite(state) => {
+                let views = (0..).map_while(|patch| state.view(placed, [0, 1], number, patch));
+                views.for_each(each);
             }
         }
     }
