@@ -1,4 +1,4 @@
-//! Converts numbers of the command line to the scalar and dimension of a scene.
+//! Converts numbers of arguments to the scalar and dimension of a scene.
 
 use impinge::math::{Real, Vector};
 
@@ -6,7 +6,8 @@ use crate::args::Numbers;
 use crate::error::CliError;
 use crate::number::significant;
 
-/// Converts a number of an argument; an error if it is not finite in the scalar.
+/// Converts a number of an argument; an error if it becomes infinite in the scalar. `name` is the
+/// argument, for the error.
 pub(crate) fn scalar<N: Real>(name: &'static str, value: f64) -> Result<N, CliError> {
     let converted = N::lit(value);
     if converted.is_finite_number() {
@@ -15,7 +16,7 @@ pub(crate) fn scalar<N: Real>(name: &'static str, value: f64) -> Result<N, CliEr
     Err(CliError::argument(name, significant(value), "is beyond the numbers of the scene"))
 }
 
-/// Converts a vector of an argument; an error unless it has a number for each dimension.
+/// Converts a vector of an argument; an error unless it has exactly `D` numbers.
 pub(crate) fn vector<N: Real, const D: usize>(
     name: &'static str,
     numbers: &Numbers,
@@ -31,7 +32,7 @@ pub(crate) fn vector<N: Real, const D: usize>(
     Ok(vector)
 }
 
-/// Converts a vector of an argument that must not be zero. Its length is arbitrary.
+/// Converts a direction of an argument; an error if it is zero. Its length is arbitrary.
 pub(crate) fn direction<N: Real, const D: usize>(
     name: &'static str,
     numbers: &Numbers,

@@ -1,4 +1,4 @@
-//! Errors of the command.
+//! The errors of the command.
 
 use core::fmt;
 use std::io;
@@ -9,10 +9,10 @@ use impinge_html::HtmlError;
 use impinge_record::{ReadError, RecordError};
 use impinge_samples::SampleError;
 
-/// Invalid input: the exit code is 2. Each error names the file and the value.
+/// An error that ends the command with exit code 2. Its message names the file and the value.
 #[derive(Debug)]
 pub(crate) enum CliError {
-    /// A scene or mesh is invalid.
+    /// A scene, mesh or robot file is invalid.
     File(impinge_files::FileError),
     /// A file cannot be read.
     Read { path: PathBuf, error: io::Error },
@@ -24,35 +24,36 @@ pub(crate) enum CliError {
     Recording { path: PathBuf, error: ReadError },
     /// The recording has a scalar or dimension that the library does not support.
     ForeignRecording { path: PathBuf, scalar_bytes: u8, dimension: u8 },
-    /// A call cannot be recorded.
+    /// The recorder rejects a call.
     Record(RecordError),
-    /// A page cannot be made or served.
+    /// A page cannot be written or served.
     Page(HtmlError),
-    /// The command was built without the page, and no folder was given.
+    /// The command was built without the page, and the arguments name no folder with a page.
     NoPage,
     /// A sample cannot run.
     Sample { name: &'static str, error: SampleError },
-    /// A recording has fewer steps.
+    /// The recording has fewer steps than the requested one.
     NoStep { path: PathBuf, step: usize, last: usize },
-    /// The objects of a scene cannot be compared with each other.
+    /// The library rejects the objects of a scene.
     Objects(String),
-    /// More pairs of objects are near each other than the limit.
+    /// The number of pairs of objects that are near each other exceeds the limit.
     TooManyPairs { limit: usize },
-    /// Standard input has more bytes than the limit.
+    /// Standard input is longer than the limit, in bytes.
     TooLong { limit: usize },
-    /// A scene has no object of this name; `similar` is the most similar name, if there is one.
+    /// The scene has no object with this name. `similar` is the most similar name of an object, if
+    /// one is similar.
     NoObject { path: PathBuf, name: String, similar: Option<String> },
-    /// An argument is invalid for the scene.
+    /// An argument is invalid for the scene or recording.
     Argument { name: &'static str, value: String, reason: String },
 }
 
 impl CliError {
-    /// Returns a function that makes the error of reading a file.
+    /// Returns a function that creates the error of reading a file.
     pub(crate) fn reading(path: &Path) -> impl FnOnce(io::Error) -> Self {
         move |error| Self::Read { path: path.to_owned(), error }
     }
 
-    /// Returns the error of an argument that is invalid for the scene.
+    /// Creates the error of an argument that is invalid for the scene or recording.
     pub(crate) fn argument(
         name: &'static str,
         value: impl fmt::Display,

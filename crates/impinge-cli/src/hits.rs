@@ -1,4 +1,4 @@
-//! Hits of rays and moving shapes: the fields of `ray` and `cast`.
+//! The hits of rays and moving shapes: the fields of the reports of `ray` and `cast`.
 
 use core::fmt;
 
@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::number::{Number, tuple};
 use crate::output::{CLEAR, FAINT, NAME, Outcome, Report, Subject, TOUCHES};
 
-/// The hit objects, sorted by time.
+/// The hits of a query, sorted by time.
 #[derive(Debug, Serialize)]
 pub(crate) struct Hits<H> {
     #[serde(flatten)]
@@ -20,9 +20,9 @@ pub(crate) struct Hits<H> {
 #[derive(Debug, Serialize)]
 pub(crate) struct RayHit {
     pub(crate) object: String,
-    /// The time of the hit, as a multiple of the direction.
+    /// The time of the hit, in units of the length of the direction.
     pub(crate) time: Number,
-    /// The distance from the start to the point, in units of the world.
+    /// The distance from the start of the ray to the point, in units of the world.
     pub(crate) length: Number,
     pub(crate) point: Vec<Number>,
     /// The outward normal; zero if the ray starts inside.
@@ -37,13 +37,13 @@ pub(crate) struct CastHit {
     pub(crate) object: String,
     /// The time of the hit: 0 at the start and 1 at the end of the path.
     pub(crate) time: Number,
-    /// The travelled distance, in units of the world.
+    /// The distance from the start of the path, in units of the world.
     pub(crate) moved: Number,
     /// The position of the moving shape at that time.
     pub(crate) position: Vec<Number>,
-    /// The point on the moving shape.
+    /// The contact point on the moving shape, in the world frame.
     pub(crate) point: Vec<Number>,
-    /// The normal from the moving shape to the object.
+    /// The unit normal from the moving shape to the object.
     pub(crate) normal: Vec<Number>,
     /// The index of the part that is hit; 0 for a convex shape.
     pub(crate) part: u32,

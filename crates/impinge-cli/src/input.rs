@@ -1,4 +1,4 @@
-//! Input of the command: files or standard input, with scenes or recordings.
+//! Reads the input of the command: scenes or recordings, from files or from standard input.
 
 use std::fs::{self, File};
 use std::io::{self, Read as _};
@@ -14,20 +14,20 @@ use crate::scene::Loaded;
 /// A scene or a recording.
 #[derive(Debug)]
 pub(crate) enum Input {
-    /// A scene, a mesh or a robot.
+    /// A scene that was read from a scene file, a mesh or a robot.
     Scene(Box<Loaded>),
     /// A recording.
     Recording(Box<Log>),
 }
 
-/// The number of bytes at the start of a file that identify the header of a recording.
+/// The number of bytes that are read from a file to identify a recording.
 const HEAD: u64 = 64;
 
 impl Input {
-    /// Reads a file as the kind that its first bytes indicate.
+    /// Reads a file as the kind of input that its first bytes indicate.
     ///
-    /// The first bytes of a scene are read twice, since its reader takes a path: a mesh may name other
-    /// files beside it.
+    /// The first bytes of a scene are read twice: its reader takes a path, since a mesh may name
+    /// other files in its folder.
     pub(crate) fn open(args: &SceneArgs) -> Result<Self, CliError> {
         let path = &args.scene;
         if is_stdin(path) {
@@ -47,13 +47,13 @@ impl Input {
     }
 }
 
-/// Whether the bytes begin like a recording, also a truncated one or one of an unknown version.
-/// Errors are then those of a recording, not of JSON.
+/// Returns `true` if the bytes begin like a recording, even a truncated one or one of an unknown
+/// version. The input is then read as a recording, so that an error is not about JSON.
 fn is_recording(head: &[u8]) -> bool {
     !Header::read(head).is_err_and(|error| error.problem == Problem::NotARecording)
 }
 
-/// Returns the first bytes of a file.
+/// Returns the first [`HEAD`] bytes of a file, or all if it is shorter.
 fn head(path: &Path) -> Result<Vec<u8>, CliError> {
     let mut head = Vec::new();
     let read = regular(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
@@ -72,7 +72,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, CliError> {
     Ok(bytes)
 }
 
-/// Opens a regular file: opening a pipe would wait for its writer.
+/// Opens a regular file. Other files are errors, since opening a pipe would wait for a writer.
 fn regular(path: &Path) -> io::Result<File> {
     if fs::metadata(path)?.is_file() {
         return File::open(path);
@@ -80,7 +80,7 @@ fn regular(path: &Path) -> io::Result<File> {
     Err(io::Error::other("it is no regular file; `-` reads standard input"))
 }
 
-/// Returns all bytes of standard input, at most `limit`.
+/// Returns all bytes of standard input; an error if they are more than `limit`.
 pub(crate) fn stdin(limit: usize) -> Result<Vec<u8>, CliError> {
     let mut bytes = Vec::new();
     let read = io::stdin().lock().take((limit as u64).saturating_add(1)).read_to_end(&mut bytes);

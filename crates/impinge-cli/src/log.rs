@@ -1,4 +1,4 @@
-//! Recordings of any scalar, dimension and data.
+//! Reads recordings of worlds of any scalar, dimension and type of data.
 
 use std::path::{Path, PathBuf};
 
@@ -12,10 +12,10 @@ use crate::input;
 use crate::output::{Subject, note};
 use crate::space::{Kind, Stage, Task, run_in};
 
-/// The data of a recorded object: any bytes; they are its name if they are text.
+/// The data of a recorded object as bytes. If they are text, they are the name of the object.
 pub(crate) type Label = Vec<u8>;
 
-/// The bytes of a recording, and the content of its header.
+/// A recording whose header was decoded.
 #[derive(Debug)]
 pub(crate) struct Log {
     pub(crate) path: PathBuf,
@@ -25,7 +25,7 @@ pub(crate) struct Log {
 }
 
 impl Log {
-    /// Reads a recording from a file or from standard input; decodes only the header.
+    /// Reads a recording from a file or from standard input, and decodes its header.
     pub(crate) fn read(path: &Path) -> Result<Self, CliError> {
         Self::of_bytes(path, input::read(path)?)
     }
@@ -41,21 +41,21 @@ impl Log {
         Ok(Self { path: path.to_owned(), bytes, header, kind })
     }
 
-    /// The name of the file in reports.
+    /// Returns the name of the file for reports.
     pub(crate) fn name(&self) -> String {
         self.path.display().to_string()
     }
 
-    /// The first fields of a report on the recording.
+    /// Returns the first fields of a report about the recording.
     pub(crate) fn subject(&self) -> Subject {
         Subject { file: self.name(), kind: self.kind }
     }
 
     /// Opens the recording at step 0.
     ///
-    /// If its end is missing, because the program that wrote it crashed, or damaged, the earlier records are
-    /// replayed; a note gives the number of their steps. Other errors, such as an unknown shape, are errors here
-    /// too.
+    /// If its end is missing or damaged, for example after a crash of the program that wrote it,
+    /// the earlier records are replayed. A note then gives the number of their steps. Other
+    /// problems, such as an unknown shape, are errors.
     pub(crate) fn replay<N: Stage<D>, const D: usize>(
         &self,
     ) -> Result<Replay<N, D, Label>, CliError> {
@@ -73,7 +73,8 @@ impl Log {
         Ok(replay)
     }
 
-    /// Opens the recording at a step, or at its last one.
+    /// Opens the recording at `step`, or at its last step. A step that the recording does not have
+    /// is an error.
     pub(crate) fn replay_to<N: Stage<D>, const D: usize>(
         &self,
         step: Option<usize>,
@@ -89,10 +90,11 @@ impl Log {
         Ok(replay)
     }
 
-    /// Returns the bytes for a page, which accepts a recording without its end, but no incomplete record.
+    /// Returns the bytes for a page: all whole records. The page accepts a recording without its
+    /// end, but no incomplete record.
     ///
-    /// The page has stand-ins for shapes that a registry would have to name, while a replay of the command could
-    /// not read them.
+    /// A recording with unknown shapes is returned unchanged, since it cannot be replayed here. The
+    /// page shows other shapes in their place.
     pub(crate) fn into_page_bytes(self) -> Result<Vec<u8>, CliError> {
         match run_in(self.kind, WholeRecords(&self)) {
             Err(CliError::Recording { error, .. })
@@ -105,7 +107,7 @@ impl Log {
     }
 }
 
-/// Reads a recording for its bytes, without the dropped end.
+/// Replays a recording, and returns the bytes of its whole records.
 struct WholeRecords<'a>(&'a Log);
 
 impl Task for WholeRecords<'_> {
@@ -116,8 +118,8 @@ impl Task for WholeRecords<'_> {
     }
 }
 
-/// Whether the bytes differ from the written ones, or are incomplete. After a power failure a file system may
-/// return zeros for the last bytes, whose checksum is then wrong.
+/// Returns `true` if the recording is incomplete or was changed after it was written. After a power
+/// failure a file system may return zeros for the last bytes, whose checksum is then wrong.
 const fn is_damage(error: &ReadError) -> bool {
     matches!(error.problem, Problem::Truncated | Problem::Checksum)
 }
@@ -128,7 +130,7 @@ pub(crate) fn in_file(path: &Path) -> impl Fn(ReadError) -> CliError {
     move |error| CliError::Recording { path: path.clone(), error }
 }
 
-/// Returns the scalar and dimension of a recording, if the library supports them.
+/// Returns the scalar and dimension of a recording; `None` if the library does not support them.
 const fn kind_of(header: &Header) -> Option<Kind> {
     let scalar = match header.scalar_bytes {
         4 => ScalarFile::F32,
@@ -143,7 +145,8 @@ const fn kind_of(header: &Header) -> Option<Kind> {
     Some(Kind { dimension, scalar })
 }
 
-/// Returns the name of a recorded object: its data, if that is printable text; else the index of its handle.
+/// Returns the name of a recorded object: its data if that is printable text, otherwise `#` and the
+/// index of its handle.
 pub(crate) fn name_of<N: Space<D>, const D: usize>(
     object: &CollisionObject<N, D, Label>,
 ) -> String {

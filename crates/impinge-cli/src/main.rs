@@ -1,9 +1,11 @@
 //! The command `impinge`: collision checks, queries, pictures and recordings of scene files.
 //!
-//! A verb reads a file, computes in the scalar and dimension that the file names, and prints a report as text or
-//! as JSON. Its exit code is 0 if nothing touches, 1 if something touches, 2 if the input is invalid.
+//! A verb reads a file, computes in the scalar and dimension that the file names, and prints a
+//! report as text or as JSON. The exit code is 1 if something touches, is hit or differs, 2 if the
+//! input or the arguments are invalid, and 0 otherwise.
 //!
-//! `args` is the command line, `verbs` has a file for each verb; code that several verbs share is beside them.
+//! `args` defines the command line. `verbs` has a file for each verb. The other modules are used by
+//! several verbs.
 #![forbid(unsafe_code)]
 
 mod args;

@@ -7,17 +7,17 @@ use crate::scene::Loaded;
 use crate::space::{Stage, Task, run_in};
 use crate::summary::touches;
 
-/// A recorded scene.
+/// The counts of a recorded scene.
 pub(crate) struct Recorded {
     /// The number of bytes of the recording, unpacked.
     pub(crate) bytes: usize,
     pub(crate) objects: usize,
-    /// The number of steps after which something touched.
+    /// The number of steps after which at least one pair touched.
     pub(crate) touched: usize,
 }
 
-/// Moves the objects of a scene and records every update. The bytes are passed on as they are made, the first ones
-/// after the first step.
+/// Moves the objects of a scene and records every update. `take` gets the bytes of the recording in
+/// pieces, the first piece after the first step.
 pub(crate) fn record(
     loaded: &Loaded,
     stepping: Stepping,
@@ -27,7 +27,7 @@ pub(crate) fn record(
     run_in(loaded.kind, Record { loaded, stepping, key_frames, take })
 }
 
-/// Records a scene; see [`record`].
+/// The task that records a scene; see [`record`].
 struct Record<'a> {
     loaded: &'a Loaded,
     stepping: Stepping,

@@ -1,4 +1,4 @@
-//! Finds the pairs of objects of a world that may be near each other, without storing them.
+//! Finds the pairs of objects that may be near each other, without storing the pairs.
 
 use core::cell::Cell;
 use core::cmp::Ordering;
@@ -11,20 +11,20 @@ use impinge::world::{CollisionObject, CollisionWorld};
 use crate::error::CliError;
 use crate::space::Stage;
 
-/// The margin of error for the distance of pairs of a world, in rounding errors of the distance.
+/// The relative enlargement of distances against rounding errors, in units of the machine epsilon.
 const ROUNDING_ERRORS: f64 = 1024.0;
 
-/// The objects of a world and the boxes around them.
+/// The objects of a world, and a tree of their bounding boxes.
 pub(crate) struct Boxed<'a, N: Stage<D>, const D: usize, T> {
     objects: Vec<&'a CollisionObject<N, D, T>>,
     tree: BoxTree<N, D>,
-    /// For each box of the tree, the index of its object; objects without a finite box are not in
+    /// For each box of the tree, the index of its object. Objects without a finite box are not in
     /// the tree.
     owners: Vec<usize>,
 }
 
 impl<'a, N: Stage<D>, const D: usize, T> Boxed<'a, N, D, T> {
-    /// Computes the boxes of all objects. O(n log n).
+    /// Computes the boxes of all objects of a world. O(n log n).
     pub(crate) fn new(world: &'a CollisionWorld<N, D, T>) -> Result<Self, CliError> {
         let objects: Vec<_> = world.collision_objects().collect();
         let shapes: Vec<_> = objects.iter().map(|object| object.shape().clone()).collect();
@@ -39,20 +39,21 @@ impl<'a, N: Stage<D>, const D: usize, T> Boxed<'a, N, D, T> {
         Ok(Self { objects, tree, owners })
     }
 
-    /// Returns the object with an index.
+    /// Returns the object with this index, in the order of the world.
     pub(crate) fn object(&self, index: u32) -> &'a CollisionObject<N, D, T> {
         self.objects[index as usize]
     }
 
-    /// The number of objects.
+    /// Returns the number of objects.
     pub(crate) fn len(&self) -> usize {
         self.objects.len()
     }
 
-    /// Calls `visit` with the indices of two objects, the lower first, for each pair that may
-    /// interact by its groups and whose boxes are at most a distance apart. `reach` returns this
-    /// distance for an object. An object that is tested against itself is a pair too. `goes_on` is
-    /// called before each object; the loop ends when it returns `false`.
+    /// Calls `visit` with the indices of two objects, the lower index first, for each pair that may
+    /// interact by its groups and whose boxes are near each other. The boxes of a pair are near if
+    /// their distance is at most the value of `reach` for the first object. An object that is
+    /// tested against itself is a pair too. `goes_on` is called before each object, and ends the
+    /// search if it returns `false`.
     pub(crate) fn each(
         &self,
         reach: impl Fn(&CollisionObject<N, D, T>) -> N,
@@ -86,16 +87,18 @@ fn number(index: usize) -> u32 {
     u32::try_from(index).unwrap_or(u32::MAX)
 }
 
-/// Returns a box enlarged on all sides.
+/// Returns a box enlarged by `reach` on all sides, with an allowance for rounding errors.
 fn grown<N: Stage<D>, const D: usize>(aabb: &Aabb<N, D>, reach: N) -> Aabb<N, D> {
     let reach = reach * (N::ONE + N::EPSILON * N::lit(ROUNDING_ERRORS));
     aabb.loosened(reach)
 }
 
-/// Returns an error if the next update of a world would keep more than `limit` pairs, with boxes enlarged by `margin`.
+/// Returns an error if the next update of a world would store more than `limit` pairs, with boxes
+/// enlarged by `margin`.
 ///
-/// Costs nothing if there are so few objects that all pairs are within the limit; otherwise O(n log n) and the pairs up
-/// to the limit.
+/// If there are so few objects that all their pairs are within the limit, nothing is computed.
+/// Otherwise the search takes O(n log n) for n objects, plus a constant time for each pair up to
+/// the limit.
 pub(crate) fn check_pairs<N: Stage<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     margin: f64,

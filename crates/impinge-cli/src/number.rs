@@ -1,4 +1,4 @@
-//! Numbers of either scalar, for output.
+//! Formats numbers of either scalar for output.
 
 use core::fmt;
 
@@ -6,10 +6,10 @@ use impinge::math::{Point, Real, Vector};
 use impinge_record::Scalar;
 use serde::{Serialize, Serializer};
 
-/// A number with the scalar of its computation.
+/// A number and the scalar in which it was computed.
 ///
-/// JSON has the shortest decimal that reads back as the same number of that scalar, and null for NaN and
-/// infinities. `Display` has six significant digits.
+/// In JSON it is the shortest decimal that reads back as the same number of that scalar, or null
+/// for NaN and infinities. `Display` writes six significant digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Number {
     value: f64,
@@ -17,22 +17,22 @@ pub(crate) struct Number {
 }
 
 impl Number {
-    /// A number of a scalar.
+    /// Creates a number from a scalar.
     pub(crate) fn new<N: Scalar>(value: N) -> Self {
         Self { value: value.as_f64(), is_single: N::BYTES == 4 }
     }
 
-    /// The coordinates of a point.
+    /// Returns the coordinates of a point.
     pub(crate) fn of_point<N: Scalar, const D: usize>(point: &Point<N, D>) -> Vec<Self> {
         Self::of_vector(&point.coords)
     }
 
-    /// The components of a vector.
+    /// Returns the components of a vector.
     pub(crate) fn of_vector<N: Scalar, const D: usize>(vector: &Vector<N, D>) -> Vec<Self> {
         vector.iter().copied().map(Self::new).collect()
     }
 
-    /// The number as it was computed.
+    /// Returns the number without rounding.
     pub(crate) const fn value(self) -> f64 {
         self.value
     }
@@ -54,7 +54,7 @@ impl fmt::Display for Number {
     }
 }
 
-/// Formats six significant digits, without trailing zeros and without the sign of zero.
+/// Formats a number with six significant digits, without trailing zeros, and zero without a sign.
 pub(crate) fn significant(value: f64) -> String {
     let rounded = format!("{value:.5e}").parse::<f64>().unwrap_or(value);
     let size = rounded.abs();
@@ -67,7 +67,7 @@ pub(crate) fn significant(value: f64) -> String {
     }
 }
 
-/// Formats coordinates in parentheses.
+/// Formats coordinates in parentheses, separated by commas.
 pub(crate) fn tuple(numbers: &[Number]) -> String {
     let words: Vec<_> = numbers.iter().map(Number::to_string).collect();
     format!("({})", words.join(", "))

@@ -1,4 +1,4 @@
-//! Output of the command: reports as text or JSON, notes and errors, files.
+//! Writes the output of the command: reports as text or JSON, notes, errors and files.
 
 use core::fmt;
 use std::fs;
@@ -14,24 +14,24 @@ use crate::args::Format;
 use crate::error::CliError;
 use crate::space::Kind;
 
-/// The style of contacts, hits and differences.
+/// The style of contacts, hits, differences and errors.
 pub(crate) const TOUCHES: Style = AnsiColor::Red.on_default().bold();
-/// The style of near pairs.
+/// The style of near pairs and notes.
 pub(crate) const NEAR: Style = AnsiColor::Yellow.on_default();
-/// The style of results without findings.
+/// The style of reports that nothing was found.
 pub(crate) const CLEAR: Style = AnsiColor::Green.on_default();
 /// The style of secondary text.
 pub(crate) const FAINT: Style = Style::new().dimmed();
-/// Names of objects and files.
+/// The style of names of objects and files.
 pub(crate) const NAME: Style = Style::new().bold();
 
-/// The largest number of words of a message.
+/// The maximum number of words of a message. Further words are omitted.
 const MAX_WORDS: usize = 400;
 
-/// Whether something touches, is hit or differs, which is the exit code.
+/// The outcome of a command, which determines its exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
-    /// Nothing touches, or the verb has no such result: exit code 0.
+    /// Nothing was found, or the verb does not search for anything: exit code 0.
     Clear,
     /// Something touches, is hit or differs: exit code 1.
     Found,
@@ -52,10 +52,10 @@ impl From<Outcome> for ExitCode {
     }
 }
 
-/// A result of the command: as text by `Display`, with escape codes for colours, and as JSON by `Serialize`, with
-/// the fields that `--help` documents.
+/// The result of a verb. `Display` writes it as text with escape codes for colours, `Serialize` as
+/// JSON with the fields that `--help` documents.
 pub(crate) trait Report: Serialize + fmt::Display {
-    /// The exit code.
+    /// Returns the outcome, which determines the exit code.
     fn outcome(&self) -> Outcome {
         Outcome::Clear
     }
@@ -76,7 +76,7 @@ impl fmt::Display for Subject {
     }
 }
 
-/// Prints a report, and returns its exit code.
+/// Prints a report as text or as JSON, and returns its outcome.
 pub(crate) fn finish<R: Report>(report: &R, format: Format) -> Result<Outcome, CliError> {
     written(|out| {
         if !format.json {
@@ -88,14 +88,14 @@ pub(crate) fn finish<R: Report>(report: &R, format: Format) -> Result<Outcome, C
     Ok(report.outcome())
 }
 
-/// Writes a text to standard output, with colours if that is a terminal.
+/// Writes a text to standard output, with colours if standard output is a terminal.
 pub(crate) fn print(text: &str) -> Result<(), CliError> {
     written(|out| out.write_all(text.as_bytes()))
 }
 
-/// Writes to standard output in pieces, so that a long report is never in memory as a whole.
+/// Writes to standard output through a buffer, so that a long report is never in memory as a whole.
 ///
-/// A closed reader, as in `impinge … | head`, is no error.
+/// It is no error if the reader closes the pipe, as in `impinge … | head`.
 fn written(write: impl FnOnce(&mut dyn io::Write) -> io::Result<()>) -> Result<(), CliError> {
     let mut out = io::BufWriter::new(anstream::stdout().lock());
     match write(&mut out).and_then(|()| out.flush()) {
@@ -104,7 +104,7 @@ fn written(write: impl FnOnce(&mut dyn io::Write) -> io::Result<()>) -> Result<(
     }
 }
 
-/// Writes a note to standard error: the result is valid, but not complete.
+/// Writes a note to standard error, for a result that is valid but incomplete.
 pub(crate) fn note(text: impl fmt::Display) {
     message(NEAR, "note", &text);
 }
@@ -114,23 +114,23 @@ pub(crate) fn complain(error: &CliError) {
     message(TOUCHES, "error", error);
 }
 
-/// Writes a message. Control characters are escaped here, wherever the text comes from; texts are
-/// shortened by their authors.
+/// Writes a message of one line. Control characters are escaped here, whatever the source of the
+/// text. Long texts should be shortened by the caller.
 fn message(style: Style, kind: &str, text: &dyn fmt::Display) {
     let text = text.to_string();
     let words = text.split_inclusive(' ').take(MAX_WORDS);
     let text: String = words.map(|word| Printable(word).to_string()).collect();
-    // An error of a closed standard error is ignored.
+    // Standard error may be closed: the error of writing to it is ignored.
     let _ = writeln!(anstream::stderr(), "{style}{kind}{style:#}: {text}");
 }
 
-/// Writes a file.
+/// Writes a file, and replaces an existing one.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
     fs::write(path, bytes).map_err(|error| CliError::Write { path: path.to_owned(), error })
 }
 
-/// A file that is written in pieces. It is created with the first piece, so that an earlier error does not destroy
-/// an existing file.
+/// A file that is written in pieces. It is created when the first piece is written, so that an
+/// earlier error does not destroy an existing file.
 #[derive(Debug)]
 pub(crate) struct Growing<'a> {
     path: &'a Path,
@@ -152,7 +152,7 @@ impl<'a> Growing<'a> {
         file.map_or(Ok(()), |file| file.write_all(bytes)).map_err(wrong)
     }
 
-    /// Finishes the file after all pieces.
+    /// Writes the buffered bytes after the last piece.
     pub(crate) fn finish(mut self) -> Result<(), CliError> {
         let flushed = self.file.as_mut().map_or(Ok(()), io::Write::flush);
         flushed.map_err(|error| CliError::Write { path: self.path.to_owned(), error })

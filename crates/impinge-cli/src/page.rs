@@ -1,11 +1,12 @@
-//! The page that the command writes or serves.
+//! Selects the page that the command writes or serves.
 
 use impinge_html::Assets;
 
 use crate::args::PageArgs;
 use crate::error::CliError;
 
-/// Returns the parts in a folder that the user names, or else the embedded ones.
+/// Returns the files of the page from the folder in the arguments, or the embedded files if no
+/// folder is given.
 pub(crate) fn assets(args: &PageArgs) -> Result<Assets, CliError> {
     match &args.folder {
         Some(folder) => Ok(Assets::from_folder(folder)?),

@@ -1,13 +1,14 @@
-//! Progress bars on standard error.
+//! Shows progress bars on standard error.
 
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-/// Shorter work has no progress bar.
+/// The time after which a progress bar appears.
 const DELAY: Duration = Duration::from_secs(1);
 
-/// A progress bar that appears after a second, on a terminal only, and disappears at the end.
+/// A progress bar that appears after [`DELAY`], on a terminal only, and disappears when it is
+/// dropped.
 #[derive(Debug)]
 pub(crate) struct Progress {
     bar: ProgressBar,
@@ -16,7 +17,7 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Creates a bar of `steps` steps.
+    /// Creates a bar of `steps` steps. `work` is the text before it.
     pub(crate) fn new(steps: usize, work: &'static str) -> Self {
         let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::hidden());
         let style = ProgressStyle::with_template("{msg} {wide_bar:.cyan} {pos}/{len} {eta}");
@@ -29,7 +30,7 @@ impl Progress {
     pub(crate) fn step(&mut self) {
         if !self.is_shown && self.begun.elapsed() > DELAY {
             self.is_shown = true;
-            // Draws nothing if standard error is not a terminal.
+            // Nothing is drawn if standard error is not a terminal.
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
         }
         self.bar.inc(1);

@@ -1,4 +1,4 @@
-//! Input scenes: scene files, meshes, robots.
+//! Reads scenes of the command from scene files, meshes and robots.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -23,13 +23,15 @@ pub(crate) struct Loaded {
     max_pairs: usize,
 }
 
-/// The name of a scene from standard input.
+/// The name of the file in reports and errors about standard input.
 const STDIN: &str = "stdin";
 
-/// A name is similar to another if the edit distance is at most the number of its characters divided by this.
+/// Two names are similar if their edit distance is at most the number of characters of the searched
+/// name divided by this number.
 const SIMILAR: usize = 3;
 
-/// Longer names are not compared: the time is the product of their lengths.
+/// The maximum length of compared names in bytes. Comparing takes time proportional to the product
+/// of the lengths.
 const LONG: usize = 256;
 
 impl Loaded {
@@ -50,7 +52,7 @@ impl Loaded {
         Self::of_text(STDIN, &text.map_err(CliError::reading(Path::new(STDIN)))?, reading)
     }
 
-    /// Parses a scene in JSON that is not in a file.
+    /// Parses a scene in JSON that is not in a file. `name` stands for the file in reports.
     pub(crate) fn of_text(name: &str, text: &str, reading: &Reading) -> Result<Self, CliError> {
         let scene = Scene::from_json_with(name, text, &reading.options())?;
         Ok(Self::new(name.into(), scene, reading))
@@ -62,46 +64,48 @@ impl Loaded {
         Self { path, scene, kind, max_pairs: reading.limits.max_pairs }
     }
 
-    /// The name of the file in reports.
+    /// Returns the name of the file for reports.
     pub(crate) fn name(&self) -> String {
         self.path.display().to_string()
     }
 
-    /// The first fields of a report on the scene.
+    /// Returns the first fields of a report about the scene.
     pub(crate) fn subject(&self) -> Subject {
         Subject { file: self.name(), kind: self.kind }
     }
 
-    /// The scene.
+    /// Returns the scene.
     pub(crate) const fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// Makes a world with the objects, not updated yet.
+    /// Creates a world with the objects. It is not updated yet.
     pub(crate) fn world<N: Stage<D>, const D: usize>(
         &self,
     ) -> Result<CollisionWorld<N, D, String>, CliError> {
         Ok(self.scene.collision_world()?)
     }
 
-    /// Makes a world for queries about its objects, without pairs between them.
+    /// Creates an updated world for queries about its objects, which contains no contacts between
+    /// them.
     pub(crate) fn world_without_pairs<N: Stage<D>, const D: usize>(
         &self,
     ) -> Result<CollisionWorld<N, D, String>, CliError> {
         let mut world = self.world()?;
         let handles: Vec<_> = world.collision_objects().map(CollisionObject::handle).collect();
         for handle in handles {
-            // Fixed objects have no pairs with each other; queries find them.
+            // Fixed objects have no pairs with each other, but queries find them.
             let fixed = world.try_set_fixed(handle, true);
             fixed.map_err(|error| CliError::Objects(error.to_string()))?;
         }
-        // Overlapping boxes are stored all the same.
+        // The broad phase stores overlapping boxes even for fixed objects.
         self.check_pairs(&world)?;
         world.update();
         Ok(world)
     }
 
-    /// Checks the number of pairs of the next update of a world of this scene.
+    /// Returns an error if the next update of a world of this scene would store more pairs than the
+    /// limit.
     pub(crate) fn check_pairs<N: Stage<D>, const D: usize>(
         &self,
         world: &CollisionWorld<N, D, String>,
@@ -109,7 +113,8 @@ impl Loaded {
         check_pairs(world, self.scene.file().margin, self.max_pairs)
     }
 
-    /// Moves the objects of a world of this scene and updates it; see [`SceneWorld::step`].
+    /// Moves the objects of a world of this scene, checks the number of pairs, and updates the
+    /// world; see [`SceneWorld::step`].
     pub(crate) fn step<N: Stage<D>, const D: usize>(
         &self,
         world: &mut SceneWorld<N, D>,
@@ -121,12 +126,12 @@ impl Loaded {
         Ok(())
     }
 
-    /// The largest number of pairs.
+    /// Returns the maximum number of pairs of objects that are near each other.
     pub(crate) const fn max_pairs(&self) -> usize {
         self.max_pairs
     }
 
-    /// Makes a recorded world with moving objects, with these key frames.
+    /// Creates a recorded world with moving objects, whose recording has these key frames.
     pub(crate) fn moving<N: Stage<D>, const D: usize>(
         &self,
         key_frames: KeyFrames,
@@ -138,7 +143,7 @@ impl Loaded {
         })
     }
 
-    /// The upward direction of pictures.
+    /// Returns the upward direction of pictures, a unit vector.
     pub(crate) fn up(&self) -> Vector<f64> {
         match self.scene.up() {
             UpAxis::X => Vector::x(),
@@ -147,7 +152,8 @@ impl Loaded {
         }
     }
 
-    /// Returns the object of a name; the error has the most similar name, if one is similar.
+    /// Returns the object with this name. The error contains the most similar name of an object, if
+    /// one is similar.
     pub(crate) fn object<'a, N: Stage<D>, const D: usize>(
         &self,
         world: &'a CollisionWorld<N, D, String>,
@@ -164,12 +170,14 @@ impl Loaded {
     }
 }
 
-/// Returns the edit distance: the number of characters to add, remove or change (Levenshtein, "Binary codes
-/// capable of correcting deletions, insertions, and reversals", 1966).
+/// Returns the edit distance of two texts: the minimum number of characters to add, remove or
+/// change (Levenshtein, "Binary codes capable of correcting deletions, insertions, and reversals",
+/// 1966).
 fn edits(one: &str, other: &str) -> usize {
     let other: Vec<char> = other.chars().collect();
-    // The distances of the first `row` characters of `one` to every prefix of `other`: a row of the usual table,
-    // overwritten from left to right; `diagonal` is the value above and to the left.
+    // Row `row` of the usual table, which is overwritten from left to right: the distances from the
+    // first `row` characters of `one` to every prefix of `other`. `diagonal` is the value above and
+    // to the left of the current one.
     let mut distances: Vec<usize> = (0..=other.len()).collect();
     for (row, letter) in one.chars().enumerate() {
         let mut diagonal = distances[0];

@@ -1,4 +1,4 @@
-//! The distance or depth of two objects: the fields of `check` and `distance`.
+//! The distance or depth of two objects: the fields of the reports of `check` and `distance`.
 
 use core::fmt;
 
@@ -10,8 +10,8 @@ use crate::number::{Number, tuple};
 use crate::output::FAINT;
 use crate::state::State;
 
-/// Two objects and the points where they are nearest or deepest. Null stands for unbounded values:
-/// half-spaces with an unbounded overlap.
+/// Two objects, and the points at which they are nearest or deepest. A field is null if its value
+/// is unbounded or does not exist, as for half-spaces with an unbounded overlap.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Separation {
     pub(crate) first: String,
@@ -19,12 +19,12 @@ pub(crate) struct Separation {
     pub(crate) state: State,
     /// The distance; zero if the objects touch.
     pub(crate) distance: Option<Number>,
-    /// The depth: the length of the shortest translation that separates the objects; zero unless
-    /// they overlap.
+    /// The depth, which is the length of the shortest translation that separates the objects; zero
+    /// unless they overlap.
     pub(crate) depth: Option<Number>,
-    /// The point on the first object, in the world frame.
+    /// The nearest or deepest point on the first object, in the world frame.
     pub(crate) point1: Option<Vec<Number>>,
-    /// The point on the second object, in the world frame.
+    /// The nearest or deepest point on the second object, in the world frame.
     pub(crate) point2: Option<Vec<Number>>,
     /// The unit normal from the first object to the second.
     pub(crate) normal: Option<Vec<Number>>,
@@ -35,13 +35,14 @@ pub(crate) struct Separation {
 }
 
 impl Separation {
-    /// Converts a witness; the state is near if they are within a margin.
+    /// Converts a witness. The state is near if the objects are apart and their distance is at most
+    /// `margin`.
     pub(crate) fn of_witness<N: Recordable<D>, const D: usize>(
         [first, second]: [String; 2],
         found: &Witness<N, D>,
         margin: N,
     ) -> Self {
-        // The distance of a witness is signed: minus the depth where the two overlap.
+        // The distance of a witness is signed: it is the negative depth if the objects overlap.
         let distance = impinge::math::max(found.distance, N::ZERO);
         let depth = impinge::math::max(-found.distance, N::ZERO);
         let state = if found.distance <= N::ZERO {
@@ -65,8 +66,8 @@ impl Separation {
         }
     }
 
-    /// Returns the fields of two objects without nearest points: half-spaces with an unbounded overlap, or
-    /// objects infinitely far away.
+    /// Creates the fields for two objects without nearest points: half-spaces with an unbounded
+    /// overlap, or objects at an infinite distance.
     pub(crate) fn unbounded([first, second]: [String; 2], state: State) -> Self {
         let (distance, depth, point1, point2) = (None, None, None, None);
         let (normal, part1, part2) = (None, None, None);
@@ -74,7 +75,8 @@ impl Separation {
     }
 }
 
-/// Writes a line with the state, the names and the length, and one with the points and the normal.
+/// Writes a line with the state, the names and the length, and a line with the points and the
+/// normal.
 impl fmt::Display for Separation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.state.headline(f, &self.first, &self.second)?;

@@ -1,4 +1,4 @@
-//! Dispatches from the scalar and dimension of a file to types: the only place of this choice.
+//! Dispatches from the scalar and dimension of a file, known at run time, to generic code.
 
 use core::fmt;
 
@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use crate::error::CliError;
 
-/// A dimension and a scalar: fields of nearly every report.
+/// A dimension and a scalar, which are fields of most reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Kind {
     pub(crate) dimension: Dimension,
@@ -28,22 +28,23 @@ impl fmt::Display for Kind {
     }
 }
 
-/// A scalar and a dimension in which the command works.
+/// A scalar and a dimension in which the command computes.
 pub(crate) trait Stage<const D: usize>: SceneSpace<D> {
-    /// Returns the camera of a picture: in 3D the given one, in 2D an orthographic one.
+    /// Returns the camera of a picture: `spatial` in 3D, an orthographic camera in 2D.
     fn camera(spatial: Camera) -> Camera;
 
-    /// Creates a picture of lines of this width in pixels.
+    /// Creates a picture of lines. `width` is its width in pixels.
     fn lines(camera: Camera, width: u32) -> SvgPicture;
 
-    /// Whether two objects touch, or are at most a margin apart; see [`proximity`].
+    /// Returns the proximity of two objects for a margin; see [`proximity`].
     fn proximity<T>(
         object1: &CollisionObject<Self, D, T>,
         object2: &CollisionObject<Self, D, T>,
         margin: Self,
     ) -> Proximity;
 
-    /// Returns the nearest points of two objects whose distance is at most `limit`; see [`witness`].
+    /// Returns the nearest points of two objects; `None` if their distance exceeds `limit` or their
+    /// overlap is unbounded. See [`witness`].
     fn witness<T>(
         object1: &CollisionObject<Self, D, T>,
         object2: &CollisionObject<Self, D, T>,
@@ -107,17 +108,17 @@ impl<N: Scalar> Stage<3> for N {
     }
 }
 
-/// A computation that is generic over scalar and dimension, which are known at run time. It is a type, because a
-/// closure cannot be generic.
+/// A computation that is generic over scalar and dimension. It is a type, since a closure cannot be
+/// generic.
 pub(crate) trait Task {
-    /// Its result.
+    /// The result of the computation.
     type Answer;
 
-    /// Runs the computation.
+    /// Runs the computation in the scalar `N` and the dimension `D`.
     fn run<N: Stage<D>, const D: usize>(self) -> Result<Self::Answer, CliError>;
 }
 
-/// Runs a task in a scalar and a dimension.
+/// Runs a task in a scalar and a dimension that are known at run time.
 pub(crate) fn run_in<T: Task>(kind: Kind, task: T) -> Result<T::Answer, CliError> {
     match (kind.scalar, kind.dimension) {
         (ScalarFile::F32, Dimension::Two) => task.run::<f32, 2>(),

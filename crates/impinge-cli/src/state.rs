@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::output::{CLEAR, NAME, NEAR, TOUCHES};
 
-/// The state of a pair of objects.
+/// The state of a pair of objects, by their distance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum State {
@@ -21,7 +21,7 @@ pub(crate) enum State {
 }
 
 impl State {
-    /// Writes the beginning of a line about a pair: the state and the names.
+    /// Writes the beginning of a line about a pair: the state and the two names.
     pub(crate) fn headline(
         self,
         f: &mut fmt::Formatter<'_>,
@@ -34,7 +34,7 @@ impl State {
             Self::Apart => ("apart", CLEAR),
         };
         let [first, second] = [first, second].map(Printable);
-        // As wide as the longest word, so that names of several lines are aligned.
+        // The state is padded to the longest word, so that the names in several lines are aligned.
         write!(f, "{style}{word:5}{style:#} {NAME}{first}{NAME:#} {NAME}{second}{NAME:#}")
     }
 }

@@ -1,4 +1,4 @@
-//! The pairs of a world after an update, and their counts.
+//! The pairs of a world after an update, and the counts of a step.
 
 use core::fmt;
 
@@ -15,16 +15,16 @@ use crate::state::State;
 /// The counts of a step.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct StepSummary {
-    /// The number of updates so far.
+    /// The number of updates made so far.
     pub(crate) step: usize,
     pub(crate) objects: usize,
-    /// Pairs that touch, by contacts or by proximity.
+    /// The number of pairs that touch, by contacts or by proximity.
     pub(crate) touching: usize,
-    /// Pairs that are apart, but have predicted contacts or are within their margin.
+    /// The number of pairs that are apart, but have predicted contacts or are within their margin.
     pub(crate) near: usize,
-    /// Contact points of all pairs.
+    /// The number of contact points of all pairs.
     pub(crate) contacts: usize,
-    /// Events of pairs that started touching.
+    /// The number of pairs that started touching in the last update.
     pub(crate) started: usize,
     pub(crate) stopped: usize,
 }
@@ -38,18 +38,19 @@ pub(crate) struct PairSummary {
     pub(crate) numbers: PairNumbers,
 }
 
-/// The contacts of a pair.
+/// The state and the contacts of a pair.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct PairNumbers {
     pub(crate) state: State,
-    /// The number of contact points; 0 for pairs with proximity only.
+    /// The number of contact points; 0 for pairs that have a proximity query.
     pub(crate) contacts: usize,
-    /// The depth of the deepest contact; negative for a predicted one.
+    /// The depth of the deepest contact, negative if it is predicted; `None` for pairs that have a
+    /// proximity query.
     pub(crate) depth: Option<Number>,
 }
 
-/// Returns the pairs of a world that touch or are near: those with contacts first, each in order of the
-/// handles.
+/// Returns the pairs of a world that touch or are near. Pairs with contacts come first. Both lists
+/// are in the order of the handles.
 fn near_pairs<N: Recordable<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
 ) -> impl Iterator<Item = ([&CollisionObject<N, D, T>; 2], PairNumbers)> {
@@ -71,7 +72,7 @@ fn near_pairs<N: Recordable<D>, const D: usize, T>(
     contacts.chain(proximities)
 }
 
-/// Returns the pairs of a recorded world that touch or are near, with names.
+/// Returns the pairs of a recorded world that touch or are near, with the names of their objects.
 pub(crate) fn pairs<N: Recordable<D>, const D: usize>(
     world: &CollisionWorld<N, D, Label>,
 ) -> Vec<PairSummary> {
@@ -82,7 +83,7 @@ pub(crate) fn pairs<N: Recordable<D>, const D: usize>(
     named.collect()
 }
 
-/// Whether any two objects touch. Ends at the first pair that does.
+/// Returns `true` if any two objects touch. The search ends at the first pair.
 pub(crate) fn touches<N: Recordable<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
 ) -> bool {
@@ -98,7 +99,7 @@ pub(crate) fn summary<N: Recordable<D>, const D: usize, T>(
     let count = |state| pairs.iter().filter(|pair| pair.state == state).count();
     let events = world.contact_events().iter();
     let started = events.filter(|event| matches!(event, ContactEvent::Started(..))).count();
-    // A change from near to apart is neither a start nor a stop.
+    // A change between near and apart is neither a start nor a stop.
     let changes = world.proximity_events().iter();
     let enters = |event: &&ProximityEvent| event.new_status == Proximity::Intersecting;
     let leaves = |event: &&ProximityEvent| event.prev_status == Proximity::Intersecting;

@@ -1,9 +1,10 @@
-//! Rigid bodies that fall, collide and come to rest: a minimal solver for the samples with piles and stacks.
+//! Rigid bodies that fall, collide and come to rest: a minimal solver for the samples with piles
+//! and stacks.
 //!
-//! The library itself computes contacts and leaves motion to its users. The method is sequential impulses with warm
-//! starts (Catto, "Iterative dynamics with temporal coherence", 2005): each contact point gets the impulse that stops
-//! its approach, in turn and several times, starting from the impulse of the point with the same id in the previous
-//! step.
+//! The library computes contacts and leaves motion to its users. The method is sequential impulses
+//! with warm starts (Catto, "Iterative dynamics with temporal coherence", 2005). Each contact point
+//! in turn, and several times, gets the impulse that stops its approach. The initial impulse is
+//! that of the point with the same id in the previous step.
 
 use std::collections::BTreeMap;
 
@@ -20,31 +21,33 @@ const GRAVITY: f32 = 10.0;
 const FRICTION: f32 = 0.5;
 /// The penetration depth that is not corrected, so that contacts persist.
 const SLOP: f32 = 0.005;
-/// The share of a deeper penetration that is corrected in a step.
+/// The share of the penetration beyond [`SLOP`] that is corrected in a step.
 const RECOVERY: f32 = 0.2;
-/// A body keeps its position while both its speed and its angular velocity are below this.
+/// A body keeps its position while the norms of its velocity and of its spin are both below this
+/// value.
 const REST_SPEED: f32 = 0.03;
 
-/// A moving body. It has the inertia of a cube, which is the same about every axis.
+/// A moving body. It has the moment of inertia of a cube, which is the same about every axis.
 #[derive(Clone, Debug)]
 struct Body<const D: usize> {
-    /// The object of the world.
+    /// The object in the world.
     object: CollisionObjectHandle,
-    /// The inverse of the mass; zero for a body of infinite mass.
+    /// The inverse of the mass.
     inverse_mass: f32,
-    /// The inverse of the moment of inertia, which is equal about every axis.
+    /// The inverse of the moment of inertia.
     inverse_inertia: f32,
-    /// The velocity of the centre, per second.
+    /// The velocity of the centre in lengths per second.
     velocity: Vector<f32, D>,
-    /// The angular velocity as a matrix: it maps a point relative to the centre to its velocity.
+    /// The angular velocity as an antisymmetric matrix, which maps a vector from the centre to the
+    /// velocity at its end.
     spin: Matrix<f32, D>,
 }
 
-/// A contact point in the solver.
+/// A contact point of the solver.
 #[derive(Clone, Debug)]
 struct Row<const D: usize> {
     id: ContactId,
-    /// Indices of bodies; `None` for an object that does not move.
+    /// The indices of the two bodies; `None` for an object that does not move.
     bodies: [Option<usize>; 2],
     /// The vectors from the centres of both bodies to the contact point.
     arms: [Vector<f32, D>; 2],
@@ -54,23 +57,23 @@ struct Row<const D: usize> {
     impulse: Impulse<D>,
 }
 
-/// The accumulated impulse of a contact point.
+/// The accumulated impulse of a contact point, on the second body.
 #[derive(Clone, Copy, Debug)]
 struct Impulse<const D: usize> {
-    /// Along the normal; never negative.
+    /// The component along the normal; never negative.
     normal: f32,
-    /// Tangential to the contact.
+    /// The component tangential to the contact.
     friction: Vector<f32, D>,
 }
 
-/// The bodies of a world. Other objects do not move.
+/// The moving bodies of a world. All other objects are at rest.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Bodies<const D: usize> {
-    /// In the order in which they were added.
+    /// The bodies in the order in which they were added.
     bodies: Vec<Body<D>>,
-    /// For each object of a body, the index in `bodies`.
+    /// The index in `bodies` for each object.
     indices: BTreeMap<CollisionObjectHandle, usize>,
-    /// The impulses of the last step by contact id, which persists while the contact moves.
+    /// The impulses of the last step by contact id. The id persists while the contact moves.
     impulses: BTreeMap<ContactId, Impulse<D>>,
 }
 
@@ -78,7 +81,8 @@ impl<const D: usize> Bodies<D>
 where
     f32: Recordable<D>,
 {
-    /// Adds an object as a falling body, with the mass of a cube of this half width.
+    /// Adds an object as a falling body with density 1. Its mass is that of a cube (2D: a square)
+    /// with this half width.
     pub(crate) fn add(&mut self, object: CollisionObjectHandle, half_width: f32) {
         let mass = (0..D).fold(1.0, |mass, _| mass * 2.0 * half_width);
         let body = Body {
@@ -92,19 +96,19 @@ where
         self.bodies.push(body);
     }
 
-    /// Sets the velocity of a body.
+    /// Sets the velocity of a body. An object that is not a body is ignored.
     pub(crate) fn push(&mut self, object: CollisionObjectHandle, velocity: Vector<f32, D>) {
         if let Some(index) = self.indices.get(&object) {
             self.bodies[*index].velocity = velocity;
         }
     }
 
-    /// The largest speed of a body.
+    /// Returns the largest speed of all bodies.
     pub(crate) fn speed(&self) -> f32 {
         self.bodies.iter().map(|body| body.velocity.norm()).fold(0.0, max)
     }
 
-    /// Advances the bodies by a step, under gravity and the contacts of the last update.
+    /// Advances the bodies by a step, by gravity and by the contacts of the last update.
     pub(crate) fn advance(&mut self, world: &mut World<D>) -> Result<(), SampleError> {
         for body in &mut self.bodies {
             body.velocity[1] -= GRAVITY * TIME_STEP;
@@ -147,11 +151,12 @@ where
         point: &ContactPoint<f32, D>,
     ) -> Row<D> {
         let contact = &point.contact;
-        // The contact acts at the midpoint of the two surface points. Both bodies get their impulse
-        // at this one point, so that opposite impulses preserve angular momentum.
+        // The contact acts at the midpoint of the two surface points. Opposite impulses at one
+        // point preserve angular momentum.
         let middle = (contact.world1.coords + contact.world2.coords) * 0.5;
         let depth = contact.depth;
-        // A gap may be closed within a step; a penetration is corrected slowly, which keeps piles stable.
+        // A gap may close within a step. A penetration is corrected slowly, which keeps piles
+        // stable.
         let closing = if depth < 0.0 { depth } else { RECOVERY * max(depth - SLOP, 0.0) };
         let none = Impulse { normal: 0.0, friction: Vector::<f32, D>::zeros() };
         Row {
@@ -164,7 +169,8 @@ where
         }
     }
 
-    /// Corrects the impulse of a point: the normal impulse is never negative, and friction is bounded by it (Coulomb).
+    /// Corrects the impulse of a contact point. The normal impulse is never negative, and bounds
+    /// the friction (Coulomb).
     fn solve(&mut self, row: &mut Row<D>) {
         let normal = row.normal;
         let parting = self.relative_velocity(row).dot(&normal);
@@ -185,7 +191,7 @@ where
         row.impulse.friction = friction;
     }
 
-    /// Returns the velocity, at the contact point, of the second body relative to the first.
+    /// Returns the velocity of the second body relative to the first, at the contact point.
     fn relative_velocity(&self, row: &Row<D>) -> Vector<f32, D> {
         let velocity = |side: usize| {
             let body = row.bodies[side].map(|index| &self.bodies[index]);
@@ -196,7 +202,7 @@ where
     }
 
     /// Returns the effective mass: the impulse along `direction` that changes the relative speed
-    /// along it by 1.
+    /// along it by 1. `direction` is a unit vector.
     fn mass(&self, row: &Row<D>, direction: &Vector<f32, D>) -> f32 {
         let inverse = |side: usize| {
             let body = row.bodies[side].map(|index| &self.bodies[index]);
@@ -227,9 +233,9 @@ impl<const D: usize> Body<D>
 where
     f32: Recordable<D>,
 {
-    /// Returns the position after a step; `None` for a body at rest.
+    /// Damps the motion and returns the position after a step; `None` for a body at rest.
     fn moved(&mut self, world: &World<D>) -> Option<(CollisionObjectHandle, Isometry<D>)> {
-        // A small damping of all motion, as by air.
+        // The damping is small, similar to that by air.
         self.velocity *= 0.998;
         self.spin *= 0.99;
         if self.velocity.norm() < REST_SPEED && self.spin.norm() < REST_SPEED {
@@ -245,7 +251,7 @@ where
     }
 }
 
-/// Orthonormalizes the columns, one after the other (Gram-Schmidt).
+/// Orthonormalizes the columns in their order (Gram-Schmidt).
 fn orthonormal<const D: usize>(mut matrix: Matrix<f32, D>) -> Matrix<f32, D> {
     for column in 0..D {
         let mut axis = matrix.column(column).into_owned();

@@ -16,10 +16,11 @@ use crate::samples::worlds::{
     scenery::Scenery, slide::Slide, waves::Waves,
 };
 
-/// Expands a row to an entry for each of its dimensions; the digit of the dimension ends the name and the heading.
+/// Expands each row to an entry for each of its dimensions. The digit of the dimension is appended
+/// to the name and to the heading.
 ///
-/// A row has the name, the heading, the dimensions, the property that a test checks, the sample, and a description of
-/// two sentences.
+/// A row contains the name, the heading, the dimensions, the property that a test checks, the
+/// sample, and a description of two sentences.
 macro_rules! entries {
     ($(
         $name:literal, $title:literal, [$($make:ident $digit:literal),+], $shows:ident, $sample:expr,
@@ -37,7 +38,7 @@ macro_rules! entries {
     };
 }
 
-/// In the order of the gallery.
+/// All samples in the order of the gallery.
 pub(crate) const ENTRIES: &[Entry] = entries! {
     "playground", "Two shapes", [Plane 2, Space 3], Drawing, Playground::default(),
     "Drag one shape against the other: distance, closest points, contact and manifold follow. \

@@ -1,4 +1,4 @@
-//! Controls of a sample: numbers, choices, flags and buttons, by name.
+//! The controls of a sample: numbers, choices, flags and buttons, identified by names.
 
 use std::collections::BTreeSet;
 
@@ -7,50 +7,51 @@ use serde::Serialize;
 
 use crate::SampleError;
 
-/// The kind of a control, and its value. It serializes with its name in lower case as the member `kind`.
+/// The kind of a control, with its value. It serializes with its name in lower case as the member
+/// `kind`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum ControlKind {
     /// A number between bounds.
     Number {
-        /// The value.
+        /// The current value.
         value: f64,
-        /// The least value.
+        /// The smallest value.
         min: f64,
-        /// The greatest value.
+        /// The largest value.
         max: f64,
-        /// The step of a slider; values between are accepted.
+        /// The increment of a slider. Values between the increments are accepted.
         step: f64,
     },
     /// One of several words.
     Choice {
-        /// The word.
+        /// The chosen word.
         value: &'static str,
-        /// All words.
+        /// All words that can be chosen.
         choices: &'static [&'static str],
     },
-    /// Yes or no.
+    /// A value that is true or false.
     Flag {
-        /// The value.
+        /// The current value.
         value: bool,
     },
-    /// An action that runs once, at the next step.
+    /// A button. Its action runs once after a press, at the next step.
     Button,
 }
 
-/// A control, as a page displays it. It serializes as one object of all its members.
+/// A control, as a page displays it. It serializes as one object with the members of its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Control {
     /// The unique name within a sample.
     pub name: &'static str,
-    /// The text beside it.
+    /// The text beside the control.
     pub label: &'static str,
-    /// Kind and value.
+    /// The kind, with the value.
     #[serde(flatten)]
     pub kind: ControlKind,
 }
 
-/// A value for a control.
+/// A new value for a control.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ControlValue {
     /// The value of a number.
@@ -63,7 +64,7 @@ pub enum ControlValue {
     Pressed,
 }
 
-/// The controls of a sample, declared once as a table, in the order of the page.
+/// The controls of a sample, in the order in which a page shows them.
 ///
 /// ```
 /// use impinge_samples::{ControlValue, Panel, SampleError};
@@ -83,9 +84,9 @@ pub enum ControlValue {
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Panel {
-    /// In the order in which they were declared.
+    /// The controls in the order in which they were declared.
     controls: Vec<Control>,
-    /// The names of the pressed buttons whose action has not run yet.
+    /// The names of the buttons that were pressed and whose action has not run yet.
     pressed: BTreeSet<&'static str>,
 }
 
@@ -108,7 +109,7 @@ impl Panel {
         self.with(name, label, ControlKind::Number { value, min, max, step })
     }
 
-    /// Adds a choice with its initial word and all words.
+    /// Adds a choice with its initial word and the list of all words.
     #[must_use]
     pub fn choice(
         self,
@@ -120,7 +121,7 @@ impl Panel {
         self.with(name, label, ControlKind::Choice { value, choices })
     }
 
-    /// Adds a flag.
+    /// Adds a flag with its initial value.
     #[must_use]
     pub fn flag(self, name: &'static str, label: &'static str, value: bool) -> Self {
         self.with(name, label, ControlKind::Flag { value })
@@ -137,17 +138,17 @@ impl Panel {
         self
     }
 
-    /// The controls, in order.
+    /// Returns the controls in the order in which they were declared.
     #[must_use]
     pub fn controls(&self) -> &[Control] {
         &self.controls
     }
 
-    /// Sets a control; an invalid value changes nothing.
+    /// Sets the value of a control. An invalid value changes nothing.
     ///
     /// # Errors
-    /// If no control has the name, or the value is of another kind, out of bounds, NaN, or not one of the
-    /// words.
+    /// If no control has the name, or if the value is of another kind, out of bounds, NaN, or not
+    /// one of the words.
     pub fn set(&mut self, name: &str, value: &ControlValue) -> Result<(), SampleError> {
         let control = self.controls.iter_mut().find(|control| control.name == name);
         let control = control.ok_or_else(|| SampleError::UnknownControl(name.to_owned()))?;
@@ -180,7 +181,7 @@ impl Panel {
         self.controls.iter().find(|control| control.name == name).map(|control| &control.kind)
     }
 
-    /// The value of a number as a scalar of samples; 0 if there is no number of this name.
+    /// Returns the value of a number; 0 if there is no number with this name.
     #[must_use]
     pub fn value(&self, name: &str) -> f32 {
         match self.find(name) {
@@ -189,7 +190,8 @@ impl Panel {
         }
     }
 
-    /// The value of a number as a count, rounded down; 0 if there is no number of this name.
+    /// Returns the value of a number rounded down to a count; 0 if there is no number with this
+    /// name.
     #[must_use]
     #[expect(
         clippy::cast_possible_truncation,
@@ -203,7 +205,7 @@ impl Panel {
         }
     }
 
-    /// Returns the word of a choice; the empty word if there is no choice of this name.
+    /// Returns the word of a choice; the empty word if there is no choice with this name.
     #[must_use]
     pub fn chosen(&self, name: &str) -> &'static str {
         match self.find(name) {
@@ -212,13 +214,13 @@ impl Panel {
         }
     }
 
-    /// Returns the value of a flag; `false` if there is no flag of this name.
+    /// Returns the value of a flag; `false` if there is no flag with this name.
     #[must_use]
     pub fn is_set(&self, name: &str) -> bool {
         matches!(self.find(name), Some(ControlKind::Flag { value: true }))
     }
 
-    /// Returns whether a button was pressed, and resets it: the next call returns `false`.
+    /// Returns `true` if a button was pressed since the last call, and forgets the press.
     pub fn take_press(&mut self, name: &str) -> bool {
         self.pressed.remove(name)
     }

@@ -1,4 +1,4 @@
-//! The shapes, surfaces and rotations of samples that differ by dimension.
+//! The shapes, surfaces and rotations of samples whose types differ between 2D and 3D.
 
 use impinge::math::na::{Quaternion, Translation2, Translation3, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry2, Isometry3, Point, Real, Vector};
@@ -13,48 +13,52 @@ use impinge_scenes::Placement;
 
 use crate::place::{number, point, up, vector};
 
-/// `f32` with the shapes of a dimension.
+/// The scalar `f32`, with functions that create shapes and motions in `D` dimensions.
 pub(crate) trait Dimension<const D: usize>: Recordable<D> {
-    /// The names of all solids, the half-space last.
+    /// The names of all solids. The half-space is the last.
     const SOLIDS: &'static [&'static str];
 
-    /// All solids except the half-space, which is the last.
+    /// The names of all solids except the half-space.
     const BOUNDED: &'static [&'static str] = match Self::SOLIDS.split_last() {
         Some((_, bounded)) => bounded,
         None => &[],
     };
 
-    /// Returns a solid that exists in this dimension only; `None` for those of both dimensions.
+    /// Returns a solid that exists in this dimension only; `None` for a name of a solid of both
+    /// dimensions.
     fn own_solid(kind: &str, size: f32) -> Option<ShapeHandle<f32, D>>;
 
-    /// The convex hull of points that span all dimensions.
+    /// Returns the convex hull of points, which must span all dimensions.
     fn hull(points: &[Point<f32, D>]) -> ShapeHandle<f32, D>;
 
-    /// Returns a surface that is `cells` wide, with cells of size 1 around the origin and with a height that is a
-    /// function of x and z; z is 0 in 2D. Triangles in 3D, segments in 2D.
+    /// Returns a surface around the origin, made of triangles in 3D and of segments in 2D. It has
+    /// `cells` cells of size 1 along each horizontal axis. Its height is a function of x and z; z
+    /// is 0 in 2D.
     fn surface(cells: usize, kind: SurfaceKind, height: &HeightFunction<'_>)
     -> ShapeHandle<f32, D>;
 
-    /// Returns the motion of a body that rotates from x to y by `turn` radians per unit of time.
+    /// Returns the motion of a body with velocity `linear` that rotates from x to y by `turn`
+    /// radians per unit of time.
     fn spinning(
         start: Self::Isometry,
         linear: Vector<f32, D>,
         turn: f32,
     ) -> Box<dyn RigidMotion<f32, D>>;
 
-    /// The position of a placement.
+    /// Converts a placement of `impinge-scenes` to a position.
     fn placed(placement: &Placement<D>) -> Self::Isometry;
 }
 
-/// The height as a function of x and z.
+/// A function that returns the height of a surface at x and z.
 pub(crate) type HeightFunction<'a> = dyn Fn(f32, f32) -> f32 + 'a;
 
-/// The kind of a surface and of its contacts.
+/// The kind of a surface, which also determines the kind of its contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SurfaceKind {
-    /// A mesh or polyline, with contacts of the surface as a whole.
+    /// A mesh or polyline with contacts of the whole surface, whose internal edges cause no tilted
+    /// normals.
     Mesh,
-    /// A mesh or polyline, with contacts of each triangle or segment alone.
+    /// A mesh or polyline with the contacts of each triangle or segment by itself.
     MeshWithEdges,
     /// A one-sided mesh or polyline, without contacts from below.
     OneSidedMesh,
@@ -62,7 +66,8 @@ pub(crate) enum SurfaceKind {
     Field,
 }
 
-/// Returns a solid by its name; a ball if the name is unknown.
+/// Returns the solid with this name; a ball if the name is unknown. All its lengths are
+/// proportional to `size`.
 pub(crate) fn solid<const D: usize>(kind: &str, size: f32) -> ShapeHandle<f32, D>
 where
     f32: Dimension<D>,
@@ -72,13 +77,13 @@ where
     }
     let corner = |x: f32, y: f32| point::<D>([x * size, y * size, 0.0]);
     match kind {
-        // Sizes are half extents along x; most solids are about twice as wide as high.
+        // The largest half extent of a solid is about `size`.
         "box" => ShapeHandle::new(Cuboid::new(vector([size, 0.7 * size, 0.5 * size]))),
         "capsule" => ShapeHandle::new(Capsule::new(0.6 * size, 0.4 * size)),
         "tapered capsule" => {
             ShapeHandle::new(TaperedCapsule::new(0.6 * size, 0.5 * size, 0.25 * size))
         }
-        // A segment has no interior, nor has a triangle in 3D.
+        // A segment has no interior; a triangle has one in 2D only.
         "segment" => ShapeHandle::new(Segment::new(corner(-1.0, -0.3), corner(1.0, 0.3))),
         "triangle" => {
             let corners = (corner(-1.0, -0.6), corner(1.0, -0.6), corner(0.0, 0.9));
@@ -111,7 +116,7 @@ impl Dimension<2> for f32 {
     ];
 
     fn own_solid(kind: &str, size: Self) -> Option<ShapeHandle<Self, 2>> {
-        // Counter-clockwise, with sides of five directions, so that few pairs of sides are parallel.
+        // The corners are counter-clockwise. No two sides are parallel.
         let corners = [[-1.0, 0.0], [-0.4, -0.8], [0.5, -0.7], [1.0, 0.1], [0.0, 0.9]];
         let corners = corners.map(|[x, y]| Point::<Self, 2>::new(x * size, y * size));
         (kind == "polygon").then(|| ShapeHandle::new(ConvexPolygon::from_points(&corners)))
@@ -126,7 +131,7 @@ impl Dimension<2> for f32 {
         kind: SurfaceKind,
         height: &HeightFunction<'_>,
     ) -> ShapeHandle<Self, 2> {
-        // Cells have size 1, so that the width is their number.
+        // Cells have size 1, so that the width is equal to their number.
         let width = number(cells);
         let xs = (0..=cells).map(|n| number(n) - 0.5 * width);
         if kind == SurfaceKind::Field {
@@ -136,7 +141,7 @@ impl Dimension<2> for f32 {
                 vector([width, 1.0, 0.0]),
             ));
         }
-        // From right to left: the left side of a polyline is its back.
+        // The points go from right to left, since the left side of a polyline is its back.
         let points = xs.rev().map(|x| Point::<Self, 2>::new(x, height(x, 0.0)));
         let line = Polyline::open(points.collect());
         ShapeHandle::new(match kind {
@@ -183,7 +188,7 @@ impl Dimension<3> for f32 {
         let corner =
             |x: Self, y: Self, z: Self| Point::<Self, 3>::new(x * size, y * size, z * size);
         match kind {
-            // Half the height, then the radius; the axis of both is y.
+            // Cylinders and cones take half the height along y, then the radius.
             "cylinder" => Some(ShapeHandle::new(Cylinder::new(0.7 * size, 0.6 * size))),
             "cone" => Some(ShapeHandle::new(Cone::new(0.8 * size, 0.7 * size))),
             "tetrahedron" => Some(ShapeHandle::new(Tetrahedron::new([
@@ -216,8 +221,8 @@ impl Dimension<3> for f32 {
     ) -> ShapeHandle<Self, 3> {
         let width = number(cells);
         let at = |n: usize| number(n) - 0.5 * width;
-        // Row by row along z, in each row along x: the order of the heights of a height field.
-        // A mesh has the same vertices, so that both kinds are the same surface.
+        // The vertices are in rows along x, in the order of the heights of a height field. A mesh
+        // has equal vertices, so that both kinds are the same surface.
         let vertices = (0..=cells).flat_map(|row| (0..=cells).map(move |column| [column, row]));
         let vertices = vertices.map(|[column, row]| {
             Point::<Self, 3>::new(at(column), height(at(column), at(row)), at(row))
@@ -246,7 +251,7 @@ impl Dimension<3> for f32 {
         linear: Vector<Self, 3>,
         turn: Self,
     ) -> Box<dyn RigidMotion<Self, 3>> {
-        // A rotation from x to y is about z.
+        // A rotation from x to y is a rotation about z.
         let angular = Vector::<Self, 3>::z() * turn;
         Box::new(ConstantVelocities::<Self, 3>::new(start, linear, angular))
     }
@@ -259,7 +264,7 @@ impl Dimension<3> for f32 {
     }
 }
 
-/// Two triangles for each cell of a grid, counter-clockwise seen from above.
+/// Returns two triangles for each cell of a grid, counter-clockwise seen from above.
 fn triangles(cells: usize) -> Vec<[u32; 3]> {
     let cells = u32::try_from(cells).expect("a surface of a sample has few cells");
     let side = cells + 1;

@@ -1,4 +1,4 @@
-//! Errors of samples.
+//! Errors of running a sample.
 
 use core::fmt;
 
@@ -6,36 +6,37 @@ use impinge_record::RecordError;
 
 use crate::ControlValue;
 
-/// An error of a sample. An invalid control has changed nothing.
+/// An error of a sample. After an error about a control, no control has changed.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SampleError {
-    /// The sample has no control of this name.
+    /// The sample has no control with this name.
     UnknownControl(String),
     /// The kind of the value differs from that of the control.
     WrongKind {
-        /// The control.
+        /// The name of the control.
         name: &'static str,
-        /// The value.
+        /// The rejected value.
         value: ControlValue,
     },
     /// The number is NaN or out of bounds.
     OutOfBounds {
-        /// The control.
+        /// The name of the control.
         name: &'static str,
-        /// The value.
+        /// The rejected value.
         value: f64,
-        /// The least and the greatest value.
+        /// The smallest and the largest value.
         bounds: [f64; 2],
     },
-    /// The control has no such choice.
+    /// The choice does not contain this word.
     UnknownChoice {
-        /// The control.
+        /// The name of the control.
         name: &'static str,
-        /// The value.
+        /// The rejected word.
         value: String,
     },
-    /// The world rejects a call: a position that is not finite, or the handle of a removed object.
+    /// The recorder rejects a call, such as a position that is not finite or the handle of a
+    /// removed object.
     World(RecordError),
 }
 

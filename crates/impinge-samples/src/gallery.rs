@@ -1,21 +1,21 @@
-//! The samples in the order of the gallery.
+//! The gallery: the list of all samples.
 
 use serde::{Serialize, Serializer};
 
 use crate::Sample;
 use crate::catalog::ENTRIES;
 
-/// Makes a sample of a dimension.
+/// The constructor of a sample, by dimension.
 #[derive(Clone, Copy, Debug)]
 pub enum Make {
-    /// In 2D.
+    /// Creates a sample in 2D.
     Plane(fn() -> Box<dyn Sample<2>>),
-    /// In 3D.
+    /// Creates a sample in 3D.
     Space(fn() -> Box<dyn Sample<3>>),
 }
 
 impl Make {
-    /// 2 or 3.
+    /// Returns the number of dimensions, 2 or 3.
     #[must_use]
     pub const fn dimension(&self) -> usize {
         match self {
@@ -25,42 +25,42 @@ impl Make {
     }
 }
 
-/// Serializes as the number of its dimension.
+/// Serializes the constructor as the number of dimensions.
 impl Serialize for Make {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.dimension().serialize(serializer)
     }
 }
 
-/// The property of a sample that tests check within its first two seconds.
+/// A property of a sample that tests check. It becomes visible within the first two seconds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shows {
-    /// A contact.
+    /// The world has a contact.
     Contacts,
-    /// A proximity event.
+    /// The world has an event of two objects that begin to intersect.
     ProximityEvents,
-    /// A drawing beside the objects.
+    /// The sample draws lines besides the objects.
     Drawing,
 }
 
-/// A sample of the gallery. It serializes with its name, title, about and dimension.
+/// A sample of the gallery. It serializes with its name, title, description and dimension.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Entry {
-    /// A word, unique in the gallery.
+    /// A name, unique in the gallery.
     pub name: &'static str,
-    /// The heading.
+    /// The heading of the sample.
     pub title: &'static str,
     /// A description in two sentences.
     pub about: &'static str,
     /// The property that is visible soon after the start.
     #[serde(skip)]
     pub shows: Shows,
-    /// The constructor.
+    /// The constructor of the sample.
     #[serde(rename = "dimension")]
     pub make: Make,
 }
 
-/// The samples in the order of the gallery.
+/// Returns all samples in the order of the gallery.
 ///
 /// ```
 /// use impinge_samples::entries;

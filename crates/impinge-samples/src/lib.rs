@@ -1,10 +1,11 @@
-//! Samples: interactive scenes with controls, each about one subject of the library.
+//! Interactive samples: scenes with controls, each about one subject of the library.
 //!
-//! [`entries`] is the gallery. Each [`Entry`] makes a [`Sample`], which [`Running`] runs: it owns the controls and the
-//! world. The world is recorded, so that a run can be saved as a file. A back end of `debug_render` draws it.
+//! [`entries`] returns the gallery. Each [`Entry`] contains the constructor of a [`Sample`].
+//! [`Running`] runs a sample, and owns its controls and its world. The world is recorded, so that a
+//! run can be saved as a file. A back end of `debug_render` draws the world.
 //!
-//! Samples compute in `f32` and use no clock, no random numbers and no trigonometry of the platform: the same calls
-//! give the same bits on every machine.
+//! Samples compute in `f32` and use no clock, no random numbers and no trigonometry of the
+//! platform: the same calls give the same bits on every machine.
 //!
 //! ```
 //! use impinge_samples::{Make, Running, entries};

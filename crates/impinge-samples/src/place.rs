@@ -1,4 +1,4 @@
-//! Positions, vectors and points from three numbers; 2D uses the first two.
+//! Creates positions, vectors and points from three numbers, of which 2D uses the first two.
 
 use impinge::math::na::{self, Rotation};
 use impinge::math::{Matrix, Point, Pose, Real, Space, Unit, Vector};
@@ -7,15 +7,15 @@ use impinge_record::Recordable;
 
 use crate::{Isometry, World};
 
-/// The circumference of a circle of radius 1.
+/// The circumference of a circle of radius 1, which is a full turn in radians.
 pub(crate) const TAU: f32 = core::f32::consts::TAU;
 
-/// Returns a vector of the dimension.
+/// Returns a vector with the first `D` numbers as components.
 pub(crate) fn vector<const D: usize>(xyz: [f32; 3]) -> Vector<f32, D> {
     Vector::<f32, D>::from_fn(|axis, _| xyz[axis])
 }
 
-/// Returns a point of the dimension.
+/// Returns a point with the first `D` numbers as coordinates.
 pub(crate) fn point<const D: usize>(xyz: [f32; 3]) -> Point<f32, D> {
     Point::from(vector::<D>(xyz))
 }
@@ -28,7 +28,7 @@ where
     f32::isometry(&Pose::from_translation(vector(xyz)))
 }
 
-/// Returns a position rotated by an angle from the x axis to the y axis.
+/// Returns a position with a rotation from the x axis to the y axis by `angle` radians.
 pub(crate) fn turned<const D: usize>(xyz: [f32; 3], angle: f32) -> Isometry<D>
 where
     f32: Space<D>,
@@ -36,8 +36,8 @@ where
     f32::isometry(&Pose { rotation: turn([0, 1], angle), translation: vector(xyz) })
 }
 
-/// Returns the rotation by an angle from one axis to another. Sine and cosine are those of the library, which
-/// have the same bits everywhere.
+/// Returns the rotation from one axis to another by `angle` radians. Its sine and cosine come from
+/// the library, which returns the same bits on every machine.
 pub(crate) fn turn<const D: usize>([from, to]: [usize; 2], angle: f32) -> Matrix<f32, D> {
     let (sine, cosine) = angle.sine_cosine();
     let mut matrix = Matrix::<f32, D>::identity();
@@ -46,7 +46,7 @@ pub(crate) fn turn<const D: usize>([from, to]: [usize; 2], angle: f32) -> Matrix
     matrix
 }
 
-/// Returns the pose of an object; the identity if it was removed.
+/// Returns the pose of an object; the identity if the object was removed.
 pub(crate) fn pose_of<const D: usize>(
     world: &World<D>,
     object: CollisionObjectHandle,
@@ -58,7 +58,7 @@ where
     object.map_or_else(Pose::identity, |object| f32::pose(object.position()))
 }
 
-/// Converts a pose to the isometry type of queries about two shapes, in any dimension.
+/// Converts a pose to the isometry type of queries about two shapes.
 pub(crate) fn isometry<const D: usize>(
     pose: &Pose<f32, D>,
 ) -> na::Isometry<f32, Rotation<f32, D>, D> {
@@ -66,8 +66,9 @@ pub(crate) fn isometry<const D: usize>(
     na::Isometry::from_parts(pose.translation.into(), rotation)
 }
 
-/// Returns quasirandom numbers from 0 to 1: the fractional parts of multiples of an irrational number, which
-/// differs by stream (Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018).
+/// Returns a quasirandom number from 0 to 1: the fractional part of a multiple of an irrational
+/// number, which depends on `stream` (Roberts, "The unreasonable effectiveness of quasirandom
+/// sequences", 2018).
 #[expect(clippy::cast_possible_truncation, reason = "a fraction rounded to f32")]
 pub(crate) fn scattered(index: usize, stream: usize) -> f32 {
     const STEPS: [f64; 4] =
@@ -76,7 +77,7 @@ pub(crate) fn scattered(index: usize, stream: usize) -> f32 {
     (position - position.floor()) as f32
 }
 
-/// Returns a triangle wave of period 1 between 0 and 1.
+/// Returns a triangle wave of period 1, which is 0 at phase 0 and 1 at phase 0.5.
 pub(crate) fn to_and_fro(phase: f32) -> f32 {
     1.0 - (2.0 * (phase - phase.floor()) - 1.0).abs()
 }
@@ -87,7 +88,7 @@ pub(crate) const fn number(count: usize) -> f32 {
     count as f32
 }
 
-/// Returns the unit vector upwards, along y.
+/// Returns the upward unit vector, along y.
 pub(crate) fn up<const D: usize>() -> Unit<Vector<f32, D>> {
     Unit::new_unchecked(vector([0.0, 1.0, 0.0]))
 }

@@ -1,4 +1,4 @@
-//! Common imports of samples: names of the library, and the few functions of this crate.
+//! Common imports of the samples: names of the library, and functions of this crate.
 
 pub(crate) use impinge::debug_render::{Color, SweptShape};
 pub(crate) use impinge::math::{Point, Pose, Space, Vector, max, min, unit, unit_or};
@@ -15,7 +15,7 @@ pub(crate) use crate::place::{
 };
 pub(crate) use crate::{Canvas, Isometry, Panel, Readout, Sample, SampleError, TIME_STEP, World};
 
-/// The colour of correct or free items.
+/// The colour of directions, and of items without collisions.
 pub(crate) const GREEN: Color = Color::rgb(90, 200, 120);
 /// The colour of hits.
 pub(crate) const RED: Color = Color::rgb(240, 80, 70);

@@ -1,4 +1,4 @@
-//! A running sample.
+//! Runs a sample.
 
 use core::fmt;
 
@@ -8,10 +8,10 @@ use impinge_record::{Recordable, Recorder, Registry};
 
 use crate::{Canvas, Control, ControlValue, Isometry, Panel, Readout, Sample, SampleError, World};
 
-/// A sample with its controls and its world.
+/// A running sample with its controls and its world.
 ///
-/// The world is updated after each method that changes it. A method that fails may have changed a part of it;
-/// [`restart`](Self::restart) begins again.
+/// The world is updated after each method that changes it. A method that fails may have changed a
+/// part of the world; [`restart`](Self::restart) then starts the sample again.
 ///
 /// ```
 /// use impinge_samples::{ControlValue, Make, Running, entries};
@@ -39,7 +39,7 @@ impl<const D: usize> Running<D>
 where
     f32: Recordable<D>,
 {
-    /// Starts a sample at step 0, with its objects, updated once.
+    /// Starts a sample at step 0 with its objects. The world is updated once.
     ///
     /// # Errors
     /// If the world rejects the objects.
@@ -51,8 +51,8 @@ where
         Ok(running)
     }
 
-    /// Begins again at step 0, with the current values of the controls. The recording continues: its objects are
-    /// removed and added again.
+    /// Starts the sample again at step 0, with the current values of the controls. The same
+    /// recording continues: all objects are removed and added again.
     ///
     /// # Errors
     /// If the world rejects the objects.
@@ -62,7 +62,7 @@ where
         self.update()
     }
 
-    /// Advances by a step of [`TIME_STEP`](crate::TIME_STEP).
+    /// Advances the sample by a step of [`TIME_STEP`](crate::TIME_STEP).
     ///
     /// # Errors
     /// If the world rejects a change.
@@ -72,10 +72,12 @@ where
         self.update()
     }
 
-    /// Sets a control, and applies effects that need no step at once. A button takes effect at the next step.
+    /// Sets a control. Changes that need no step are applied immediately. A button takes effect at
+    /// the next step.
     ///
     /// # Errors
-    /// If the control or the value is invalid; see [`Panel::set`].
+    /// If the control or the value is invalid, see [`Panel::set`], or if the world rejects a
+    /// change.
     pub fn set_control(&mut self, name: &str, value: &ControlValue) -> Result<(), SampleError> {
         self.panel.set(name, value)?;
         if *value == ControlValue::Pressed {
@@ -85,7 +87,7 @@ where
         self.update()
     }
 
-    /// Moves an object to where the user drags it.
+    /// Moves an object to the position to which the user drags it.
     ///
     /// # Errors
     /// If the handle is stale or the position is not finite.
@@ -103,7 +105,8 @@ where
         self.sample.updated(&mut self.world, &self.panel)
     }
 
-    /// Draws the additional drawing of the sample; [`DebugDrawing::world`] draws the objects.
+    /// Draws the lines, points and texts that the sample adds to its objects.
+    /// [`DebugDrawing::world`] draws the objects.
     pub fn draw(&self, drawing: &mut DebugDrawing<f32, D>, renderer: &mut dyn DebugRender<f32, D>) {
         self.sample.draw(&self.world, &self.panel, &mut Canvas { drawing, renderer });
     }
@@ -114,32 +117,32 @@ where
         self.sample.readouts(&self.world, &self.panel)
     }
 
-    /// The controls with their values.
+    /// Returns the controls with their current values.
     #[must_use]
     pub fn controls(&self) -> &[Control] {
         self.panel.controls()
     }
 
-    /// The world, for queries.
+    /// Returns the world, for queries and drawings.
     #[must_use]
     pub const fn world(&self) -> &World<D> {
         &self.world
     }
 
-    /// The number of steps made.
+    /// Returns the number of steps since the start or the last restart.
     #[must_use]
     pub const fn step(&self) -> usize {
         self.step
     }
 
-    /// Returns the registry of names that the recording refers to.
+    /// Returns the registry of the shapes and filters that the recording refers to by name.
     #[must_use]
     pub fn registry(&self) -> Registry<f32, D, String> {
         self.sample.registry()
     }
 
-    /// Returns the bytes of the recording since the last call. They are kept in memory until then: callers that
-    /// need no recording drop them after each step.
+    /// Returns the bytes of the recording since the last call. The bytes are kept in memory until
+    /// then, so that callers without use for them should discard them after each step.
     #[must_use]
     pub fn take_bytes(&mut self) -> Vec<u8> {
         self.world.take_bytes()

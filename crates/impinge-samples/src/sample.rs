@@ -1,4 +1,4 @@
-//! The trait of samples.
+//! The interface between a sample and the code that runs it.
 
 use core::fmt;
 
@@ -10,10 +10,10 @@ use serde::Serialize;
 
 use crate::{Panel, SampleError};
 
-/// The recorded world of a sample; the data of an object is its label.
+/// The recorded world of a sample. The data of an object is its label.
 pub type World<const D: usize> = Recorder<f32, D, String>;
 
-/// Seconds of a step.
+/// The duration of a step in seconds.
 pub const TIME_STEP: f32 = 1.0 / 60.0;
 
 /// The position type of a world.
@@ -27,28 +27,28 @@ pub trait Sample<const D: usize>: Send
 where
     f32: Recordable<D>,
 {
-    /// Returns the controls, with their initial values.
+    /// Returns the controls with their initial values.
     fn panel(&self) -> Panel {
         Panel::new()
     }
 
-    /// The margin of the boxes of the broad phase.
+    /// Returns the margin of the boxes in the broad phase.
     fn margin(&self) -> f32 {
         0.02
     }
 
-    /// Returns the names of the shapes and the pair filters of this sample.
+    /// Returns the registry with the named shapes and pair filters of this sample.
     fn registry(&self) -> Registry<f32, D, String> {
         Registry::new()
     }
 
-    /// Adds the objects to an empty world, and resets the state.
+    /// Adds the objects to an empty world, and resets the state of the sample.
     ///
     /// # Errors
     /// If the world rejects an object.
     fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError>;
 
-    /// Removes all objects and adds them again, for another size or a restart.
+    /// Removes all objects and adds them again, for a restart or another number of objects.
     ///
     /// # Errors
     /// As [`Self::build`].
@@ -57,7 +57,8 @@ where
         self.build(world, panel)
     }
 
-    /// Called after a control, not a button, was set: applies changes that need no step.
+    /// Applies changes that need no step. It is called after a control was set, except after a
+    /// press of a button.
     ///
     /// # Errors
     /// If the world rejects a change.
@@ -72,7 +73,8 @@ where
     /// If the world rejects a change.
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError>;
 
-    /// Called after an update of the world: counts its events and runs queries.
+    /// Counts the events of the world and runs queries. It is called after each update of the
+    /// world.
     ///
     /// # Errors
     /// If the world rejects a query.
@@ -81,7 +83,7 @@ where
         Ok(())
     }
 
-    /// Called after the user moved an object.
+    /// Moves an object to the position to which the user drags it.
     ///
     /// # Errors
     /// If the handle is stale or the position is not finite.
@@ -94,26 +96,26 @@ where
         Ok(world.set_position(object, *to)?)
     }
 
-    /// Draws additions to the objects: rays, paths, distances.
+    /// Draws additions to the objects, such as rays, paths and distances.
     fn draw(&self, world: &World<D>, panel: &Panel, canvas: &mut Canvas<'_, D>) {
         let _ = (world, panel, canvas);
     }
 
-    /// Returns values for display.
+    /// Returns the values that are displayed beside the picture.
     fn readouts(&self, world: &World<D>, panel: &Panel) -> Vec<Readout> {
         let _ = (world, panel);
         Vec::new()
     }
 }
 
-/// The drawing interface of samples.
+/// The interface with which samples draw.
 pub struct Canvas<'a, const D: usize>
 where
     f32: Space<D>,
 {
-    /// Draws queries, and whole worlds.
+    /// Draws results of queries, and whole worlds.
     pub drawing: &'a mut DebugDrawing<f32, D>,
-    /// Receives lines and points.
+    /// Receives the lines, points and texts.
     pub renderer: &'a mut dyn DebugRender<f32, D>,
 }
 
@@ -126,7 +128,7 @@ where
         self.renderer.line(ends, color, Drawn::Query);
     }
 
-    /// Draws lines from each point to the next.
+    /// Draws a line from each point to the next.
     pub fn path(&mut self, points: &[Point<f32, D>], color: Color) {
         for ends in points.windows(2) {
             self.line([ends[0], ends[1]], color);
@@ -153,7 +155,7 @@ where
     }
 }
 
-/// A number or a word for display beside the picture.
+/// A labelled number or word that is displayed beside the picture.
 ///
 /// ```
 /// use impinge_samples::Readout;
@@ -164,28 +166,28 @@ where
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Readout {
-    /// The label.
+    /// The text before the value.
     pub label: &'static str,
-    /// Its value.
+    /// The value as text.
     pub value: String,
 }
 
 impl Readout {
-    /// Creates a readout of any value that can be formatted.
+    /// Creates a readout with any value that can be formatted.
     #[must_use]
     pub fn new(label: &'static str, value: impl fmt::Display) -> Self {
         Self { label, value: value.to_string() }
     }
 
-    /// Formats a number with four digits after the point, or in scientific notation if it is too small for
-    /// that.
+    /// Creates a readout of a number with four digits after the point. Numbers below 0.001 or from
+    /// 1e5 on are in scientific notation.
     #[must_use]
     pub fn number(label: &'static str, value: f32) -> Self {
         let is_hidden = value != 0.0 && !(0.001..1.0e5).contains(&value.abs());
         Self::new(label, if is_hidden { format!("{value:.3e}") } else { format!("{value:.4}") })
     }
 
-    /// Formats a number, or `none`.
+    /// Creates a readout of a number; `none` if there is no number.
     #[must_use]
     pub fn optional(label: &'static str, value: Option<f32>) -> Self {
         value.map_or_else(|| Self::new(label, "none"), |value| Self::number(label, value))

@@ -1,4 +1,4 @@
-//! Plays the scenes of `impinge-scenes` in a world.
+//! Plays scenes of `impinge-scenes` in a world.
 
 use impinge::math::{Point, Real, Unit, Vector};
 use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
@@ -12,14 +12,14 @@ use impinge_scenes::{Scene, SceneObject, SceneQuery, SceneShape};
 use crate::dimension::Dimension;
 use crate::{SampleError, World};
 
-/// A scene in a world: each position is a function of the step.
+/// A scene and its objects in a world. Each position is a function of the step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Play<const D: usize> {
-    /// The objects with their motions.
+    /// The scene, with the motions of its objects.
     scene: Scene<D>,
-    /// In the order of the scene.
+    /// The handles of the objects, in the order of the scene.
     handles: Vec<CollisionObjectHandle>,
-    /// The step of the positions in the world.
+    /// The step to which the positions in the world belong.
     step: u32,
 }
 
@@ -27,7 +27,7 @@ impl<const D: usize> Play<D>
 where
     f32: Dimension<D>,
 {
-    /// Adds the objects of a scene, at their positions of step 0.
+    /// Adds the objects of a scene to a world, at their positions of step 0.
     pub(crate) fn start(scene: Scene<D>, world: &mut World<D>) -> Result<Self, SampleError> {
         let mut handles = Vec::with_capacity(scene.objects.len());
         for (index, object) in scene.objects.iter().enumerate() {
@@ -39,7 +39,7 @@ where
         Ok(Self { scene, handles, step: 0 })
     }
 
-    /// Moves the objects to their positions of the next step. Objects at rest are skipped.
+    /// Moves the objects to their positions of the next step. Objects that do not move are skipped.
     pub(crate) fn advance(&mut self, world: &mut World<D>) -> Result<(), SampleError> {
         self.step += 1;
         let (scene, step) = (&self.scene, self.step);
@@ -51,13 +51,14 @@ where
         Ok(world.set_positions(&moved.collect::<Vec<_>>())?)
     }
 
-    /// The objects, in the order of the scene.
+    /// Returns the handles of the objects, in the order of the scene.
     pub(crate) fn handles(&self) -> &[CollisionObjectHandle] {
         &self.handles
     }
 }
 
-/// Converts a shape of a scene. Its numbers are passed to the constructors of the library unchanged.
+/// Converts a shape of a scene. The numbers are passed to the constructors of the library
+/// unchanged, apart from rounding to `f32`.
 fn shape_of<const D: usize>(shape: &SceneShape<D>) -> ShapeHandle<f32, D>
 where
     f32: Dimension<D>,
@@ -65,7 +66,8 @@ where
     let vector = |xyz: &[f64; D]| Vector::<f32, D>::from_fn(|axis, _| f32::lit(xyz[axis]));
     let point = |xyz: &[f64; D]| Point::from(vector(xyz));
     let points = |list: &[[f64; D]]| list.iter().map(point).collect::<Vec<_>>();
-    // Solids that one dimension lacks are made from their data in recordings.
+    // Solids that exist in one dimension only are built from the data with which recordings store
+    // them.
     let own = |data: &ShapeData<f32, D>| {
         f32::own_shape(data).expect("a scene has valid solids of its own dimension")
     };
@@ -99,7 +101,7 @@ where
     }
 }
 
-/// Converts the groups of a scene, which are lists of numbers.
+/// Converts the collision groups of an object of a scene.
 fn groups_of<const D: usize>(object: &SceneObject<D>) -> CollisionGroups {
     let mut groups = CollisionGroups::new();
     groups.set_membership(object.groups.membership);
@@ -108,7 +110,7 @@ fn groups_of<const D: usize>(object: &SceneObject<D>) -> CollisionGroups {
     groups
 }
 
-/// Converts a query type: predictions and margins are lengths, except the angle.
+/// Converts the query type of an object of a scene.
 fn query_of(query: SceneQuery) -> GeometricQueryType<f32> {
     match query {
         SceneQuery::Contacts { linear, angular } => {

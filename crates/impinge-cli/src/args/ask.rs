@@ -1,4 +1,4 @@
-//! Arguments of the verbs that query one pair, shape or ray.
+//! Arguments of the verbs that query a pair of objects, a shape or a ray.
 
 use core::fmt;
 use core::str::FromStr;
@@ -7,10 +7,10 @@ use clap::Args;
 
 use super::{Format, NonNegative, NumberError, Numbers, SceneArgs};
 
-/// The distance of two objects, and the nearest points.
+/// Print the distance of two objects, and their nearest points.
 ///
-/// Groups are ignored. Where the objects overlap, the depth is the length of the shortest translation that
-/// separates them, and the normal is its direction for the second.
+/// Groups are ignored. If the objects overlap, the depth is the length of the shortest translation
+/// that separates them, and the normal is the direction of this translation for the second object.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -22,21 +22,22 @@ point1, point2, normal (from the first to the second), part1, part2. Exit code 1
 pub(crate) struct DistanceArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
-    /// The name of an object
+    /// The name of the first object
     pub(crate) first: String,
-    /// The name of the other object
+    /// The name of the second object
     pub(crate) second: String,
-    /// Objects whose distance is at most this are called near
+    /// The largest distance at which objects are called near
     #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true, default_value = "0")]
     pub(crate) margin: NonNegative,
     #[command(flatten)]
     pub(crate) format: Format,
 }
 
-/// The first hit of a moving shape or object.
+/// Print the first hit of a moving shape or object.
 ///
-/// It moves along a straight line and does not rotate. An object of the scene interacts by its groups, a shape
-/// with everything. Time 0 is the start of its path and time 1 the end.
+/// The shape moves along a straight line and does not rotate. An object of the scene hits the
+/// objects with which its groups interact; a shape hits every object. Time is 0 at the start of the
+/// path and 1 at its end.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -53,7 +54,7 @@ shape), normal (from it to the object), part. Exit code 1 if something is hit.")
 pub(crate) struct CastArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
-    /// A shape to move
+    /// The shape to move
     #[arg(
         long,
         value_name = "SHAPE",
@@ -62,19 +63,19 @@ pub(crate) struct CastArgs {
         required_unless_present = "object"
     )]
     pub(crate) shape: Option<ShapeSpec>,
-    /// The start of the shape
+    /// The start of the path
     #[arg(long, value_name = "POINT", allow_hyphen_values = true, requires = "shape")]
     pub(crate) from: Option<Numbers>,
-    /// The end of its path
+    /// The end of the path
     #[arg(long, value_name = "POINT", allow_hyphen_values = true, requires = "shape")]
     pub(crate) to: Option<Numbers>,
-    /// An object of the scene to move, by its name
+    /// The name of an object of the scene to move
     #[arg(long, value_name = "NAME", conflicts_with = "shape", requires = "by")]
     pub(crate) object: Option<String>,
     /// The translation of the object, from start to end
     #[arg(long, value_name = "VECTOR", allow_hyphen_values = true, requires = "object")]
     pub(crate) by: Option<Numbers>,
-    /// Objects count as hit at this distance
+    /// The distance at which objects count as hit
     #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true, default_value = "0")]
     pub(crate) distance: NonNegative,
     /// Print all hits on the path, not only the first
@@ -84,7 +85,7 @@ pub(crate) struct CastArgs {
     pub(crate) format: Format,
 }
 
-/// The hits of a ray.
+/// Print the first hit of a ray, or all hits.
 ///
 /// A ray that starts inside a solid hits it at time zero, unless `--hollow` is given.
 #[derive(Args, Debug)]
@@ -109,10 +110,10 @@ pub(crate) struct RayArgs {
         required_unless_present = "direction"
     )]
     pub(crate) to: Option<Numbers>,
-    /// The direction of an unbounded ray
+    /// The direction of a ray without an end
     #[arg(long, value_name = "VECTOR", allow_hyphen_values = true, conflicts_with = "to")]
     pub(crate) direction: Option<Numbers>,
-    /// Solids are hollow: a ray that starts inside hits where it leaves
+    /// Treat solids as hollow: a ray that starts inside hits where it leaves
     #[arg(long)]
     pub(crate) hollow: bool,
     /// Print all hits, not only the first
@@ -122,39 +123,40 @@ pub(crate) struct RayArgs {
     pub(crate) format: Format,
 }
 
-/// A shape: `ball:0.5`, `box:1,2,3`, `capsule:1,0.5`, the name of one in the scene, or JSON.
+/// The shape of an argument: `ball:0.5`, `box:1,2,3`, `capsule:1,0.5`, the name of a shape in the
+/// scene, or JSON.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ShapeSpec {
-    /// In short form.
+    /// A kind of shape with its sizes.
     Short(ShortShape),
-    /// The name of a shape in the scene, or JSON as in a scene.
+    /// The name of a shape in the scene, or JSON as in a scene file.
     Scene(String),
 }
 
-/// A kind of shape with its sizes, whose number is not checked yet.
+/// A kind of shape with its sizes. The number of sizes is not checked yet.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ShortShape {
-    /// The text before the colon.
+    /// The kind, which is named before the colon.
     pub(crate) kind: ShapeKind,
-    /// The numbers after it.
+    /// The numbers after the colon.
     pub(crate) sizes: Numbers,
 }
 
-/// The shapes that have a short form.
+/// The kinds of shapes that have a short form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ShapeKind {
-    /// A radius.
+    /// A ball, with its radius.
     Ball,
-    /// Half extents along the axes.
+    /// A box, with its half extents along the axes.
     Cuboid,
-    /// Half the height along y, and a radius.
+    /// A capsule along y, with half the length of its segment and its radius.
     Capsule,
 }
 
 impl ShapeKind {
     const ALL: [Self; 3] = [Self::Ball, Self::Cuboid, Self::Capsule];
 
-    /// The name before the colon.
+    /// Returns the name before the colon.
     const fn name(self) -> &'static str {
         match self {
             Self::Ball => "ball",
@@ -164,7 +166,7 @@ impl ShapeKind {
     }
 }
 
-/// Writes the form of the command line.
+/// Writes the shape in the syntax of the argument.
 impl fmt::Display for ShortShape {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}:{}", self.kind.name(), self.sizes)
@@ -179,7 +181,7 @@ impl FromStr for ShapeSpec {
             let kind = ShapeKind::ALL.into_iter().find(|kind| kind.name() == name)?;
             Some((kind, sizes))
         });
-        // JSON has colons too, but no kind before the first one.
+        // JSON contains colons too, but no name of a kind before its first colon.
         let Some((kind, sizes)) = short else { return Ok(Self::Scene(text.to_owned())) };
         Ok(Self::Short(ShortShape { kind, sizes: sizes.parse()? }))
     }

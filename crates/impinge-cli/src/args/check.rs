@@ -1,4 +1,4 @@
-//! Arguments of the verbs about whole scenes.
+//! Arguments of the verbs that read whole scenes.
 
 use std::path::PathBuf;
 
@@ -6,11 +6,12 @@ use clap::{Args, ValueHint};
 
 use super::{Format, NonNegative, Reading, SceneArgs, Stepping};
 
-/// The objects that touch, or are within a clearance.
+/// Find the objects that touch, or that are within a clearance.
 ///
-/// Every pair of objects that may interact by their groups is checked; distant pairs are culled by the broad phase.
-/// `touch` means that the distance is zero; the depth is the length of the shortest translation that separates the two.
-/// `near` means that the distance is at most the clearance.
+/// All pairs of objects that may interact by their groups are checked; the broad phase culls
+/// distant pairs. `touch` means that the distance is zero. The depth is then the length of the
+/// shortest translation that separates the objects. `near` means that the distance is at most the
+/// clearance.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -25,23 +26,23 @@ part1, part2. Exit code 1 if a pair is reported.")]
 pub(crate) struct CheckArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
-    /// Report pairs whose distance is at most this; 0 reports touching pairs
+    /// Report pairs whose distance is at most this clearance; 0 reports touching pairs
     #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true, default_value = "0")]
     pub(crate) clearance: NonNegative,
     /// Print all pairs
     #[arg(long, conflicts_with = "limit")]
     pub(crate) all: bool,
-    /// The largest number of printed pairs, the deepest first
+    /// The maximum number of printed pairs, the deepest first
     #[arg(long, value_name = "N", default_value_t = 20)]
     pub(crate) limit: usize,
     #[command(flatten)]
     pub(crate) format: Format,
 }
 
-/// The content of a file, and the defects of its meshes.
+/// Describe the content of a file, and the defects of its meshes.
 ///
-/// For a scene or mesh: the objects with their shapes, and a report of each mesh. For a recording: its version, its
-/// counts and its steps.
+/// For a scene or mesh, these are the objects with their shapes, and a report of each mesh. For a
+/// recording, these are its version, the program that wrote it, and the number of its steps.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -59,11 +60,11 @@ pub(crate) struct InspectArgs {
     pub(crate) format: Format,
 }
 
-/// The time of updates of a scene.
+/// Measure the time of updates of a scene.
 ///
-/// Objects move by their motions. Each run makes a new world and updates it `--steps` times; times of updates are
-/// medians over all runs, with the quartiles. Times depend on the machine and its load: compare only times of one
-/// machine.
+/// Objects move by their motions. Each run creates a new world and updates it `--steps` times.
+/// Times of updates are medians over all runs, with the quartiles. Times depend on the machine and
+/// its load: compare only times of one machine.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -73,14 +74,14 @@ Examples:
 Fields of --json: scenes with name, objects, dimension, scalar, steps, runs, build_ms, first_update_ms, median_ms,
 lower_quartile_ms, upper_quartile_ms, pairs.")]
 pub(crate) struct BenchArgs {
-    /// A scene; without, some that are part of the command
+    /// A scene; by default, some scenes that are part of the command
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) scene: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) reading: Reading,
     #[command(flatten)]
     pub(crate) stepping: Stepping,
-    /// Runs of each scene
+    /// The number of runs of each scene
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) runs: u32,
     #[command(flatten)]

@@ -1,4 +1,4 @@
-//! Arguments of pictures.
+//! Arguments of the verb that draws pictures.
 
 use clap::{Args, ValueEnum};
 
@@ -6,9 +6,10 @@ use super::{NonNegative, Numbers, OutputFile, SceneArgs, Size};
 
 /// Draw a scene or a step of a recording.
 ///
-/// A file that ends in .png shows surfaces, one that ends in .svg lines. 2D scenes are drawn to scale with y
-/// upwards. The view of 3D scenes is from the front, above and right, or along `--look`; the camera frames all
-/// objects. No GPU is used: the same input gives the same bytes.
+/// The extension of the output file selects the format: .png shows surfaces, .svg shows lines. 2D
+/// scenes are drawn to scale with y upwards. The view of 3D scenes is from the front, above and
+/// right, or along `--look`; the camera frames all objects. No GPU is used, so that equal inputs
+/// give equal bytes.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -24,16 +25,16 @@ pub(crate) struct RenderArgs {
     /// Width and height in pixels, at most 8192; the height of an SVG follows from the scene
     #[arg(long, value_name = "WxH", default_value = "1200x900")]
     pub(crate) size: Size,
-    /// The direction of view, in 3D
+    /// The direction of view of a 3D scene
     #[arg(long, value_name = "VECTOR", allow_hyphen_values = true, default_value = "-2,-1.5,-3")]
     pub(crate) look: Numbers,
-    /// The upper side of the picture, in 3D; by default the axis that the scene names
+    /// The upward direction of a picture of a 3D scene; by default the axis that the scene names
     #[arg(long, value_name = "VECTOR", allow_hyphen_values = true)]
     pub(crate) up: Option<Numbers>,
-    /// The angle of view in degrees, in 3D, clamped to 143; 0 is without perspective
+    /// The angle of view of a 3D scene in degrees, clamped to 143; 0 is without perspective
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, default_value = "30")]
     pub(crate) angle: NonNegative,
-    /// The step of a recording; the last by default
+    /// The step of a recording; by default the last
     #[arg(long, value_name = "N")]
     pub(crate) step: Option<usize>,
     /// The layers to draw
@@ -41,7 +42,7 @@ pub(crate) struct RenderArgs {
     pub(crate) layers: Vec<LayerName>,
 }
 
-/// Layers of a picture.
+/// The layers of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum LayerName {
     /// The shapes of objects
@@ -56,6 +57,6 @@ pub(crate) enum LayerName {
     TightBoxes,
     /// Boxes of the broad phase
     LoosenedBoxes,
-    /// Boxes of the nodes of its trees
+    /// Boxes of the nodes of the trees of the broad phase
     TreeNodes,
 }

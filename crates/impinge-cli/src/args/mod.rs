@@ -51,7 +51,7 @@ Exit codes:
 Scenes are JSON files (see `impinge schema`) or meshes whose groups are the objects. `-` is standard input.
 `impinge help VERB` has examples.";
 
-/// The verbs; the arguments of each describe it.
+/// The verbs. The comment on the arguments of a verb is its description.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
     Check(CheckArgs),
@@ -80,7 +80,7 @@ Examples:
     },
 }
 
-/// The file of a verb, and the options for reading it.
+/// The input file of a verb, and the options for reading it.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct SceneArgs {
     /// A scene in JSON, a mesh (OBJ, STL, PLY, glTF) or a robot (URDF); `-` is standard input
@@ -93,38 +93,38 @@ pub(crate) struct SceneArgs {
 /// The options for reading a scene.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct Reading {
-    /// Compute with numbers of this type, instead of that of the scene
+    /// Compute with this type of numbers, instead of the type of the scene
     #[arg(long, value_parser = scalar_parser())]
     pub(crate) scalar: Option<ScalarFile>,
     /// A folder with packages, for `package://` paths of robots; may be repeated
     #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) packages: Vec<PathBuf>,
-    /// The folder that contains all files that the scene names; without, the folder of the scene
+    /// The folder that contains all files that the scene names; by default the folder of the scene
     #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) root: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) limits: LimitArgs,
 }
 
-/// Limits of the memory of a scene: small files can request much.
+/// Limits on the memory that a scene may use, since small files can request much memory.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct LimitArgs {
-    /// The largest number of bytes of files
+    /// The maximum total size of all files in bytes
     #[arg(long, value_name = "N", hide_short_help = true, default_value_t = Limits::default().bytes)]
     max_bytes: usize,
-    /// The largest number of vertices and corners of triangles
+    /// The maximum number of vertices and corners of triangles
     #[arg(long, value_name = "N", hide_short_help = true, default_value_t = Limits::default().elements)]
     max_elements: usize,
-    /// The largest number of corners of a polygon
+    /// The maximum number of corners of a polygon
     #[arg(long, value_name = "N", hide_short_help = true, default_value_t = Limits::default().corners)]
     max_corners: usize,
-    /// The largest number of objects
+    /// The maximum number of objects
     #[arg(long, value_name = "N", hide_short_help = true, default_value_t = Limits::default().objects)]
     max_objects: usize,
-    /// The largest number of bytes of all names
+    /// The maximum total size of all names in bytes
     #[arg(long, value_name = "N", hide_short_help = true, default_value_t = Limits::default().names)]
     max_names: usize,
-    /// The largest number of pairs of objects that are near each other
+    /// The maximum number of pairs of objects that are near each other
     #[arg(long, value_name = "N", hide_short_help = true, default_value_t = 1 << 20)]
     pub(crate) max_pairs: usize,
 }
@@ -162,10 +162,10 @@ fn scalar_parser() -> impl TypedValueParser<Value = ScalarFile> {
     })
 }
 
-/// The time from one update of a scene to the next.
+/// The time between two updates of a scene.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct TimeStep {
-    // The default is 1/60, to the last bit.
+    // The default is the `f64` nearest to 1/60.
     /// Seconds from one update to the next
     #[arg(
         long = "dt",
@@ -176,7 +176,7 @@ pub(crate) struct TimeStep {
     pub(crate) seconds: NonNegative,
 }
 
-/// The updates of a scene whose objects move.
+/// The number of updates of a scene, and the time between them.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct Stepping {
     /// The number of updates
@@ -186,11 +186,11 @@ pub(crate) struct Stepping {
     pub(crate) time_step: TimeStep,
 }
 
-/// The key frames of a recording.
+/// The option for key frames of a recording.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct KeyFrames {
-    /// Write all objects again every N updates, so that a player goes back by at most N updates; without, it
-    /// goes back to the start
+    /// Write all objects again every N updates, so that a player goes back by at most N updates; by
+    /// default it goes back to the start
     #[arg(long = "key-frames", value_name = "N")]
     pub(crate) every: Option<NonZeroU64>,
 }
@@ -211,7 +211,7 @@ pub(crate) struct Format {
     pub(crate) json: bool,
 }
 
-/// Whether a path stands for standard input.
+/// Returns `true` if the path is `-`, which stands for standard input.
 pub(crate) fn is_stdin(path: &Path) -> bool {
     path.as_os_str() == "-"
 }

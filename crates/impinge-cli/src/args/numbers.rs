@@ -1,4 +1,4 @@
-//! Numbers on the command line: `1,2.5,-3`, lengths, sizes of pictures.
+//! Numbers on the command line: lists such as `1,2.5,-3`, lengths, and sizes of pictures.
 
 use core::fmt;
 use core::str::FromStr;
@@ -7,7 +7,7 @@ use crate::number::significant;
 
 /// Finite numbers separated by commas: a point, a vector or the sizes of a shape.
 ///
-/// Their number is checked when the scene is known.
+/// How many numbers are needed is checked after the scene is read.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Numbers(pub(crate) Vec<f64>);
 
@@ -19,19 +19,20 @@ pub(crate) struct NonNegative(pub(crate) f64);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Size(pub(crate) [u32; 2]);
 
-/// The largest side of a picture: with four bytes per pixel this is 256 MiB.
+/// The maximum width and height of a picture. With four bytes per pixel the largest picture takes
+/// 256 MiB.
 const MAX_SIDE: u32 = 8192;
 
-/// The reason why a text is invalid for an argument.
+/// The reason why the text of an argument is invalid.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum NumberError {
-    /// It does not parse as a number.
+    /// The text does not parse as a number.
     NotANumber(String),
-    /// It is NaN or infinite.
+    /// The number is NaN or infinite.
     NotFinite(String),
-    /// It is negative.
+    /// The number is negative.
     Negative(String),
-    /// It is not a width and a height, or one of them is 0 or too large.
+    /// The text is not a width and a height, or one of them is 0 or above [`MAX_SIDE`].
     NotASize(String),
 }
 
@@ -60,7 +61,7 @@ fn finite(text: &str) -> Result<f64, NumberError> {
     if number.is_finite() { Ok(number) } else { Err(NumberError::NotFinite(text.to_owned())) }
 }
 
-/// Writes the form of the command line, with six digits.
+/// Writes the numbers in the syntax of the argument, rounded to six digits.
 impl fmt::Display for Numbers {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let words: Vec<_> = self.0.iter().copied().map(significant).collect();

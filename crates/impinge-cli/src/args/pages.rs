@@ -1,4 +1,4 @@
-//! Arguments of the verbs that make pages for browsers.
+//! Arguments of the verbs that create pages for browsers.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use clap::{Args, ValueHint};
 
 use super::{Format, KeyFrames, OutputFile, SceneArgs, Size, Stepping, TimeStep};
 
-/// The source of the page.
+/// The option for the files of the page.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct PageArgs {
     /// A folder with `page.html`, `page.css`, `page.js` and `page.wasm.gz`, instead of the embedded page
@@ -20,11 +20,11 @@ pub(crate) struct PageArgs {
     pub(crate) folder: Option<PathBuf>,
 }
 
-/// One HTML file that shows a recording and runs queries on it.
+/// Write one HTML file that shows a recording and runs queries on it.
 ///
-/// The file contains the recording and the library: it opens from disk, without a network. A reader plays it, selects
-/// objects, sees why two of them touch or do not, casts rays and moves objects. A scene is recorded first, by
-/// `--steps`, `--dt` and `--key-frames`.
+/// The file contains the recording and the library, so that it opens from disk without a network. A
+/// reader can play the recording, select objects, see why two objects touch or do not touch, cast
+/// rays, and move objects. A scene is recorded first, by `--steps`, `--dt` and `--key-frames`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -37,7 +37,7 @@ pub(crate) struct ExportArgs {
     pub(crate) scene: SceneArgs,
     #[command(flatten)]
     pub(crate) output: OutputFile,
-    /// The heading of the page; without it the name of the file
+    /// The heading of the page; by default the name of the file
     #[arg(long)]
     pub(crate) title: Option<String>,
     #[command(flatten)]
@@ -52,8 +52,9 @@ pub(crate) struct ExportArgs {
 
 /// Show a running scene, or a recording, in a browser on this machine.
 ///
-/// The printed address is a port of this machine only. The objects of a scene move by its motions, once in `--dt`
-/// seconds, until the command is interrupted; the page follows, and keeps all steps to go back to.
+/// The printed address is a port that only this machine can reach. The objects of a scene move by
+/// its motions, one step in `--dt` seconds, until the command is interrupted. The page follows, and
+/// keeps all earlier steps.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -65,7 +66,7 @@ pub(crate) struct ViewArgs {
     /// The port; 0 selects a free one
     #[arg(long, default_value_t = 0)]
     pub(crate) port: u16,
-    /// End after this number of updates of a scene
+    /// The number of updates of a scene after which the command ends
     #[arg(long, value_name = "N")]
     pub(crate) steps: Option<u64>,
     #[command(flatten)]
@@ -76,9 +77,10 @@ pub(crate) struct ViewArgs {
     pub(crate) page: PageArgs,
 }
 
-/// The samples: a list, or a folder for any web server.
+/// List the samples, or write them to a folder for any web server.
 ///
-/// `index.html` in the folder has all of them, with controls; it also opens from disk. Thumbnails are beside it.
+/// The file `index.html` in the folder contains all samples with their controls, and also opens
+/// from disk. Thumbnails are in the subfolder `thumbnails`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:

@@ -1,4 +1,4 @@
-//! Arguments of the verbs about recordings.
+//! Arguments of the verbs that write or read recordings.
 
 use std::path::PathBuf;
 
@@ -8,8 +8,8 @@ use super::{Format, KeyFrames, OutputFile, SceneArgs, Stepping};
 
 /// Move the objects of a scene and record every step.
 ///
-/// Objects move by the motions of the scene. A recording has each call that changed the world and the hashes of
-/// its results: `replay` and `validate` read it, on any machine.
+/// Objects move by the motions of the scene. A recording contains each call that changed the world,
+/// and the hashes of its results. `replay` and `validate` read it on any machine.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -31,11 +31,12 @@ pub(crate) struct RecordArgs {
     pub(crate) format: Format,
 }
 
-/// The state at the steps of a recording.
+/// Print the state at the steps of a recording.
 ///
-/// Without `--step` a line for each step; with it the objects and pairs after that step. If the end of a recording
-/// is missing, because the program that wrote it crashed, or damaged, the earlier steps are replayed; a note on
-/// standard error gives their number.
+/// Without `--step` a line is printed for each step; with `--step`, the objects and pairs after
+/// that step. The end of a recording is missing if the program that wrote it crashed. If the end is
+/// missing or damaged, the earlier steps are replayed, and a note on standard error gives their
+/// number.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -50,17 +51,18 @@ pub(crate) struct ReplayArgs {
     /// A recording; `-` is standard input
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) log: PathBuf,
-    /// The step to print: the number of earlier updates
+    /// The step to print, which is the number of updates before it
     #[arg(long, value_name = "N")]
     pub(crate) step: Option<usize>,
     #[command(flatten)]
     pub(crate) format: Format,
 }
 
-/// Whether recordings replay to the same bits.
+/// Check that recordings replay to the same bits.
 ///
-/// Every call of a recording is repeated, and its results are compared by their hashes: positions, pairs,
-/// contacts, proximities, events and results of queries. A recording without its end is an error.
+/// Every call of a recording is repeated, and its results are compared by their hashes: positions,
+/// pairs, contacts, proximities, events and results of queries. A recording without its end is an
+/// error.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -70,7 +72,7 @@ Examples:
 Fields of --json: recordings with file, steps, same, and difference (step, byte, object, field) or null. Exit
 code 1 if one differs.")]
 pub(crate) struct ValidateArgs {
-    /// Recordings; `-` is standard input
+    /// The recordings; `-` is standard input
     #[arg(required = true, value_hint = ValueHint::FilePath)]
     pub(crate) logs: Vec<PathBuf>,
     #[command(flatten)]

@@ -1,4 +1,4 @@
-//! `impinge bench`: the time of updates of a scene.
+//! `impinge bench`: measures the time of updates of a scene.
 
 use core::fmt;
 use std::time::{Duration, Instant};
@@ -17,7 +17,7 @@ use crate::scene::Loaded;
 use crate::space::{Kind, Stage, Task, run_in};
 use crate::summary::summary;
 
-/// The scenes of the command, by name.
+/// The scenes that are part of the command, with their names.
 const SCENES: [(&str, &str); 3] = [
     ("moving_stack", include_str!("../../bench/moving_stack.json")),
     ("spinning_capsules", include_str!("../../bench/spinning_capsules.json")),
@@ -42,19 +42,19 @@ pub(crate) fn run(args: &BenchArgs) -> Result<Outcome, CliError> {
     finish(&BenchReport { scenes }, args.format)
 }
 
-/// Measures the updates of a scene.
+/// The task that measures the updates of a scene.
 struct TimeUpdates<'a> {
     loaded: &'a Loaded,
     args: &'a BenchArgs,
 }
 
-/// The times of several scenes.
+/// The report of the times of all scenes.
 #[derive(Debug, Serialize)]
 struct BenchReport {
     scenes: Vec<SceneTimes>,
 }
 
-/// The times of a scene, in milliseconds: medians over all runs, and the quartiles of updates.
+/// The times of a scene in milliseconds: medians over all runs, and the quartiles of the updates.
 #[derive(Debug, Serialize)]
 struct SceneTimes {
     name: String,
@@ -65,7 +65,8 @@ struct SceneTimes {
     pairs: usize,
     steps: u32,
     runs: u32,
-    /// Shapes and objects; the first update makes the boxes and pairs of a world.
+    /// The time to create the shapes and objects. The first update then computes the boxes and
+    /// pairs.
     build_ms: f64,
     first_update_ms: f64,
     lower_quartile_ms: f64,
@@ -84,7 +85,8 @@ impl Task for TimeUpdates<'_> {
         let mut progress = Progress::new(args.runs as usize * steps as usize, "measuring");
         for _ in 0..args.runs {
             let mut world = builds.time(|| loaded.world::<N, D>())?;
-            // Computes the positions; its own updates, which are recorded, are not timed.
+            // A second world computes the positions. Its own updates, which are recorded, are not
+            // timed.
             let mut mover = loaded.moving::<N, D>(KeyFrames { every: None })?;
             loaded.step(&mut mover, 0.0)?;
             firsts.time(|| world.update());
@@ -115,8 +117,8 @@ impl Task for TimeUpdates<'_> {
     }
 }
 
-/// Returns the objects whose position differs from that in the mover, which has the same objects in the same
-/// order, with the new position.
+/// Returns the objects whose positions differ from the positions in `mover`, with these new
+/// positions. `mover` has the same objects in the same order.
 fn moved<N: Stage<D>, const D: usize>(
     world: &CollisionWorld<N, D, String>,
     mover: &SceneWorld<N, D>,
@@ -126,12 +128,12 @@ fn moved<N: Stage<D>, const D: usize>(
     moved.map(|(own, ahead)| (own.handle(), *ahead.position())).collect()
 }
 
-/// Durations of the same work.
+/// Measured durations of repeated work.
 #[derive(Debug, Default)]
 struct Durations(Vec<Duration>);
 
 impl Durations {
-    /// Runs some work and stores its duration.
+    /// Runs some work, stores its duration, and returns the result of the work.
     fn time<T>(&mut self, work: impl FnOnce() -> T) -> T {
         let begun = Instant::now();
         let done = work();
@@ -139,7 +141,8 @@ impl Durations {
         done
     }
 
-    /// Returns a quartile of the durations in milliseconds; 0 if there is none.
+    /// Returns the quartile with index `quarters` in milliseconds; 2 is the median. Returns 0 if
+    /// there are no durations.
     fn quartile(&mut self, quarters: usize) -> f64 {
         self.0.sort_unstable();
         let index = (self.0.len() * quarters / 4).min(self.0.len().saturating_sub(1));
@@ -162,7 +165,7 @@ impl fmt::Display for SceneTimes {
             "{NAME}{name}{NAME:#} {FAINT}({kind}){FAINT:#}: {objects} objects, {pairs} pairs touch at the end, \
              {steps} steps, {runs} runs"
         )?;
-        // Clocks have nanoseconds, but times are reproducible to a tenth of a microsecond at best.
+        // Clocks count nanoseconds, but times are reproducible to a tenth of a microsecond at best.
         let shown = |time: f64| format!("{} ms", significant((time * 1e4).round() / 1e4));
         let [build, first] = [self.build_ms, self.first_update_ms].map(shown);
         writeln!(f, "  shapes and objects made in {build}, first update {first}")?;

@@ -1,4 +1,4 @@
-//! `impinge cast`: the first hit of a moving shape or object.
+//! `impinge cast`: finds the first hit of a moving shape or object.
 
 use impinge::math::{Pose, Vector};
 use impinge::query::ImpactOptions;
@@ -20,13 +20,13 @@ pub(crate) fn run(args: &CastArgs) -> Result<Outcome, CliError> {
     finish(&run_in(loaded.kind, CastShape { loaded: &loaded, args })?, args.format)
 }
 
-/// Casts a shape into a scene.
+/// The task that casts a shape or an object in a scene.
 struct CastShape<'a> {
     loaded: &'a Loaded,
     args: &'a CastArgs,
 }
 
-/// A shape that moves from a start by a translation, and a filter of the objects that it may hit.
+/// A shape that moves from `start` by `translation`, and a filter of the objects that it may hit.
 struct Sweep<N: Stage<D>, const D: usize> {
     shape: ShapeHandle<N, D>,
     start: N::Isometry,
@@ -41,13 +41,13 @@ impl Task for CastShape<'_> {
         let Self { loaded, args } = self;
         let world = loaded.world_without_pairs::<N, D>()?;
         let Sweep { shape, start, translation, filter } = self.sweep(&world)?;
-        // The translation is the velocity: it ends at time 1.
+        // The translation is used as the velocity, so that the path ends at time 1.
         let options = ImpactOptions::new()
             .with_max_time(N::ONE)
             .with_target_distance(scalar("--distance", args.distance.0)?);
         let mut found = world.cast_shape_all(&start, &translation, &*shape, &options, &filter);
         found.truncate(if args.all { usize::MAX } else { 1 });
-        // The shape does not rotate: its origin is its position.
+        // The shape does not rotate: its position is the translation of its origin.
         let (origin, length) = (N::translation(&start), translation.norm());
         let hits = found.into_iter().map(|(object, impact)| CastHit {
             object: object.data().clone(),
@@ -63,8 +63,8 @@ impl Task for CastShape<'_> {
 }
 
 impl CastShape<'_> {
-    /// Returns the sweep of the named object, which hits the objects that it interacts with, or of a shape,
-    /// which hits all.
+    /// Returns the path of the named object, which hits the objects with which its groups interact,
+    /// or of a shape, which hits every object.
     fn sweep<N: Stage<D>, const D: usize>(
         &self,
         world: &CollisionWorld<N, D, String>,
@@ -81,7 +81,8 @@ impl CastShape<'_> {
             });
         }
         let (Some(spec), Some(from), Some(to)) = (&args.shape, &args.from, &args.to) else {
-            // The command line has all three, or an object.
+            // The parser of the command line ensures that all three are given if there is no
+            // object.
             let reason = "with --from and --to is needed, or --object with --by";
             return Err(CliError::argument("--shape", "SHAPE", reason));
         };
@@ -94,7 +95,7 @@ impl CastShape<'_> {
         })
     }
 
-    /// Makes a shape from its short form, from the scene, or from JSON.
+    /// Creates a shape from its short form, from its name in the scene, or from JSON.
     fn shape<N: Stage<D>, const D: usize>(
         &self,
         spec: &ShapeSpec,
@@ -106,7 +107,7 @@ impl CastShape<'_> {
     }
 }
 
-/// Makes the shape of a kind with its sizes.
+/// Creates a shape from its short form; an error if the number or a value of the sizes is invalid.
 fn made<N: Stage<D>, const D: usize>(short: &ShortShape) -> Result<ShapeHandle<N, D>, CliError> {
     let refused = |reason: String| CliError::argument("--shape", short, reason);
     let sizes = short.sizes.0.iter().map(|size| scalar::<N>("--shape", *size));
@@ -124,7 +125,7 @@ fn made<N: Stage<D>, const D: usize>(short: &ShortShape) -> Result<ShapeHandle<N
     made.map_err(|error| refused(error.to_string()))
 }
 
-/// Describes the sizes of a kind of shape.
+/// Returns the error message about the sizes that a kind of shape has.
 fn sizes_of<const D: usize>(kind: ShapeKind) -> String {
     match kind {
         ShapeKind::Ball => "a ball has a radius".to_owned(),

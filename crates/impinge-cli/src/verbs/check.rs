@@ -1,4 +1,4 @@
-//! `impinge check`: the objects of a scene that touch, or are within a clearance.
+//! `impinge check`: finds the objects of a scene that touch, or that are within a clearance.
 
 use core::cell::RefCell;
 use core::cmp::Ordering;
@@ -25,13 +25,13 @@ pub(crate) fn run(args: &CheckArgs) -> Result<Outcome, CliError> {
     run_in(loaded.kind, CheckPairs { loaded: &loaded, args })
 }
 
-/// Checks all pairs of a scene.
+/// The task that checks all pairs of a scene.
 struct CheckPairs<'a> {
     loaded: &'a Loaded,
     args: &'a CheckArgs,
 }
 
-/// The pairs that touch or are near.
+/// The report of the pairs that touch or are near.
 #[derive(Serialize)]
 #[serde(bound = "")]
 struct CheckReport<'a, N: Stage<D>, const D: usize> {
@@ -39,10 +39,11 @@ struct CheckReport<'a, N: Stage<D>, const D: usize> {
     subject: Subject,
     clearance: Number,
     objects: usize,
-    /// The numbers of touching and of near pairs, including the omitted ones.
+    /// The number of touching pairs, including the omitted ones. `near` counts the near pairs
+    /// likewise.
     touching: usize,
     near: usize,
-    /// The number of pairs beyond the limit.
+    /// The number of pairs that are not printed because of the limit.
     omitted: usize,
     pairs: Pairs<'a, N, D>,
 }
@@ -76,32 +77,33 @@ impl Task for CheckPairs<'_> {
 
 /// Measures the pairs of a world that are at most a clearance apart and may interact.
 ///
-/// Bounding boxes cull pairs. The others are measured one by one, so that the memory does not grow with the number of
-/// pairs: n objects at one position have n (n - 1) / 2.
+/// Bounding boxes cull pairs. The remaining pairs are measured one by one and not stored, so that
+/// memory does not grow with their number: n objects at one position have n (n - 1) / 2 pairs.
 struct Measure<'a, N: Stage<D>, const D: usize> {
     boxed: Boxed<'a, N, D, String>,
     clearance: N,
 }
 
-/// The counts of touching and near pairs, and the deepest of them in order.
+/// The numbers of touching and near pairs, and the deepest pairs in order.
 struct Found {
     touching: usize,
     near: usize,
     deepest: Vec<Near>,
 }
 
-/// A pair that touches or is near: its sort key, and the indices of its objects.
+/// A pair that touches or is near: its distance, by which pairs are sorted, and the indices of its
+/// objects.
 #[derive(Clone, Copy)]
 struct Near {
-    /// The signed distance; negative infinity for an unbounded overlap.
+    /// The signed distance; minus infinity for an unbounded overlap.
     distance: f64,
     state: State,
     objects: [u32; 2],
 }
 
 impl<N: Stage<D>, const D: usize> Measure<'_, N, D> {
-    /// Finds all pairs, and keeps the `most` deepest. With `all`, the search ends when there are
-    /// more than `most`.
+    /// Finds all pairs, and keeps the `most` deepest. With `all`, the search ends as soon as more
+    /// than `most` pairs are found.
     fn found(&self, most: usize, all: bool) -> Found {
         let found = RefCell::new(Found { touching: 0, near: 0, deepest: Vec::new() });
         let progress = RefCell::new(Progress::new(self.boxed.len(), "measuring pairs"));
@@ -128,23 +130,25 @@ impl<N: Stage<D>, const D: usize> Measure<'_, N, D> {
         found
     }
 
-    /// Sorts pairs, and drops those beyond the limit.
+    /// Sorts the pairs, and keeps the first `most`.
     fn keep_deepest(&self, pairs: &mut Vec<Near>, most: usize) {
         pairs.sort_by(|one, other| self.order(one, other));
         pairs.truncate(most);
     }
 
-    /// Orders the deepest first, then the nearest; ties by name.
+    /// Orders pairs by signed distance, the deepest first; ties by the names of the objects.
     fn order(&self, one: &Near, other: &Near) -> Ordering {
         let names = |near: &Near| near.objects.map(|object| self.boxed.object(object).data());
         let by_distance = one.distance.total_cmp(&other.distance);
         by_distance.then_with(|| names(one).cmp(&names(other)))
     }
 
-    /// Returns a pair of objects if it touches or is near; `None` if the objects are farther apart.
+    /// Returns the state and distance of a pair of objects; `None` if their distance exceeds the
+    /// clearance.
     fn near(&self, objects: [u32; 2]) -> Option<Near> {
         let [object1, object2] = objects.map(|object| self.boxed.object(object));
-        // Proximity decides touching: it agrees with a world, while the signed distance is rounded.
+        // `proximity` decides whether objects touch, as in a world. The sign of the distance is not
+        // used, since the distance is rounded.
         let state = match N::proximity(object1, object2, self.clearance) {
             Proximity::Disjoint => return None,
             Proximity::Intersecting => State::Touch,
@@ -155,7 +159,7 @@ impl<N: Stage<D>, const D: usize> Measure<'_, N, D> {
         Some(Near { distance, state, objects })
     }
 
-    /// Returns the fields of a pair.
+    /// Returns the fields of a pair in the report.
     fn separation(&self, &Near { state, objects, .. }: &Near) -> Separation {
         let [object1, object2] = objects.map(|object| self.boxed.object(object));
         let names = [object1.data().clone(), object2.data().clone()];
@@ -168,7 +172,7 @@ impl<N: Stage<D>, const D: usize> Measure<'_, N, D> {
     }
 }
 
-/// The pairs of a report, whose fields are computed when they are written.
+/// The pairs of a report. Their fields are computed when they are written.
 struct Pairs<'a, N: Stage<D>, const D: usize> {
     measure: Measure<'a, N, D>,
     deepest: Vec<Near>,

@@ -1,4 +1,4 @@
-//! `impinge distance`: the distance of two objects, and the nearest points.
+//! `impinge distance`: computes the distance of two objects, and their nearest points.
 
 use core::fmt;
 
@@ -20,13 +20,13 @@ pub(crate) fn run(args: &DistanceArgs) -> Result<Outcome, CliError> {
     finish(&DistanceReport { subject: loaded.subject(), separation }, args.format)
 }
 
-/// Measures the distance of two objects.
+/// The task that measures the distance of two objects.
 struct Measure<'a> {
     loaded: &'a Loaded,
     args: &'a DistanceArgs,
 }
 
-/// The distance of two objects of a scene.
+/// The report of the distance of two objects.
 #[derive(Debug, Serialize)]
 struct DistanceReport {
     #[serde(flatten)]
@@ -47,7 +47,7 @@ impl Task for Measure<'_> {
         let margin = scalar("--margin", args.margin.0)?;
         Ok(match N::witness(object1, object2, N::INFINITY) {
             Some(found) => Separation::of_witness(names, &found, margin),
-            // Objects of finite positions without nearest points are half-spaces that overlap.
+            // Without a limit, only half-spaces with an unbounded overlap have no nearest points.
             None => Separation::unbounded(names, State::Touch),
         })
     }

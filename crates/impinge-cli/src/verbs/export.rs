@@ -1,4 +1,4 @@
-//! `impinge export`: a recording as one HTML file.
+//! `impinge export`: writes a recording as one HTML file.
 
 use core::fmt;
 
@@ -28,7 +28,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Outcome, CliError> {
             (loaded.name(), bytes)
         }
     };
-    // Packed here, though `export` would do so too, because the report has the number of bytes.
+    // `export` would also pack the recording, but the report needs the number of its packed bytes.
     let packed = impinge_record::pack(&bytes).map_err(in_file(&args.scene.scene))?;
     let page = impinge_html::export(&assets, &packed, args.title.as_ref().unwrap_or(&file))?;
     output::write(&args.output.path, page.as_bytes())?;
@@ -37,14 +37,14 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Outcome, CliError> {
     finish(&report, args.format)
 }
 
-/// The written file.
+/// The report of the written file.
 #[derive(Debug, Serialize)]
 struct ExportReport {
     file: String,
     output: String,
     /// The number of bytes of the page.
     bytes: usize,
-    /// The number of bytes of its packed recording, before the base64 encoding.
+    /// The number of bytes of the packed recording, before the base64 encoding.
     recording: usize,
 }
 

@@ -1,4 +1,4 @@
-//! `impinge inspect`: the content of a file, and the defects of its meshes.
+//! `impinge inspect`: describes the content of a file, and the defects of its meshes.
 
 use core::fmt;
 
@@ -22,13 +22,13 @@ pub(crate) fn run(args: &InspectArgs) -> Result<Outcome, CliError> {
     }
 }
 
-/// Reads the objects and meshes of a scene.
+/// The task that describes the objects and meshes of a scene.
 struct InspectScene<'a>(&'a Loaded);
 
-/// Reads the header and the steps of a recording.
+/// The task that reads the header and counts the steps of a recording.
 struct InspectLog<'a>(&'a Log);
 
-/// The content of a scene.
+/// The report of a scene.
 #[derive(Debug, Serialize)]
 struct SceneReport {
     #[serde(flatten)]
@@ -36,11 +36,11 @@ struct SceneReport {
     kind: &'static str,
     objects: Vec<ObjectFields>,
     meshes: Vec<MeshFields>,
-    /// Joints of robots at values outside their limits.
+    /// A sentence for each joint of a robot whose value is outside its limits.
     joints_beyond_limits: Vec<String>,
 }
 
-/// An object and its bounding box; null where it is unbounded.
+/// An object, and the lower and upper corner of its bounding box. Unbounded coordinates are null.
 #[derive(Debug, Serialize)]
 struct ObjectFields {
     name: String,
@@ -49,31 +49,31 @@ struct ObjectFields {
     high: Vec<Number>,
 }
 
-/// A part of a mesh file.
+/// The fields of a part of a mesh file.
 #[derive(Debug, Serialize)]
 struct MeshFields {
     file: String,
     name: String,
     vertices: usize,
     triangles: usize,
-    /// Connected components.
+    /// The number of connected components.
     pieces: usize,
-    /// Whether each edge has two triangles or more.
+    /// `true` if each edge has two triangles or more.
     closed: bool,
-    /// Whether it is closed, with two triangles at each edge that agree about the front.
+    /// `true` if each edge has two triangles, whose fronts are on the same side.
     solid: bool,
-    /// The volume of a solid; negative if it is inside out.
+    /// The volume of a solid, negative if its triangles point inwards; null for an open surface.
     volume: Option<f64>,
-    /// Edges with one triangle.
+    /// The number of edges with one triangle.
     boundary_edges: usize,
-    /// All counts as text.
+    /// All counts as a line of text.
     #[serde(skip)]
     numbers: String,
-    /// A line for each kind of defect, with the positions of the first ones.
+    /// A line for each kind of defect, with the indices of its first occurrences.
     problems: Vec<String>,
 }
 
-/// The content of a recording.
+/// The report of a recording.
 #[derive(Debug, Serialize)]
 struct LogReport {
     #[serde(flatten)]
@@ -81,7 +81,7 @@ struct LogReport {
     kind: &'static str,
     /// The version of the format.
     version: u32,
-    /// The program that wrote it, with its version.
+    /// The program that wrote the recording, with its version.
     writer: String,
     steps: usize,
 }
@@ -125,7 +125,7 @@ fn fields(file: &str, name: &str, report: &MeshReport) -> MeshFields {
         solid: report.is_solid(),
         volume: report.volume,
         boundary_edges: report.boundary_edges.count,
-        // The first line; the others are the defects.
+        // The first line contains the counts; the other lines are the defects.
         numbers: report.to_string().lines().next().unwrap_or_default().to_owned(),
         problems: report.problems(),
     }

@@ -1,4 +1,4 @@
-//! The verbs: each has a file with its `run` and its report.
+//! The verbs of the command. Each has a file with its function `run` and its report.
 
 mod bench;
 mod cast;

@@ -1,4 +1,4 @@
-//! `impinge ray`: the hits of a ray.
+//! `impinge ray`: finds the hits of a ray.
 
 use impinge::math::Point;
 use impinge::query::Ray;
@@ -19,7 +19,7 @@ pub(crate) fn run(args: &RayArgs) -> Result<Outcome, CliError> {
     finish(&run_in(loaded.kind, CastRay { loaded: &loaded, args })?, args.format)
 }
 
-/// Casts a ray into a scene.
+/// The task that casts a ray in a scene.
 struct CastRay<'a> {
     loaded: &'a Loaded,
     args: &'a RayArgs,
@@ -61,7 +61,7 @@ impl CastRay<'_> {
                 (end - origin, N::ONE)
             }
             (None, Some(along)) => (direction::<N, D>("--direction", along)?, N::INFINITY),
-            // The command line has one of them.
+            // The parser of the command line ensures that one of them is given.
             (None, None) => {
                 return Err(CliError::argument("--from", &args.from, "needs --to or --direction"));
             }

@@ -30,7 +30,7 @@ pub(crate) fn run(args: &RecordArgs) -> Result<Outcome, CliError> {
     finish(&report, args.format)
 }
 
-/// The written recording.
+/// The report of the written recording.
 #[derive(Debug, Serialize)]
 struct RecordReport {
     #[serde(flatten)]
@@ -40,7 +40,7 @@ struct RecordReport {
     /// The number of bytes of the recording, unpacked.
     bytes: usize,
     objects: usize,
-    /// The number of steps after which something touched.
+    /// The number of steps after which at least one pair touched.
     touched: usize,
 }
 

@@ -1,4 +1,4 @@
-//! `impinge render`: pictures of scenes and of steps of recordings.
+//! `impinge render`: draws scenes and steps of recordings.
 
 use std::path::Path;
 
@@ -33,17 +33,17 @@ pub(crate) fn run(args: &RenderArgs) -> Result<Outcome, CliError> {
     Ok(Outcome::Clear)
 }
 
-/// The kind of a picture: the format of its file.
+/// The format of a picture, which determines how shapes are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum PictureFormat {
-    /// Surfaces.
+    /// A raster image, which shows surfaces.
     Png,
-    /// Lines.
+    /// A vector image, which shows lines.
     Svg,
 }
 
 impl PictureFormat {
-    /// Returns the format by the extension of a file.
+    /// Returns the format for the extension of a file; an error for other extensions.
     fn of(path: &Path) -> Result<Self, CliError> {
         let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
         if extension == "png" {
@@ -57,14 +57,14 @@ impl PictureFormat {
     }
 }
 
-/// Draws a scene after one update.
+/// The task that draws a scene after its first update.
 struct DrawScene<'a> {
     loaded: &'a Loaded,
     args: &'a RenderArgs,
     format: PictureFormat,
 }
 
-/// Draws a recorded world after a step.
+/// The task that draws a recorded world after a step.
 struct DrawStep<'a> {
     log: &'a Log,
     args: &'a RenderArgs,
@@ -94,11 +94,11 @@ impl Task for DrawStep<'_> {
     }
 }
 
-/// The style of the drawing.
+/// The arguments, format and title of a picture.
 struct PictureStyle<'a> {
     args: &'a RenderArgs,
     format: PictureFormat,
-    /// The upper side of the picture, unless the user gives another.
+    /// The upward direction of the picture, unless the arguments contain another.
     up: Vector<f64>,
     title: String,
 }
@@ -111,7 +111,7 @@ impl PictureStyle<'_> {
     ) -> Result<Vec<u8>, CliError> {
         let camera = N::camera(self.camera()?);
         let mut drawing = world_drawing(world, options(&self.args.layers));
-        // The formats are different types, with only this trait in common.
+        // The two formats are different types with this trait in common.
         let mut draw = |picture: &mut dyn DebugRender<N, D>| drawing.world(world, picture);
         let size @ [width, _] = self.args.size.0;
         Ok(match self.format {
@@ -129,7 +129,7 @@ impl PictureStyle<'_> {
         })
     }
 
-    /// Returns the camera of a 3D scene.
+    /// Returns the camera for a 3D scene.
     fn camera(&self) -> Result<Camera, CliError> {
         let look = direction::<f64, 3>("--look", &self.args.look)?;
         let up = self.args.up.as_ref().map(|up| direction::<f64, 3>("--up", up)).transpose()?;
@@ -139,7 +139,8 @@ impl PictureStyle<'_> {
     }
 }
 
-/// Returns the styles of the drawn layers, in sizes for objects of length 1.
+/// Returns drawing options in which only these layers have a style. Sizes of styles are for objects
+/// of about length 1.
 fn options<N: Real>(layers: &[LayerName]) -> DebugOptions<N> {
     let (all, mut options) = (DebugOptions::all(), DebugOptions::none());
     for layer in layers {

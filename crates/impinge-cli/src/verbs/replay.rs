@@ -1,4 +1,4 @@
-//! `impinge replay`: the state at the steps of a recording.
+//! `impinge replay`: prints the state at the steps of a recording.
 
 use core::fmt;
 
@@ -28,21 +28,21 @@ pub(crate) fn run(args: &ReplayArgs) -> Result<Outcome, CliError> {
     finish(&ReplayReport { subject: log.subject(), steps, detail }, args.format)
 }
 
-/// Plays a recording through all steps.
+/// The task that plays a recording through all steps.
 struct PlayAll<'a>(&'a Log);
 
-/// Plays a recording to a step.
+/// The task that plays a recording to one step.
 struct PlayTo<'a> {
     log: &'a Log,
     step: usize,
 }
 
-/// The states of a recording.
+/// The report of the steps of a recording.
 #[derive(Debug, Serialize)]
 struct ReplayReport {
     #[serde(flatten)]
     subject: Subject,
-    /// All steps from 1 on, or that of `--step`.
+    /// All steps from 1 on, or the single step of `--step`.
     steps: Vec<StepSummary>,
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     detail: Option<StepDetail>,
@@ -55,12 +55,13 @@ struct StepDetail {
     pairs: Vec<PairSummary>,
 }
 
-/// The position of an object.
+/// The position of an object in the world frame.
 #[derive(Debug, Serialize)]
 struct Position {
     name: String,
     translation: Vec<Number>,
-    /// Cosine and sine in 2D, the components i, j, k, w of a unit quaternion in 3D.
+    /// The cosine and sine of the angle in 2D, the components i, j, k, w of a unit quaternion in
+    /// 3D.
     rotation: Vec<Number>,
 }
 
@@ -88,11 +89,11 @@ impl Task for PlayTo<'_> {
     }
 }
 
-/// Returns all objects and near pairs of a world, in order of the handles.
+/// Returns the positions of all objects of a world, and the pairs that touch or are near.
 fn detail<N: Stage<D>, const D: usize>(world: &CollisionWorld<N, D, Label>) -> StepDetail {
     let objects = world.collision_objects();
     let positions = objects.map(|object| {
-        // The translation comes first.
+        // The first `D` numbers are the translation.
         let mut numbers = N::isometry_numbers(object.position()).into_iter().map(Number::new);
         let translation = numbers.by_ref().take(D).collect();
         Position { name: name_of(object), translation, rotation: numbers.collect() }
@@ -103,7 +104,7 @@ fn detail<N: Stage<D>, const D: usize>(world: &CollisionWorld<N, D, Label>) -> S
 impl fmt::Display for ReplayReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.subject)?;
-        // Each name is right-aligned with the numbers of its column.
+        // Each heading is right-aligned with the numbers of its column.
         writeln!(
             f,
             "{FAINT}  step  objects  touching   near  contacts  started  stopped{FAINT:#}"

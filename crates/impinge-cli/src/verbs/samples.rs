@@ -1,4 +1,4 @@
-//! `impinge samples`: the samples as a list, or as a folder for browsers.
+//! `impinge samples`: lists the samples, or writes them to a folder for browsers.
 
 use core::fmt;
 use std::fs;
@@ -29,15 +29,15 @@ pub(crate) fn run(args: &SamplesArgs) -> Result<Outcome, CliError> {
     finish(&SamplesReport { output, samples }, args.format)
 }
 
-/// All samples.
+/// The report of all samples.
 #[derive(Debug, Serialize)]
 struct SamplesReport {
-    /// The written folder, if there is one.
+    /// The folder that was written; `None` if the samples were only listed.
     output: Option<String>,
     samples: Vec<Listed>,
 }
 
-/// A sample of the list.
+/// The fields of a sample in the report.
 #[derive(Debug, Serialize)]
 struct Listed {
     name: &'static str,
@@ -68,13 +68,15 @@ impl fmt::Display for SamplesReport {
 
 impl Report for SamplesReport {}
 
-/// The number of steps before the thumbnail of a sample: most have contacts by then.
+/// The number of steps before the thumbnail of a sample is drawn. Most samples have contacts by
+/// then.
 const STEPS: usize = 45;
 
-/// Contacts of more pairs than this would hide the objects of a thumbnail.
+/// The largest number of contact pairs for which a thumbnail shows contacts. More contacts would
+/// hide the objects.
 const MAX_PAIRS: usize = 1000;
 
-/// Writes a thumbnail of each sample.
+/// Writes a thumbnail of each sample to the subfolder `thumbnails`.
 fn thumbnails(folder: &Path, size: Size) -> Result<(), CliError> {
     let folder = folder.join("thumbnails");
     fs::create_dir_all(&folder).map_err(|error| CliError::Write { path: folder.clone(), error })?;
@@ -90,7 +92,7 @@ fn thumbnails(folder: &Path, size: Size) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Returns a picture of a sample after some steps.
+/// Returns a picture of a sample after [`STEPS`] steps, as the bytes of a PNG file.
 fn thumbnail<const D: usize>(
     entry: &Entry,
     sample: Box<dyn Sample<D>>,

@@ -1,4 +1,4 @@
-//! `impinge validate`: whether recordings replay to the same bits.
+//! `impinge validate`: checks that recordings replay to the same bits.
 
 use core::fmt;
 
@@ -28,10 +28,10 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Outcome, CliError> {
     finish(&ValidateReport { recordings }, args.format)
 }
 
-/// Replays a recording and compares all hashes.
+/// The task that replays a recording and compares all hashes.
 struct CompareHashes<'a>(&'a Log);
 
-/// Whether recordings replay to the same bits.
+/// The report of all validated recordings.
 #[derive(Debug, Serialize)]
 struct ValidateReport {
     recordings: Vec<Validated>,
@@ -42,7 +42,7 @@ struct ValidateReport {
 struct Validated {
     file: String,
     steps: usize,
-    /// Whether there is no difference.
+    /// `true` if the recording replays to the same bits.
     same: bool,
     difference: Option<FirstDifference>,
 }
@@ -50,11 +50,11 @@ struct Validated {
 /// The first difference of a replay.
 #[derive(Debug, Serialize)]
 struct FirstDifference {
-    /// The number of updates before the call that differs.
+    /// The number of updates before the first call whose results differ.
     step: usize,
-    /// The offset of its record.
+    /// The offset of the record of this call in the recording.
     byte: usize,
-    /// The object, if an object differs.
+    /// The name of the object that differs; `None` if the difference is not in an object.
     object: Option<String>,
     /// The differing field of the object, or of the step.
     field: &'static str,
@@ -68,8 +68,8 @@ impl Task for CompareHashes<'_> {
         let failed = in_file(&log.path);
         let registry = Registry::<N, D, Label>::new();
         let found = validate(&log.bytes, &registry).map_err(&failed)?;
-        // A second replay counts the steps, and has the world in which a differing object has its
-        // name: validation ends at the end of the recording.
+        // `validate` returns no world. A second replay counts the steps, and provides the world
+        // from which the name of a differing object is read.
         let replay = Replay::<N, D, Label>::open(log.bytes.as_slice(), &registry);
         let mut replay = replay.map_err(&failed)?;
         let steps = replay.len();
@@ -84,7 +84,7 @@ impl Task for CompareHashes<'_> {
     }
 }
 
-/// Describes a difference, with the name that its object has in the world after the step.
+/// Describes a difference. The name of its object is read from `world`, the world after the step.
 fn described<N: Stage<D>, const D: usize>(
     found: Divergence,
     world: &CollisionWorld<N, D, Label>,
@@ -103,7 +103,7 @@ fn described<N: Stage<D>, const D: usize>(
     FirstDifference { step: found.step, byte: found.offset, object, field }
 }
 
-/// Returns the name of the field that a hash of an object covers.
+/// Returns the name of the fields of an object that a hash covers.
 const fn field_name(field: ObjectField) -> &'static str {
     match field {
         ObjectField::Description => "position, groups or query type",

@@ -1,4 +1,4 @@
-//! `impinge view`: a running scene, or a recording, in a browser.
+//! `impinge view`: shows a running scene, or a recording, in a browser.
 
 use std::thread;
 use std::time::{Duration, Instant};
@@ -15,7 +15,7 @@ use crate::space::{Stage, Task, run_in};
 
 /// Runs the verb.
 pub(crate) fn run(args: &ViewArgs) -> Result<Outcome, CliError> {
-    // The address is printed only if there is something to show.
+    // The address is printed only after the input was read.
     match Input::open(&args.scene)? {
         Input::Recording(log) => {
             let bytes = log.into_page_bytes()?;
@@ -39,14 +39,14 @@ fn start(args: &ViewArgs) -> Result<Live, CliError> {
     Ok(live)
 }
 
-/// Serves until the user interrupts the command.
+/// Waits until the user interrupts the command, while other threads serve the page.
 fn wait_for_interrupt() -> ! {
     loop {
         thread::park();
     }
 }
 
-/// Moves the objects of a scene in real time.
+/// The task that moves the objects of a scene in real time, and sends the recording to the page.
 struct Show<'a> {
     loaded: &'a Loaded,
     args: &'a ViewArgs,
@@ -66,7 +66,8 @@ impl Task for Show<'_> {
         for _ in 0..args.steps.unwrap_or(u64::MAX) {
             loaded.step(&mut world, seconds)?;
             live.send(&world.recorder_mut().take_bytes());
-            // A step that takes longer than its pause delays the next ones, which do not catch up.
+            // If a step takes longer than `pause`, the steps after it are delayed and do not catch
+            // up.
             due = (due + pause).max(Instant::now());
             thread::sleep(due.saturating_duration_since(Instant::now()));
         }

@@ -1,9 +1,9 @@
-//! Invalid input of each kind: exit code 2, nothing on standard output, an error that names file and
-//! value.
+//! Tests invalid input of each kind: the exit code is 2, standard output is empty, and the error
+//! names the file and the value.
 
 use crate::support::Desk;
 
-/// Asserts that a command fails with these words in its error.
+/// Asserts that a command fails, and that its error contains these words.
 fn refused(desk: &Desk, arguments: &str, words: &[&str]) {
     let ran = desk.run(arguments);
     assert_eq!((ran.code, ran.out.as_str()), (2, ""), "{arguments}: {ran:?}");

@@ -6,7 +6,7 @@ use snapbox::assert_data_eq;
 
 use crate::support::{Desk, Ran, root};
 
-/// Returns the verbs, as `impinge --help` lists them.
+/// Returns the verbs that `impinge --help` lists.
 fn verbs(desk: &Desk) -> Vec<String> {
     let help = desk.run("--help").out;
     let list = help.split("Commands:\n").nth(1).expect("a list").split("\n\n").next();
@@ -35,7 +35,7 @@ fn every_verb_has_examples_that_run() {
         let help = desk.run(&format!("{verb} --help"));
         assert_eq!((help.code, help.err.as_str()), (0, ""), "{verb}");
         let lines = help.out.lines().filter_map(|line| line.strip_prefix("  impinge "));
-        // A description follows after two spaces.
+        // Two spaces separate an example from its description.
         let commands = lines.filter_map(|line| line.split("  ").next());
         let mut count = 0;
         for command in commands {

@@ -1,4 +1,5 @@
-//! Files that request much memory, name foreign files, or contain control characters.
+//! Tests files that request much memory, name files outside their folder, or contain control
+//! characters.
 
 use std::fs;
 use std::process::Command;
@@ -7,14 +8,14 @@ use serde_json::json;
 
 use crate::support::{Desk, Ran};
 
-/// Returns a scene of `count` balls at one position.
+/// Returns a scene of `count` balls at the same position.
 fn coincident(count: usize) -> String {
     let repeat = json!({"count": [count, 1, 1], "spacing": [0, 0, 0]});
     let ball = json!({"name": "b", "shape": {"ball": {"radius": 1}}, "repeat": repeat});
     json!({"dimension": 3, "objects": [ball]}).to_string()
 }
 
-/// Asserts that the output has no control characters but line feeds, and is not long.
+/// Asserts that the output contains no control characters except line feeds, and is short.
 fn assert_printable(ran: &Ran) {
     for text in [&ran.out, &ran.err] {
         let obeyed =
@@ -35,7 +36,8 @@ fn pairs_are_counted_and_not_kept() {
     assert_eq!(report["pairs"][2]["second"], "b[100,0,0]", "in their order");
     let all = desk.run("check many.json --all");
     assert_eq!(all.out.lines().count(), 2 * 11_175 + 1);
-    // Verbs that keep pairs have a limit; `check` needs none unless it prints all of them.
+    // Verbs that store pairs have a limit. `check` stores only the printed pairs, so that its limit
+    // matters with `--all` only.
     for verb in [
         "check many.json --all",
         "record many.json -o many.implog --steps 1",
@@ -72,8 +74,8 @@ fn objects_that_meet_later_have_the_limit_too() {
     assert_eq!(desk.run(&format!("{record} 1225")).code, 0);
 }
 
-/// The address space is limited to this many kilobytes: the command itself takes a tenth, a million pairs all together
-/// twice as much.
+/// The address space is limited to 300 000 kilobytes. The command alone takes about a tenth of
+/// this; storing all million pairs would take about twice as much.
 #[cfg(unix)]
 #[test]
 fn the_memory_of_a_check_does_not_grow_with_the_pairs() {

@@ -1,4 +1,4 @@
-//! A mesh file with 10 000 parts.
+//! Tests a mesh file with 10 000 parts.
 
 use core::fmt::Write as _;
 
@@ -6,9 +6,10 @@ use serde_json::json;
 
 use crate::support::Desk;
 
-/// Parts along each side of the square.
+/// The number of parts along each side of the square.
 const SIDE: usize = 100;
-/// The sides of a cube: the first corner of a side and its two directions, counter-clockwise from outside.
+/// The sides of a cube: the first corner of each side and its two directions, counter-clockwise
+/// seen from outside.
 const SIDES: [[[usize; 3]; 3]; 6] = [
     [[0, 0, 0], [0, 1, 0], [1, 0, 0]],
     [[0, 0, 1], [1, 0, 0], [0, 1, 0]],
@@ -18,7 +19,8 @@ const SIDES: [[[usize; 3]; 3]; 6] = [
     [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
 ];
 
-/// Writes a unit cube of 12 triangles with its lowest corner at a point; returns the number of its vertices.
+/// Writes a unit cube of 12 triangles with its lowest corner at `at`. `first` is the index of its
+/// first vertex. Returns the number of vertices.
 fn write_cube(text: &mut String, at: [f64; 3], first: usize) -> usize {
     let mut vertices = 0;
     for [start, along, up] in SIDES {
@@ -35,7 +37,7 @@ fn write_cube(text: &mut String, at: [f64; 3], first: usize) -> usize {
     vertices
 }
 
-/// A square of cubes, 1/128 apart along x and 1/2 along z.
+/// Returns an OBJ file with a square of unit cubes, whose gaps are 1/128 along x and 1/2 along z.
 fn parts() -> String {
     let (mut text, mut first) = (String::new(), 1);
     for part in 0..SIDE * SIDE {

@@ -1,4 +1,4 @@
-//! Runs the command as a user does, in a folder with the scenes of `scenes`.
+//! Tests that run the command as a user does, in a folder with the scenes of `scenes`.
 
 mod bad_input;
 mod docs;

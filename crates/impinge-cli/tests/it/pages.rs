@@ -1,4 +1,4 @@
-//! `export`, `view` and `samples`.
+//! Tests of `export`, `view` and `samples`.
 
 use std::fs;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
@@ -12,8 +12,8 @@ use impinge_view::Image;
 
 use crate::support::Desk;
 
-/// Returns the number of steps of a recording of a 3D world in `f64`, all of which replay to the same
-/// bits.
+/// Returns the number of steps of a recording of a 3D world in `f64`, after checking that all of
+/// them replay to the same bits.
 fn steps(bytes: Vec<u8>) -> usize {
     let replay = Replay::<f64, 3, Vec<u8>>::open(bytes, &Registry::new());
     let mut replay = replay.expect("a recording");
@@ -23,7 +23,7 @@ fn steps(bytes: Vec<u8>) -> usize {
     last
 }
 
-/// Returns the recording in a page.
+/// Returns the unpacked recording of a page.
 fn recording(page: &str) -> Vec<u8> {
     let packed = STANDARD.decode(page.lines().nth(2).expect("a line")).expect("base64");
     unpack(&packed).expect("a packed recording")
@@ -49,15 +49,15 @@ fn a_page_has_the_recording_of_a_scene() {
     assert_eq!(steps(recording(&page)), 12);
 }
 
-/// Returns a desk with a recording of 30 updates, the last of which is incomplete, and the bytes of
-/// the others.
+/// Creates a folder with a recording of 30 updates, the last of which is incomplete. Also returns
+/// the bytes of the whole records.
 fn cut() -> (Desk, Vec<u8>) {
     let desk = Desk::recorded();
     let mut bytes = fs::read(desk.path("balls.implog")).expect("a recording");
     let end = Replay::<f64, 3, Vec<u8>>::salvage(&bytes[..bytes.len() - 20], &Registry::new());
     let end = end.expect("a header");
     assert_eq!(end.len(), 29, "an update is lost");
-    // An incomplete record follows.
+    // A part of the last record follows the whole records.
     bytes.truncate(end.bytes().len() + 3);
     desk.write("cut.implog", &bytes);
     (desk, end.bytes().to_vec())
@@ -70,7 +70,7 @@ fn a_page_has_what_is_left_of_a_recording() {
     assert_eq!(ran.code, 0, "{ran:?}");
     assert!(ran.err.contains("29 steps are kept, 3 bytes left out"), "{ran:?}");
     let page = fs::read_to_string(desk.path("cut.html")).expect("a page");
-    // Packing omits the hashes of objects.
+    // Packing omits the hashes of objects, so that unpacked recordings are compared.
     let packed = impinge_record::pack(&kept).expect("whole records");
     assert!(recording(&page) == unpack(&packed).expect("just packed"), "whole records alone");
 }
@@ -82,7 +82,8 @@ fn a_browser_sees_what_is_left_of_a_recording() {
     command.args(["view", "cut.implog"]).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().expect("the command");
     let mut stream = follow(child.stdout.take().expect("a pipe"));
-    // The stream continues until the command ends: read the head and the first chunk.
+    // The stream continues until the command ends, so that only the head and the first chunk are
+    // read.
     let mut answer = Vec::new();
     let is_sent = |answer: &[u8]| answer.windows(kept.len()).any(|bytes| bytes == kept);
     while !is_sent(&answer) {
@@ -134,7 +135,7 @@ fn a_command_without_a_page_says_how_to_get_one() {
     }
 }
 
-/// Returns the body of a response without the lengths of its chunks.
+/// Returns the body of a response, without the lengths of its chunks.
 fn body(answer: &[u8]) -> Vec<u8> {
     let end = answer.windows(4).position(|bytes| bytes == b"\r\n\r\n").expect("an end of the head");
     let (mut rest, mut body) = (&answer[end + 4..], Vec::new());
@@ -150,7 +151,8 @@ fn body(answer: &[u8]) -> Vec<u8> {
     }
 }
 
-/// Requests the recording at the address that a command prints.
+/// Requests the recording at the address that the command prints, and returns the stream of the
+/// response.
 fn follow(out: ChildStdout) -> TcpStream {
     let mut line = String::new();
     BufReader::new(out).read_line(&mut line).expect("the address");

@@ -1,10 +1,11 @@
-//! `check` and `distance` on scenes with distances in closed form.
+//! Tests of `check` and `distance` on scenes with distances in closed form.
 
 use serde_json::{Value, json};
 
 use crate::support::{Desk, is_close, numbers};
 
-/// Two boxes that overlap by 1/8 along x, or balls 1/2 apart, in any dimension and scalar.
+/// Returns a scene of two equal boxes or balls of half width 1. The second is at `x` on the first
+/// axis.
 fn scene(dimension: usize, scalar: &str, shape: &str, x: f64) -> String {
     let extents = vec![1.0; dimension];
     let shape = match shape {
@@ -111,7 +112,7 @@ fn groups_are_respected_and_the_deepest_is_first() {
     let pairs = &report["pairs"];
     assert!(is_close(&pairs[0]["depth"], 0.1), "{report}");
     assert!(is_close(&pairs[1]["distance"], 0.25), "{report}");
-    // Groups do not affect a distance.
+    // `distance` ignores groups.
     let measured = desk.json("distance boxes.json box ghost", 1);
     assert!(is_close(&measured["depth"], 0.75), "{measured}");
 }

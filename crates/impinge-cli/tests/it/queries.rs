@@ -1,4 +1,4 @@
-//! `cast` and `ray`.
+//! Tests of `cast` and `ray`.
 
 use serde_json::json;
 
@@ -60,12 +60,12 @@ fn boxes_and_capsules_are_cast_in_2d_and_3d() {
         let report = desk.json(arguments, 1);
         report["hits"][0]["moved"].as_f64().expect("a number")
     };
-    // The disc is between y = 2.5 and 3.5 around x = 0; the capsule is upright, 1.5 high in all.
+    // The disc covers y from 2.5 to 3.5 at x = 0. The capsule is upright, with a height of 1.5.
     let capsule = moved("cast squares.json --shape capsule:0.5,0.25 --from 0,6 --to 0,0");
     assert!((capsule - 1.75).abs() < 1e-5, "{capsule}");
     let square = moved("cast squares.json --shape box:0.5,0.5 --from 4,0 --to 0,0");
     assert!((square - 0.625).abs() < 1e-5, "from the square that ends at 2.875: {square}");
-    // The lamp ends at 2.15; the floor, box and ghost are below.
+    // The top of the lamp is at 2.15. The floor, box and ghost are below it.
     let all = "cast boxes.json --shape box:1,1,1 --from 0,9,0 --to 0,0,0 --all";
     let report = desk.json(all, 1);
     assert_eq!(report["hits"].as_array().map(Vec::len), Some(4), "{report}");

@@ -1,4 +1,4 @@
-//! `record`, `replay` and `validate`.
+//! Tests of `record`, `replay` and `validate`.
 
 use std::fs;
 
@@ -29,7 +29,7 @@ fn balls_that_meet_after_a_quarter_of_a_second() {
     let report = desk.json("replay balls.implog", 1);
     let steps = report["steps"].as_array().expect("a list");
     assert_eq!(steps.len(), 30);
-    // At step 15 they touch up to rounding.
+    // At step 15 the distance is zero up to rounding.
     assert!(steps[..14].iter().all(|step| step["touching"] == 0), "{report}");
     assert!(steps[15..].iter().all(|step| step["touching"] == 1), "{report}");
     let started: i64 = steps.iter().filter_map(|step| step["started"].as_i64()).sum();
@@ -71,7 +71,7 @@ fn what_was_recorded_replays_to_the_same_bits() {
 fn a_changed_number_is_found_with_its_step_and_object() {
     let desk = Desk::recorded();
     let mut bytes = fs::read(desk.path("balls.implog")).expect("a recording");
-    // The position of the right ball, which does not move, as the library writes it.
+    // The position of the right ball, which does not move, in the encoding of the recording.
     let at = bytes.windows(8).position(|window| window == 1.25_f64.to_le_bytes());
     let at = at.expect("it is there");
     bytes[at..at + 8].copy_from_slice(&1.5_f64.to_le_bytes());
@@ -138,7 +138,7 @@ fn what_follows_damage_is_left_out() {
     assert!(ran.code == 2 && ran.err.contains("there is no step 29"), "{ran:?}");
 }
 
-/// A shape of a user type, which a recording has by name.
+/// A shape of a user type, for which a recording contains a name.
 #[derive(Debug)]
 struct Pebble(Ball<f64>);
 
@@ -152,7 +152,7 @@ impl Shape<f64, 3> for Pebble {
     }
 }
 
-/// A recording of 3 updates with a pebble.
+/// Returns a recording of 3 updates with a pebble.
 fn of_own_shape() -> Vec<u8> {
     let pebble = ShapeHandle::new(Pebble(Ball::new(1.0)));
     let registry = Registry::<f64, 3, String>::new().with_shape("pebble", pebble.clone());
@@ -176,7 +176,7 @@ fn an_unknown_shape_is_no_damage() {
             "{ran:?}"
         );
     }
-    // The page has a stand-in for it.
+    // The page shows another shape in its place.
     let ran = desk.run("export own.implog -o own.html");
     assert_eq!((ran.code, ran.err.as_str()), (0, ""));
 }
@@ -196,7 +196,7 @@ fn key_frames_are_written_every_so_many_updates() {
     assert_eq!(size("--key-frames 30"), plain, "the first one comes after 30 updates");
     let (one, two) = (size("--key-frames 15"), size("--key-frames 10"));
     assert!(plain < one && one < two, "{plain}, {one}, {two}");
-    // Each has the data of both objects.
+    // The object and each key frame contain the name of the left ball once.
     let bytes = fs::read(desk.path("frames.implog")).expect("a recording");
     let names = bytes.windows(4).filter(|window| window == b"left").count();
     assert_eq!(names, 3, "added once, and in key frames after 10 and 20 updates");

@@ -1,4 +1,4 @@
-//! A folder for runs of the command, and their output.
+//! Runs the command in a temporary folder, and captures its output.
 
 use std::fs;
 use std::io::Write as _;
@@ -8,10 +8,11 @@ use std::process::{Command, Stdio};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A folder with a copy of the scenes.
+/// A temporary folder with a copy of the scenes.
 pub(crate) struct Desk(TempDir);
 
-/// A page with one line for each part; the command has the real one with the feature `page` only.
+/// A page with one line for each of its parts. The real page is part of the command only with the
+/// feature `page`.
 const PAGE: [(&str, &str); 4] = [
     ("page.html", "{{TITLE}}\n{{SCENE}}\n{{RECORDING}}\n{{STYLE}}\n{{SCRIPT}}\n{{WASM}}\n"),
     ("page.css", "style"),
@@ -43,10 +44,10 @@ impl Desk {
         desk
     }
 
-    /// Creates the recording `balls.implog` of 30 steps of `balls.json`.
+    /// Creates a folder that also contains `balls.implog`, a recording of 30 steps of `balls.json`.
     ///
-    /// The left ball moves by 2 per second; the gap of 0.5 is closed after a quarter of a second: 15
-    /// steps.
+    /// The left ball moves by 2 per second, so that the gap of 0.5 is closed after a quarter of a
+    /// second, or 15 steps.
     pub(crate) fn recorded() -> Self {
         let desk = Self::new();
         let ran = desk.run("record balls.json -o balls.implog --steps 30");
@@ -67,12 +68,12 @@ impl Desk {
         self.run_with(arguments, b"")
     }
 
-    /// Runs it with bytes on standard input.
+    /// Runs `impinge` with arguments separated by spaces, and with `input` on standard input.
     pub(crate) fn run_with(&self, arguments: &str, input: &[u8]) -> Ran {
         let mut command = self.command();
         let pipes = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = pipes.args(arguments.split_whitespace()).spawn().expect("the command");
-        // The command may end before it has read everything.
+        // The command may end before it has read all of its input.
         let _ = child.stdin.take().expect("a pipe").write_all(input);
         let output = child.wait_with_output().expect("an end");
         let text = |bytes| String::from_utf8(bytes).expect("text");
@@ -80,7 +81,7 @@ impl Desk {
         Ran { code, out: text(output.stdout), err: text(output.stderr) }
     }
 
-    /// The command in this folder, before its arguments.
+    /// Returns the command in this folder, without arguments.
     pub(crate) fn command(&self) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_impinge"));
         command.current_dir(self.0.path()).env_remove("CLICOLOR_FORCE");
@@ -88,7 +89,7 @@ impl Desk {
         command
     }
 
-    /// Runs it with `--json` and asserts the exit code.
+    /// Runs `impinge` with `--json`, asserts the exit code, and returns the report.
     pub(crate) fn json(&self, arguments: &str, code: i32) -> Value {
         let ran = self.run(&format!("{arguments} --json"));
         assert_eq!(ran.code, code, "{arguments}: {ran:?}");
@@ -97,7 +98,7 @@ impl Desk {
     }
 }
 
-/// The folder of the crate.
+/// Returns the folder of the crate.
 pub(crate) fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
@@ -112,7 +113,8 @@ pub(crate) fn numbers(value: &Value) -> Vec<f64> {
     list.iter().map(|number| number.as_f64().expect("a number")).collect()
 }
 
-/// Whether a number equals another up to a few units in the last place of an `f64` of size 1.
+/// Returns `true` if a number equals `expected` up to 1e-14, a few units in the last place of an
+/// `f64` of size 1.
 pub(crate) fn is_close(value: &Value, expected: f64) -> bool {
     value.as_f64().is_some_and(|value| (value - expected).abs() < 1e-14)
 }

@@ -244,7 +244,7 @@ impl<'a> Collected<'a> {
     }
 }
 
-/// A grid of objects: the count along each axis, and the distance between neighbors.
+/// A grid of objects: the count along each axis, and the distance between neighbours.
 struct Grid {
     count: Vec<usize>,
     spacing: Vector3<f64>,

@@ -1,4 +1,4 @@
-//! The samples, one per file, by subject.
+//! The samples by subject, one in each file.
 
 pub(crate) mod motion;
 pub(crate) mod pairs;

@@ -1,4 +1,4 @@
-//! Checks the statements of the texts of samples about worlds and pairs of shapes.
+//! Tests the statements in the descriptions of samples about worlds and pairs of shapes.
 
 use impinge_samples::ControlValue;
 
@@ -22,7 +22,7 @@ fn every_pair_of_kinds_has_contacts() {
     every_pair_touches::<3>();
 }
 
-/// Returns the largest deviation of a normal from the vertical on the path over the floor and back.
+/// Returns the maximum of 1 − |y| over all normals on the path over the floor and back.
 fn greatest_lean<const D: usize>(contacts: &str) -> f32
 where
     f32: Stage<D>,
@@ -78,7 +78,8 @@ fn contacts_are_the_same_at_every_size() {
     scales_exactly::<3>();
 }
 
-/// Returns whether contacts pushed the ball up, and down, while it rose and fell.
+/// Returns whether contacts pushed the ball up, and whether they pushed it down, while it rose and
+/// descended.
 fn pushes<const D: usize>(is_one_sided: bool) -> [bool; 2]
 where
     f32: Stage<D>,

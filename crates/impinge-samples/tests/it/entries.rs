@@ -1,4 +1,4 @@
-//! Properties of every sample.
+//! Tests properties that every sample must have.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ use impinge_samples::{
 
 use super::support::{Stage, drawn};
 
-/// The sample of ten thousand boxes takes fewer steps.
+/// Returns the number of tested steps, which is small for the sample of ten thousand boxes.
 fn steps(entry: &Entry) -> usize {
     if entry.name == "boxes3" { 4 } else { 120 }
 }
@@ -32,7 +32,7 @@ where
     done.unwrap_or_else(|error| panic!("{} at step {}: {error}", entry.name, running.step()));
 }
 
-/// All positions and contacts are finite.
+/// Asserts that all positions, depths and readouts are finite.
 fn check_finite<const D: usize>(entry: &Entry, running: &Running<D>)
 where
     f32: Stage<D>,
@@ -52,7 +52,7 @@ where
     assert_eq!(drawn(running).broken, 0, "{} draws what is finite", entry.name);
 }
 
-/// Whether the claimed property of the sample is visible now.
+/// Returns `true` if the property that the entry claims is visible now.
 fn is_shown<const D: usize>(entry: &Entry, running: &Running<D>) -> bool
 where
     f32: Stage<D>,
@@ -82,7 +82,7 @@ where
     }
     check_finite(entry, &running);
     assert!(shown, "{} shows {:?}", entry.name, entry.shows);
-    // A restart is in the same recording.
+    // The recording continues after a restart.
     running.restart().expect("it starts again");
     advance(entry, &mut running);
     assert_eq!(running.step(), 1, "{} counts its steps anew", entry.name);
@@ -120,8 +120,8 @@ fn every_sample_is_the_same_on_every_run() {
     }
 }
 
-/// Returns the values to be tested: of a number the minimum, the middle and the maximum, of a
-/// choice all words.
+/// Returns the values to test: the minimum, the middle and the maximum of a number, and all words
+/// of a choice.
 fn values(control: &Control) -> Vec<ControlValue> {
     match control.kind {
         ControlKind::Number { min, max, .. } => {
@@ -147,7 +147,7 @@ where
             advance(entry, &mut running);
             check_finite(entry, &running);
         }
-        // Resets the control, so that each is tested alone.
+        // The initial value is restored, so that each control is tested alone.
         running.set_control(control.name, &first_value(&control)).expect("its own value");
     }
     refuse_controls(&mut running);

@@ -1,4 +1,4 @@
-//! All samples run, are recorded, and show what they claim to show.
+//! Tests that all samples run, are recorded, and show what their descriptions claim.
 
 mod claims;
 mod entries;

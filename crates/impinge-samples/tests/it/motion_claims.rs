@@ -1,4 +1,4 @@
-//! Checks the statements of the texts of samples about moving objects.
+//! Tests the statements in the descriptions of samples about moving objects.
 
 use std::collections::BTreeSet;
 
@@ -115,7 +115,8 @@ fn bullets_never_pass_walls() {
     never_pass::<3>();
 }
 
-/// Returns the overlapping pairs of objects, except links that share a joint, by testing all pairs.
+/// Returns the pairs of objects that overlap, found by testing all pairs. Links with a common joint
+/// and pairs of obstacles are excluded.
 fn overlaps<const D: usize>(objects: &[&Object<D>]) -> BTreeSet<String>
 where
     f32: Stage<D>,
@@ -212,14 +213,15 @@ fn the_gripper_stops_at_contact() {
     }
 }
 
-/// Returns the numbers of boxes, balls and capsules that entered their sensors.
+/// Returns the numbers of boxes, balls and capsules that entered their sensors, after one round of
+/// the belt and after two.
 fn entered<const D: usize>() -> [[i32; 3]; 2]
 where
     f32: Stage<D>,
 {
     let mut belt = running::<D>("conveyor");
     [1, 2].map(|_| {
-        // Fourteen lengths at two per second: once around.
+        // The belt of length 14 moves by 2 per second: one round takes 420 steps.
         (0..420).for_each(|_| belt.advance().expect("it goes on"));
         ["Boxes that entered", "Balls that entered", "Capsules that entered"]
             .map(|label| readout(&belt, label).parse().expect("a count"))

@@ -1,4 +1,4 @@
-//! Samples by name, and a renderer that counts.
+//! Helpers of the tests: samples by name, and a renderer that counts lines.
 
 use impinge::debug_render::{Color, DebugDrawing, DebugRender};
 use impinge::math::na::{self, Rotation};
@@ -9,7 +9,7 @@ use impinge_samples::{ControlValue, Entry, Make, Running, Sample, World, entries
 
 pub(crate) type Object<const D: usize> = CollisionObject<f32, D, String>;
 
-/// Makes the samples of one dimension.
+/// The scalar `f32`, with a constructor of the samples of one dimension.
 pub(crate) trait Stage<const D: usize>: Recordable<D> {
     fn make(entry: &Entry) -> Option<Box<dyn Sample<D>>>;
 }
@@ -51,7 +51,7 @@ where
     running.set_control(name, &ControlValue::Choice(word.to_owned())).expect("a known word");
 }
 
-/// Returns the value of a readout.
+/// Returns the value of the readout with this label.
 pub(crate) fn readout<const D: usize>(running: &Running<D>, label: &str) -> String
 where
     f32: Recordable<D>,
@@ -61,7 +61,7 @@ where
     found.unwrap_or_else(|| panic!("a readout {label:?}")).value
 }
 
-/// Returns the object of a label.
+/// Returns the object with this label.
 pub(crate) fn labelled<'a, const D: usize>(world: &'a World<D>, label: &str) -> &'a Object<D>
 where
     f32: Recordable<D>,
@@ -70,7 +70,7 @@ where
     objects.find(|object| object.data() == label).expect("an object of this label")
 }
 
-/// Returns the position of an object as the type of queries about two shapes.
+/// Returns the position of an object as the isometry type of queries about two shapes.
 pub(crate) fn position<const D: usize>(object: &Object<D>) -> na::Isometry<f32, Rotation<f32, D>, D>
 where
     f32: Space<D>,
@@ -80,7 +80,7 @@ where
     na::Isometry::from_parts(pose.translation.into(), rotation)
 }
 
-/// Counts lines, and lines that are not finite.
+/// A renderer that counts lines, and the lines whose ends are not finite.
 #[derive(Debug, Default)]
 pub(crate) struct Count {
     pub(crate) lines: usize,
@@ -98,7 +98,7 @@ where
     }
 }
 
-/// Returns the counts of a sample's drawing beside its objects.
+/// Draws the additions of a sample to its objects, and returns the counts.
 pub(crate) fn drawn<const D: usize>(running: &Running<D>) -> Count
 where
     f32: Recordable<D>,

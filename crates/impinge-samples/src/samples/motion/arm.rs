@@ -6,20 +6,20 @@ use impinge_record::Registry;
 
 use crate::prelude::*;
 
-/// The number of links. Each is a capsule, whose axis has length 1 from joint to joint.
+/// The number of links. Each link is a capsule whose joints are at distance 1.
 const LINKS: usize = 5;
 const RADIUS: f32 = 0.15;
 
 /// The arm, and its current collisions.
 #[derive(Debug, Default)]
 pub(crate) struct Arm<const D: usize> {
-    /// The links, from the base.
+    /// The links in the order from the base.
     links: Vec<CollisionObjectHandle>,
-    /// The parameter of the motion, from which the angles of all joints follow.
+    /// The parameter of the motion, on which the angles of all joints depend.
     phase: f32,
-    /// Whether the phase decreases.
+    /// `true` while the phase decreases.
     is_back: bool,
-    /// The labels of touching pairs.
+    /// The labels of the pairs that touch.
     hits: Vec<[String; 2]>,
 }
 
@@ -28,7 +28,7 @@ fn link(label: &str) -> Option<usize> {
     label.strip_prefix("link ")?.parse().ok()
 }
 
-/// A pair filter: accepts all pairs except links that share a joint, which always touch there.
+/// A pair filter that rejects links with a common joint, since they always touch there.
 #[derive(Clone, Copy, Debug)]
 struct Joints;
 
@@ -48,9 +48,9 @@ where
     }
 }
 
-/// Returns the poses of the links at a phase: each joint swings at its own rate.
+/// Returns the poses of the links at a phase. Each joint oscillates with its own frequency.
 fn poses<const D: usize>(phase: f32) -> [Pose<f32, D>; LINKS] {
-    // Each joint is in the frame of the previous one.
+    // Each joint is in the frame of the joint before it.
     let mut joint = Pose::<f32, D>::identity();
     std::array::from_fn(|n| {
         let angle = 1.4 * Real::sine_cosine(phase * (1.0 + 0.37 * number(n)) + number(n)).0;
@@ -66,15 +66,15 @@ impl<const D: usize> Arm<D>
 where
     f32: Dimension<D>,
 {
-    /// Whether the arm would collide at a phase: with an obstacle, by a query of the world, or with
-    /// itself.
+    /// Returns `true` if the arm would collide at a phase: with an obstacle, by a query of the
+    /// world, or with itself.
     fn would_hit(&self, world: &World<D>, phase: f32) -> bool {
         let (capsule, poses) = (Capsule::new(0.5, RADIUS), poses::<D>(phase));
         let is_obstacle = |object: &CollisionObject<f32, D, String>| link(object.data()).is_none();
         let obstacles = QueryFilter::new().predicate(&is_obstacle);
         let hits_obstacle =
             poses.iter().any(|pose| world.overlaps_any(&f32::isometry(pose), &capsule, &obstacles));
-        // Links that share a joint are excluded, as in the filter of the world.
+        // Links with a common joint are excluded, as in the filter of the world.
         let touch = |a: usize, b: usize| {
             distance(&isometry(&poses[a]), &capsule, &isometry(&poses[b]), &capsule) <= 0.0
         };
@@ -98,7 +98,7 @@ where
 
     fn build(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         *self = Self::default();
-        // The registry has the filter under this name, also for the replay of the recording.
+        // The registry contains the filter under this name, so that the recording can be replayed.
         world.register_broad_phase_pair_filter("joints")?;
         let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
         for (n, place) in
@@ -115,7 +115,7 @@ where
         Ok(())
     }
 
-    /// Queries whether the next pose collides before the arm moves; the contacts of the update
+    /// Tests whether the next pose collides before the arm moves. The contacts of the update
     /// confirm the result.
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
         let pace = panel.value("speed") * TIME_STEP;
@@ -130,7 +130,8 @@ where
         Ok(world.set_positions(&moved)?)
     }
 
-    /// Collects all contacts except those between obstacles. A pair may have several manifolds.
+    /// Collects all contacts except those between obstacles. A pair may have several manifolds, but
+    /// is listed once.
     fn updated(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         let hits = world.contact_views().map(|(one, two, _)| [one, two].map(|o| o.data().clone()));
         self.hits =
@@ -139,7 +140,7 @@ where
         Ok(())
     }
 
-    /// Draws the axis of each link, red if the link collides.
+    /// Draws the axis of each link: red if the link collides, otherwise green.
     fn draw(&self, world: &World<D>, _: &Panel, canvas: &mut Canvas<'_, D>) {
         for handle in &self.links {
             let found = world.collision_object(*handle);

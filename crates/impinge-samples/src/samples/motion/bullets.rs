@@ -1,4 +1,4 @@
-//! Bullets between walls that are thinner than the distance of a step.
+//! Bullets between walls that are thinner than the distance that a bullet moves in a step.
 
 use crate::prelude::*;
 
@@ -8,21 +8,21 @@ const RADIUS: f32 = 0.05;
 const HALF: f32 = 0.01;
 /// Half the width of the room.
 const ROOM: f32 = 5.0;
-/// The largest number of reflections of a bullet in a step; then it waits for the next step.
+/// The maximum number of reflections of a bullet in a step. After these it waits for the next step.
 const MAX_BOUNCES: usize = 64;
 
-/// A bullet and its velocity.
+/// A bullet, with the path of its last step.
 #[derive(Debug)]
 struct Bullet<const D: usize> {
-    /// The ball in the world, at the end of its path.
+    /// The object of the bullet, at the end of its path.
     object: CollisionObjectHandle,
     /// The direction of motion, a unit vector.
     direction: Vector<f32, D>,
-    /// The corners of the path of the last step.
+    /// The corners of the path in the last step.
     path: Vec<Point<f32, D>>,
 }
 
-/// Bullets in a room with a dividing wall. Each step casts them from wall to wall.
+/// Bullets in a room with a dividing wall. In each step casts find the walls that the bullets hit.
 #[derive(Debug, Default)]
 pub(crate) struct Bullets<const D: usize> {
     bullets: Vec<Bullet<D>>,
@@ -33,7 +33,8 @@ impl<const D: usize> Bullet<D>
 where
     f32: Dimension<D>,
 {
-    /// Moves along `length` with reflections at hits; returns their number.
+    /// Moves the bullet along a path of length `length` with a reflection at each hit. Returns the
+    /// number of reflections.
     fn fly(&mut self, world: &World<D>, mut length: f32) -> usize {
         let mut pose = pose_of(world, self.object);
         let (ball, walls) = (Ball::new(RADIUS), wall_groups());
@@ -49,7 +50,8 @@ where
             self.path.push(Point::from(pose.translation));
             let Some((_, hit)) = hit else { return bounces };
             let normal = hit.normal.into_inner();
-            // A ball that only touches and flies away has no impact: the next cast starts here.
+            // The next cast starts in contact with the wall. It has no impact there, since the
+            // reflected ball moves away.
             let direction = self.direction - normal * (2.0 * self.direction.dot(&normal));
             self.direction = unit_or(&direction, direction);
             length -= way;
@@ -59,7 +61,7 @@ where
 }
 
 /// Returns groups that interact only with walls. Walls are in group 1 and bullets in group 2, so
-/// that bullets do not touch each other.
+/// that bullets do not collide with each other.
 fn wall_groups() -> CollisionGroups {
     let mut groups = CollisionGroups::new();
     groups.set_whitelist(&[1]);
@@ -70,14 +72,15 @@ impl<const D: usize> Bullets<D>
 where
     f32: Dimension<D>,
 {
-    /// Adds two walls for each axis, and one across the first axis in the middle.
+    /// Adds two walls for each axis, and a wall in the middle that is perpendicular to the first
+    /// axis.
     fn add_walls(world: &mut World<D>) -> Result<(), SampleError> {
         let mut groups = CollisionGroups::new();
         groups.set_membership(&[1]);
         let sides = (0..D).flat_map(|axis| [(axis, -ROOM), (axis, ROOM)]);
         for (axis, place) in sides.chain([(0, 0.0)]) {
             let (mut half, mut at) = (Vector::<f32, D>::repeat(ROOM + HALF), vector([0.0; 3]));
-            // The dividing wall is as wide as the room, and very thin.
+            // Each wall is as wide as the room, and very thin along its axis.
             (half[axis], at[axis]) = (HALF, place);
             let position = f32::isometry(&Pose::from_translation(at));
             let wall = ShapeHandle::new(Cuboid::new(half));
@@ -106,7 +109,8 @@ where
             let position = at([side * ROOM, 4.0 * scattered(n, 1) - 2.0, 0.0]);
             let query = ContactQuery::default();
             let object = world.add(position, ball.clone(), groups, query, format!("bullet {n}"))?;
-            // A random direction: a rotation in the xy plane, and one from x towards the last axis.
+            // A quasirandom direction: a rotation from x towards y, and a rotation from x towards
+            // the last axis.
             let direction = turn::<D>([0, 1], TAU * scattered(n, 2))
                 * turn::<D>([0, D - 1], TAU * scattered(n, 3))
                 * vector::<D>([1.0, 0.0, 0.0]);
@@ -125,7 +129,7 @@ where
         Ok(())
     }
 
-    /// Draws the paths of the last step, with all their corners.
+    /// Draws the paths of the last step with all their corners.
     fn draw(&self, _: &World<D>, _: &Panel, canvas: &mut Canvas<'_, D>) {
         self.bullets.iter().for_each(|bullet| canvas.path(&bullet.path, RED));
     }

@@ -2,24 +2,25 @@
 
 use crate::prelude::*;
 
-/// The distance kept from obstacles: casts that stop before contact never start in contact.
+/// The distance that is kept from obstacles, so that no cast starts in contact.
 const SKIN: f32 = 0.02;
 /// The radius of the capsule.
 const RADIUS: f32 = 0.3;
 
-/// The number of stored positions of the trail.
+/// The maximum number of stored positions of the trail.
 const TRAIL: usize = 300;
 
-/// A capsule in a yard with posts. Its heading rotates slowly; casts limit its motion.
+/// A capsule in a yard with posts. Its heading rotates slowly. Casts find the obstacles that limit
+/// its motion.
 #[derive(Debug, Default)]
 pub(crate) struct Character<const D: usize> {
-    /// The capsule.
+    /// The object of the capsule.
     body: Option<CollisionObjectHandle>,
     /// The angle of the heading from x to y, in radians.
     heading: f32,
-    /// The positions of the capsule after each step.
+    /// The positions of the capsule after the last [`TRAIL`] steps.
     trail: Vec<Point<f32, D>>,
-    /// The number of blocked casts.
+    /// The number of casts that hit an obstacle.
     slides: usize,
 }
 
@@ -27,8 +28,8 @@ impl<const D: usize> Character<D>
 where
     f32: Dimension<D>,
 {
-    /// Moves the capsule until its distance from an obstacle is `SKIN`, and then along that
-    /// obstacle; it makes at most four casts.
+    /// Moves the capsule until its distance from an obstacle is [`SKIN`], and then along that
+    /// obstacle. It makes at most four casts.
     fn slide(
         &mut self,
         world: &World<D>,
@@ -36,15 +37,15 @@ where
         mut motion: Vector<f32, D>,
     ) -> Pose<f32, D> {
         let capsule = Capsule::new(0.3, RADIUS);
-        // The capsule is in the world as well, and is excluded.
+        // The capsule is an object of the world too, and is excluded from the casts.
         let mut others = QueryFilter::new();
         if let Some(body) = self.body {
             others = others.exclude(body);
         }
         let options = ImpactOptions::new().with_max_time(1.0).with_target_distance(SKIN);
         for _ in 0..4 {
-            // An impact before the end of the motion has the distance `SKIN`; the rest of the
-            // motion continues along the obstacle.
+            // A hit before the end of the motion is at distance `SKIN`. The rest of the motion
+            // continues along the obstacle.
             let from = f32::isometry(&pose);
             let Some((_, hit)) = world.cast_shape(&from, &motion, &capsule, &options, &others)
             else {
@@ -53,7 +54,8 @@ where
             };
             self.slides += 1;
             pose.translation += motion * hit.toi;
-            // The normal may point from the obstacle or to it: the motion against the character is removed.
+            // The component along the normal is removed from the rest of the motion. The sign of
+            // the normal does not matter.
             motion *= 1.0 - hit.toi;
             let normal = hit.normal.into_inner();
             motion -= normal * motion.dot(&normal);
@@ -78,7 +80,7 @@ where
     fn build(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         *self = Self::default();
         let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
-        // Four walls with common corners, and posts of all kinds.
+        // Four walls meet in common corners. The posts are of different kinds.
         for n in 0..4_u8 {
             let rotation = turn::<D>([0, 1], TAU / 4.0 * f32::from(n));
             let translation = rotation * vector::<D>([5.0, 0.0, 0.0]);
@@ -102,7 +104,7 @@ where
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
         let Some(body) = self.body else { return Ok(()) };
         self.heading += panel.value("turn") * TIME_STEP;
-        // The motion of a step without obstacles.
+        // The motion of a step if no obstacle is in the way.
         let ahead = vector([panel.value("speed") * TIME_STEP, 0.0, 0.0]);
         let pose = pose_of(world, body);
         let pose = self.slide(world, pose, turn::<D>([0, 1], self.heading) * ahead);
@@ -121,7 +123,8 @@ where
         }
     }
 
-    /// Returns the distance from the nearest object; a predicate excludes the character itself.
+    /// Returns the distance to the nearest object, and the number of hits. A predicate excludes the
+    /// character itself.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let pose = self.body.map(|body| f32::isometry(&pose_of(world, body)));
         let capsule = Capsule::new(0.3, RADIUS);

@@ -1,4 +1,4 @@
-//! Light barriers over a conveyor, which count passing goods.
+//! Light barriers over a conveyor belt, which count passing pieces.
 
 use impinge::narrow_phase::ProximityEvent;
 
@@ -6,26 +6,27 @@ use crate::prelude::*;
 
 /// Half the length of the belt.
 const BELT: f32 = 7.0;
-/// The kinds of goods. Goods of kind n are members of group n.
+/// The kinds of pieces. Pieces of kind n are members of group n.
 const KINDS: [&str; 3] = ["box", "ball", "capsule"];
 
-/// Goods on a belt, and a sensor for each kind of them.
+/// Pieces on a belt, and a sensor for each kind of piece.
 #[derive(Debug, Default)]
 pub(crate) struct Conveyor {
-    /// The goods, in the order of the belt.
+    /// The pieces in the order on the belt.
     goods: Vec<CollisionObjectHandle>,
-    /// A sensor for each kind, in the order of the kinds.
+    /// The sensors in the order of [`KINDS`].
     sensors: Vec<CollisionObjectHandle>,
-    /// For each kind, the number of pieces that have entered its sensor.
+    /// For each kind, the number of times that a piece has entered its sensor.
     entered: [usize; KINDS.len()],
-    /// The number of pieces that are within a sensor now.
+    /// The number of pieces that are in a sensor now.
     within: usize,
     /// The distance that the belt has moved.
     way: f32,
 }
 
 impl Conveyor {
-    /// Returns the position of a piece on the belt, which wraps around at the end.
+    /// Returns the position of a piece, which moves to the start of the belt when it passes the
+    /// end.
     fn position<const D: usize>(&self, index: usize) -> Isometry<D>
     where
         f32: Dimension<D>,
@@ -40,7 +41,7 @@ impl Conveyor {
     {
         for index in 0..10 {
             let kind = index * 7 % KINDS.len();
-            // Goods of kind n are members of group n, and may touch every group.
+            // The piece is a member of the group of its kind, and may interact with every group.
             let mut groups = CollisionGroups::new();
             groups.set_membership(&[kind]);
             let (position, query) = (self.position(index), ContactQuery::default());
@@ -50,7 +51,7 @@ impl Conveyor {
         Ok(())
     }
 
-    /// Adds a sensor for each kind. Sensors report proximity, without contact points.
+    /// Adds a sensor for each kind. Sensors report proximity without contact points.
     fn add_sensors<const D: usize>(&mut self, world: &mut World<D>) -> Result<(), SampleError>
     where
         f32: Dimension<D>,
@@ -58,7 +59,7 @@ impl Conveyor {
         for (kind, name) in KINDS.iter().enumerate() {
             let mut groups = CollisionGroups::new();
             groups.set_membership(&[KINDS.len()]);
-            // The whitelist of either object suffices to exclude a pair.
+            // The whitelist of the sensor alone excludes pieces of other kinds.
             groups.set_whitelist(&[kind]);
             let gate = ShapeHandle::new(Cuboid::new(vector([0.1, 1.0, 1.0])));
             let (position, query) =
@@ -69,7 +70,7 @@ impl Conveyor {
         Ok(())
     }
 
-    /// Returns the sensor of an event, if it has one.
+    /// Returns the index of the sensor of an event; `None` if no sensor is involved.
     fn sensor(&self, event: &ProximityEvent) -> Option<usize> {
         let objects = [event.collider1, event.collider2];
         self.sensors.iter().position(|sensor| objects.contains(sensor))
@@ -98,7 +99,7 @@ where
         Ok(())
     }
 
-    /// Events are changes since the last update, so that each entry is counted once.
+    /// Counts each entry into a sensor once, since events are changes since the last update.
     fn updated(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         for event in world.proximity_events() {
             if let Some(sensor) = self.sensor(event)

@@ -2,18 +2,18 @@
 
 use crate::prelude::*;
 
-/// The distance at which a person sees others, and the number of others that it avoids.
+/// The distance up to which a person avoids other people. At most [`NEIGHBORS`] people are avoided.
 const SIGHT: f32 = 1.2;
 const NEIGHBORS: usize = 4;
 
-/// A person, who walks to the other side of a circle and back.
+/// A person who walks to the opposite point of a circle and back.
 #[derive(Debug)]
 struct Person<const D: usize> {
     object: CollisionObjectHandle,
     goal: Vector<f32, D>,
 }
 
-/// People on a circle, each with a goal on the opposite side.
+/// People on a circle, each with a goal at the opposite point.
 #[derive(Debug, Default)]
 pub(crate) struct Crowd<const D: usize> {
     people: Vec<Person<D>>,
@@ -24,7 +24,8 @@ impl<const D: usize> Person<D>
 where
     f32: Dimension<D>,
 {
-    /// Returns the velocity: towards the goal, and away from the nearest others, more strongly the nearer they are.
+    /// Returns the velocity as a share of the full speed, of length 1 or less. It points towards
+    /// the goal, and away from the nearest people. Nearer people have more influence.
     fn velocity(&self, world: &World<D>) -> Vector<f32, D> {
         let none = Vector::<f32, D>::zeros();
         let Some(own) = world.collision_object(self.object) else { return none };
@@ -36,14 +37,14 @@ where
         let steered = near.iter().fold(ahead, |velocity, near| {
             let place = f32::pose(near.object.position()).translation;
             let away = unit_or(&(here - place), none);
-            // A component to the side, so that two people who meet head-on pass each other.
+            // A component to the side lets two people who meet head-on pass each other.
             let side = turn::<D>([0, 1], TAU / 4.0) * away;
-            // The weight grows from 0 at the distance `SIGHT` to 1 in contact. It is squared below,
-            // so that the nearest person has the largest weight.
+            // The weight grows from 0 at distance `SIGHT` to 1 in contact. It is squared below, so
+            // that the influence of near people dominates.
             let weight = 1.0 - near.distance / SIGHT;
             velocity + (away * 1.5 + side * 0.5) * (weight * weight)
         });
-        // If the sum is longer than 1, it is shortened to length 1.
+        // A sum longer than 1 is shortened to length 1.
         let speed = max(steered.norm(), 1.0);
         steered / speed
     }
@@ -69,7 +70,7 @@ where
             (CollisionGroups::new(), ContactQuery::default(), panel.count("count"));
         for n in 0..count {
             let angle = TAU * number(n) / number(count);
-            // People start evenly distributed on the circle, with the goal at the opposite point.
+            // People start at equal distances on the circle, with the goal at the opposite point.
             let place = turn::<D>([0, 1], angle) * vector::<D>([6.0, 0.0, 0.0]);
             let position = f32::isometry(&Pose::from_translation(place));
             let label = format!("person {n}");
@@ -88,12 +89,13 @@ where
 
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
         let length = panel.value("speed") * TIME_STEP;
-        // Each person decides by the previous positions of the others; then all move at once.
+        // All velocities are computed from the positions of the previous step; then all people move
+        // at once.
         let mut moved = Vec::with_capacity(self.people.len());
         for person in &mut self.people {
             let mut pose = pose_of(world, person.object);
             pose.translation += person.velocity(world) * length;
-            // A person at its goal turns back.
+            // A person near its goal turns back.
             if (person.goal - pose.translation).norm() < 0.5 {
                 person.goal = -person.goal;
             }
@@ -107,7 +109,7 @@ where
         Ok(())
     }
 
-    /// Draws the velocities, for one second.
+    /// Draws the velocity of each person. A line of length 1 is the full speed.
     fn draw(&self, world: &World<D>, _: &Panel, canvas: &mut Canvas<'_, D>) {
         for person in &self.people {
             let here = Point::from(pose_of(world, person.object).translation);

@@ -2,20 +2,21 @@
 
 use crate::prelude::*;
 
-/// The distance of a finger from open to closed, and its speed per step.
+/// The distance of an open finger from the middle. `SPEED` is the distance that a finger moves in a
+/// step.
 const OPEN: f32 = 2.0;
 const SPEED: f32 = 0.02;
-/// A cycle of closing, holding and opening.
+/// The number of steps of a cycle, in which the fingers close, hold and open.
 const STEPS: usize = 320;
 
-/// Two fingers that close along x, each as far as a cast allows.
+/// Two fingers that close along x until a cast hits the object.
 #[derive(Debug, Default)]
 pub(crate) struct Gripper<const D: usize> {
     /// The gripped object.
     object: Option<CollisionObjectHandle>,
-    /// The left and the right finger.
+    /// The left finger, then the right one.
     fingers: Vec<CollisionObjectHandle>,
-    /// The impacts of the last step.
+    /// The hits of the casts in the last step.
     hits: Vec<Impact<f32, D>>,
     step: usize,
 }
@@ -29,19 +30,20 @@ impl<const D: usize> Gripper<D>
 where
     f32: Dimension<D>,
 {
-    /// Closes a finger by a step, or less if it would penetrate the object.
+    /// Moves a finger inwards by a step, or less if it would penetrate the object. Returns its new
+    /// pose.
     fn close(&mut self, world: &World<D>, mut pose: Pose<f32, D>) -> Pose<f32, D> {
         let inward = vector([-SPEED.copysign(pose.translation[0]), 0.0, 0.0]);
-        // Only the object can stop a finger.
+        // The casts ignore both fingers, so that only the object can stop a finger.
         let mut others = QueryFilter::new();
         for finger in &self.fingers {
             others = others.exclude(*finger);
         }
-        // The velocity is the motion of a step, so that a time of 1 is a step.
+        // The velocity is the motion of a step, so that time 1 is the end of the step.
         let options = ImpactOptions::new().with_max_time(1.0);
         let hit = world.cast_shape(&f32::isometry(&pose), &inward, &finger(), &options, &others);
         let hit = hit.map(|(_, hit)| hit);
-        // Fingers without an object between them stop before they meet.
+        // Fingers with no object between them stop before they meet.
         let is_free = pose.translation[0].abs() > 0.15 + SPEED;
         let way = hit.map_or(if is_free { 1.0 } else { 0.0 }, |hit| hit.toi);
         self.hits.extend(hit);
@@ -83,18 +85,19 @@ where
         Ok(())
     }
 
-    /// Takes another object. The fingers start open again.
+    /// Replaces the object. The fingers start open again.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         self.rebuild(world, panel)
     }
 
-    /// Two thirds of the cycle close and hold, the rest opens.
+    /// Closes the fingers and holds in the first two thirds of the cycle, and opens them in the
+    /// rest.
     fn advance(&mut self, world: &mut World<D>, _: &mut Panel) -> Result<(), SampleError> {
         self.step += 1;
         self.hits.clear();
         let is_opening = self.step % STEPS > STEPS * 2 / 3;
         for finger in self.fingers.clone() {
-            // A touching finger is cast again in each step, with an impact at time zero.
+            // A finger in contact is cast again in each step, and hits at time zero.
             let mut pose = pose_of(world, finger);
             if is_opening {
                 let out = pose.translation[0];
@@ -114,8 +117,8 @@ where
         }
     }
 
-    /// Returns the distances between the inner sides of the fingers: half a finger nearer than the
-    /// centres.
+    /// Returns the distance between the inner sides of the fingers, which is 0.3 less than that of
+    /// their centres, and the number of fingers that hit the object.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let xs = self.fingers.iter().map(|finger| pose_of(world, *finger).translation[0].abs());
         vec![

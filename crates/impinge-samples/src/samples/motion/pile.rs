@@ -3,12 +3,12 @@
 use crate::bodies::Bodies;
 use crate::prelude::*;
 
-/// Solids above a floor between walls.
+/// Solids that fall between walls on a floor.
 #[derive(Debug, Default)]
 pub(crate) struct Pile<const D: usize> {
-    /// All objects but the floor and the walls.
+    /// The bodies of all objects except the floor and the walls.
     bodies: Bodies<D>,
-    /// The number of dropped solids, which is the index of the next one.
+    /// The number of solids dropped so far, which is the index of the next solid.
     dropped: usize,
 }
 
@@ -21,14 +21,16 @@ impl<const D: usize> Pile<D>
 where
     f32: Dimension<D>,
 {
-    /// Adds a solid above the floor. Its position and size follow from its index.
+    /// Adds a solid at `height` above the floor. Its horizontal position, kind and size depend on
+    /// its index.
     fn drop_one(&mut self, world: &mut World<D>, height: f32) -> Result<(), SampleError> {
         let n = self.dropped;
         self.dropped += 1;
         let spread = |stream| (WALL - 1.0) * (2.0 * scattered(n, stream) - 1.0);
         let position = turned([spread(0), height, spread(1)], TAU * scattered(n, 2));
         let (kind, size) = (KINDS[n % KINDS.len()], 0.4 + 0.2 * scattered(n, 3));
-        // Contacts exist from a gap of 0.02 on, the sum of both predictions, so that the solver gets them in time.
+        // Contacts begin at a gap of 0.02, which is the sum of both predictions, so that the solver
+        // gets them before objects touch.
         let (groups, query) = (CollisionGroups::new(), ContactQuery::new(0.01));
         let body = world.add(position, solid(kind, size), groups, query, format!("{kind} {n}"))?;
         self.bodies.add(body, size);
@@ -51,7 +53,7 @@ where
         let (groups, query) = (CollisionGroups::new(), ContactQuery::new(0.01));
         let floor = ShapeHandle::new(Plane::new(up()));
         world.add(at([0.0; 3]), floor, groups, query, "floor".to_owned())?;
-        // A wall on each side, along every axis but the vertical one.
+        // There are two walls for each horizontal axis.
         for axis in (0..D).filter(|axis| *axis != 1) {
             for side in [-1.0, 1.0] {
                 let mut half = Vector::<f32, D>::repeat(WALL);
@@ -68,7 +70,8 @@ where
         Ok(())
     }
 
-    /// Rebuilds the pile if the count has changed. A press of the button does not call this.
+    /// Rebuilds the pile. It is called for the count only, since the button is applied in
+    /// `advance`.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         self.rebuild(world, panel)
     }
@@ -80,7 +83,8 @@ where
         self.bodies.advance(world)
     }
 
-    /// At rest the deepest contact is about as deep as the slop of the solver.
+    /// Returns counts and extremes. At rest the deepest contact is about as deep as the slop of the
+    /// solver.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let deepest = world.contact_views().map(|(_, _, manifold)| manifold.deepest_contact());
         let depth = deepest.map(|point| point.contact.depth).reduce(max);

@@ -3,12 +3,12 @@
 use crate::bodies::Bodies;
 use crate::prelude::*;
 
-/// Boxes of size 1, each half a percent above the one below.
+/// A stack of boxes of size 1, with gaps of 0.005 between them at the start.
 #[derive(Debug, Default)]
 pub(crate) struct Stack<const D: usize> {
-    /// The boxes, which the solver moves.
+    /// The bodies of the boxes.
     bodies: Bodies<D>,
-    /// The box that can be pushed.
+    /// The top box, which the button pushes.
     top: Option<CollisionObjectHandle>,
 }
 
@@ -26,13 +26,13 @@ where
     fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         *self = Self::default();
         let (groups, query) = (CollisionGroups::new(), ContactQuery::new(0.01));
-        // A half-space is unbounded, so that nothing falls off its edge.
+        // The floor is a half-space, so that nothing falls off its edge.
         let floor = ShapeHandle::new(Plane::new(up()));
         world.add(at([0.0; 3]), floor, groups, query, "floor".to_owned())?;
-        // One shape for all boxes: a handle is reference-counted.
+        // All boxes share one shape: clones of a handle are reference-counted.
         let cube = ShapeHandle::new(Cuboid::new(vector([0.5; 3])));
         for n in 0..panel.count("count") {
-            // Boxes are shifted to either side in turn.
+            // Boxes are shifted to the right and to the left in turn.
             let side = if n % 2 == 0 { 1.0 } else { -1.0 };
             let position = at([side * panel.value("shift"), 0.505 + 1.005 * number(n), 0.0]);
             let cube = world.add(position, cube.clone(), groups, query, format!("box {n}"))?;
@@ -42,12 +42,13 @@ where
         Ok(())
     }
 
-    /// Clears the world and builds it again; handles of the removed objects are then stale.
+    /// Clears the world and builds it again. Handles of the removed objects are then stale.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         self.rebuild(world, panel)
     }
 
-    /// Sets the velocity of the pushed box; contacts and friction move the others.
+    /// Sets the velocity of the top box if the button was pressed. Contacts and friction move the
+    /// other boxes.
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
         if panel.take_press("push")
             && let Some(top) = self.top
@@ -57,7 +58,8 @@ where
         self.bodies.advance(world)
     }
 
-    /// Views read the manifolds in place, without a copy.
+    /// Returns the number of contact points, read from the manifolds without a copy, and the
+    /// largest speed.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let points = world.contact_views().map(|(_, _, manifold)| manifold.len()).sum::<usize>();
         vec![

@@ -1,23 +1,24 @@
-//! Every pair of solids, touching.
+//! A contact of every pair of kinds of solids.
 
 use crate::prelude::*;
 
-/// The distance of two cells of the grid.
+/// The distance between the centres of adjacent cells.
 const CELL: f32 = 3.0;
 
-/// A grid with a cell for each pair of kinds: one solid rests, the other rotates and is moved into contact.
+/// A grid with a cell for each pair of kinds. One solid of a cell is at rest. The other solid
+/// rotates and is moved into contact.
 #[derive(Debug, Default)]
 pub(crate) struct Grid {
     /// The resting and the rotating solid of each cell.
     pairs: Vec<[CollisionObjectHandle; 2]>,
-    /// The rotation of all second solids, in radians.
+    /// The angle of all second solids, in radians from x to y.
     angle: f32,
 }
 
 impl Grid {
-    /// Returns the pose of the second solid of a pair. It is moved from the upper right towards the
-    /// first solid until they touch, and then further by `depth`. Parallel segments have no depth,
-    /// and stay where they touch.
+    /// Returns the position of the second solid of a pair. It is moved from the upper right towards
+    /// the first solid until they touch, and then further by `depth`. Parallel segments cannot
+    /// overlap, and stay where they touch. `None` if the cast does not hit.
     fn touching<const D: usize>(
         &self,
         world: &World<D>,
@@ -35,11 +36,11 @@ impl Grid {
             translation: pose1.translation + vector([CELL, CELL, 0.0]),
         };
         let velocity = vector([-1.0, -1.0, 0.0]);
-        // A cast needs no world: two shapes, two poses, a velocity.
+        // A cast of two shapes needs no world, only their poses and velocities.
         let still = Moving::still(&isometry(&pose1), shape1);
         let moving = Moving::new(&isometry(&pose2), &velocity, shape2);
         let hit = impact(&still, &moving, &ImpactOptions::new())?;
-        // The normal of the contact points from the first solid to the second.
+        // The normal of the impact points from the first solid to the second.
         pose2.translation += velocity * hit.toi;
         let deeper = Pose { translation: pose2.translation - *hit.normal * depth, ..pose2 };
         let gap = distance(&isometry(&pose1), shape1, &isometry(&deeper), shape2);
@@ -47,12 +48,12 @@ impl Grid {
         Some(f32::isometry(if has_depth { &deeper } else { &pose2 }))
     }
 
-    /// Moves all second solids at once.
+    /// Moves all second solids in one call.
     fn place<const D: usize>(&self, world: &mut World<D>, depth: f32) -> Result<(), SampleError>
     where
         f32: Dimension<D>,
     {
-        // A solid without an impact stays at its position.
+        // A solid whose cast does not hit keeps its position.
         let moved = self
             .pairs
             .iter()
@@ -75,7 +76,7 @@ where
         )
     }
 
-    /// Adds the cells of a triangle: a pair and its reverse need only one cell.
+    /// Adds the cells of a triangle, since a pair and its reverse need only one cell.
     fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         *self = Self::default();
         let (groups, query) = (CollisionGroups::new(), ContactQuery::new(0.01));
@@ -104,7 +105,7 @@ where
         self.place(world, panel.value("depth"))
     }
 
-    /// A pair can be looked up by its handles, in either order.
+    /// Returns counts of pairs and points. A pair is looked up by its handles in either order.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let touching = self.pairs.iter().filter(|[a, b]| {
             world.contact_pair(*a, *b).is_some_and(|pair| pair.num_contacts() > 0)

@@ -1,4 +1,4 @@
-//! Shapes of your own: a convex one by its support map, and a composite.
+//! Shapes of user types: a convex one by its support map, and a composite.
 
 use impinge::bounding_volume::Aabb;
 use impinge::math::Real;
@@ -8,7 +8,7 @@ use impinge_record::Registry;
 
 use crate::prelude::*;
 
-/// The intersection of two balls of one radius around `(0, −offset)` and `(0, offset)`.
+/// A lens: the intersection of two balls of equal radius around `(0, −offset)` and `(0, offset)`.
 #[derive(Debug)]
 struct Lens {
     /// The radius of both balls.
@@ -18,7 +18,7 @@ struct Lens {
 }
 
 impl Lens {
-    /// Returns the radius of the rim.
+    /// Returns the radius of the rim, where the two balls intersect.
     fn rim(&self) -> f32 {
         (self.radius * self.radius - self.offset * self.offset).sqrt()
     }
@@ -28,10 +28,10 @@ impl<const D: usize> SupportMap<f32, D> for Lens
 where
     f32: Space<D>,
 {
-    /// Returns a point on one of the two curved sides, or on the rim.
+    /// Returns the support point of a direction, on one of the two curved sides or on the rim.
     fn core_support(&self, direction: &Vector<f32, D>) -> Point<f32, D> {
         let Some((toward, _)) = unit(direction) else { return Point::origin() };
-        // The upper side is part of the lower ball, and the lower side of the upper ball.
+        // The upper side belongs to the lower ball, and the lower side to the upper ball.
         let center: Vector<f32, D> = vector([0.0, -self.offset.copysign(toward[1]), 0.0]);
         if toward[1].abs() * self.radius > self.offset {
             return Point::from(center + toward * self.radius);
@@ -46,7 +46,7 @@ impl<const D: usize> Shape<f32, D> for Lens
 where
     f32: Space<D>,
 {
-    /// Returns the support map as the geometry: queries use the shape through it.
+    /// Returns the support map as the geometry, through which queries use the shape.
     fn geometry(&self) -> Geometry<'_, f32, D> {
         Geometry::support_map(self)
     }
@@ -58,14 +58,14 @@ where
     }
 }
 
-/// Balls of one radius in a row.
+/// A row of balls of equal radius.
 #[derive(Debug)]
 struct Beads<const D: usize> {
-    /// The shape of all beads.
+    /// The shape of each bead.
     bead: Ball<f32>,
     /// The centres of the beads.
     centers: Vec<Point<f32, D>>,
-    /// The search tree over their boxes.
+    /// A tree of the bounding boxes of the beads.
     tree: BoxTree<f32, D>,
 }
 
@@ -89,13 +89,14 @@ where
         u32::try_from(self.centers.len()).expect("a few beads")
     }
 
-    /// A part is a solid with a pose in the frame of the composite.
+    /// Returns a part: its solid, and its pose in the frame of the composite.
     fn part(&self, part: u32) -> Part<'_, f32, D> {
         let pose = Pose::from_translation(self.centers[part as usize].coords);
         Part { pose, solid: PartSolid::Shape(&self.bead) }
     }
 
-    /// Returns the search among the parts: the tree, or a formula of your own.
+    /// Returns the search for parts, here by the tree. A composite may also implement its own
+    /// search.
     fn search(&self) -> &dyn PartSearch<f32, D> {
         &self.tree
     }
@@ -120,7 +121,7 @@ pub(crate) struct OwnShapes<const D: usize>
 where
     f32: Space<D>,
 {
-    /// The handles are kept, since the registry names them and their clones.
+    /// The handles are kept, since the registry contains names for these handles and their clones.
     lens: ShapeHandle<f32, D>,
     beads: ShapeHandle<f32, D>,
     objects: Vec<CollisionObjectHandle>,
@@ -159,7 +160,8 @@ where
         )
     }
 
-    /// A recording contains names for shapes that are code.
+    /// Returns the registry with names for both shapes, since a recording cannot contain shapes
+    /// that are code.
     fn registry(&self) -> Registry<f32, D, String> {
         Registry::new()
             .with_shape("lens", self.lens.clone())
@@ -177,7 +179,7 @@ where
         Ok(())
     }
 
-    /// The lens rolls back and forth over the beads.
+    /// Rolls the lens back and forth over the beads.
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
         self.phase += panel.value("speed") / 480.0;
         let x = 6.0 * to_and_fro(self.phase + 0.25) - 3.0;
@@ -186,7 +188,8 @@ where
         Ok(world.set_position(lens, position)?)
     }
 
-    /// Contacts have the index of their part of a composite.
+    /// Returns the indices of the beads that touch. A contact of a composite contains the index of
+    /// its part.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let &[beads, _] = self.objects.as_slice() else { return Vec::new() };
         let touched: Vec<_> =

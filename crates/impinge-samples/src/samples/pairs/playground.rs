@@ -1,20 +1,21 @@
-//! Two shapes of any kind, and all queries about two shapes.
+//! Two shapes of any kind, and the results of all queries about two shapes.
 
 use impinge::query::{closest_points, proximity};
 
 use crate::prelude::*;
 
-/// The prediction of contacts, and the largest distance of drawn closest points.
+/// The limit of all queries: the prediction of contacts, the largest distance of closest points,
+/// and the maximum time of the cast.
 const MARGIN: f32 = 10.0;
 
-/// Two shapes, the second of which moves along the first until the user drags it.
+/// Two shapes. The second shape moves past the first until the user drags it.
 #[derive(Debug, Default)]
 pub(crate) struct Playground {
-    /// The first and the second shape.
+    /// The objects of the first and the second shape.
     objects: Vec<CollisionObjectHandle>,
-    /// The position of the second shape on its path; 1 is one whole cycle back and forth.
+    /// The position of the second shape on its path. A cycle back and forth has length 1.
     phase: f32,
-    /// Whether the user has dragged the shape.
+    /// `true` after the user has dragged an object.
     is_held: bool,
 }
 
@@ -25,7 +26,7 @@ struct Placed<const D: usize> {
 }
 
 impl Playground {
-    /// Returns both shapes with their poses; handles of shapes are cheap to clone.
+    /// Returns both shapes with their poses; `None` if an object was removed.
     fn placed<const D: usize>(&self, world: &World<D>) -> Option<[Placed<D>; 2]>
     where
         f32: Dimension<D>,
@@ -38,7 +39,8 @@ impl Playground {
         Some([placed(first)?, placed(second)?])
     }
 
-    /// Returns the position on a line above the first shape, low enough to touch it.
+    /// Returns the position of the second shape on a line above the first shape, low enough to
+    /// touch it.
     fn path<const D: usize>(&self, panel: &Panel) -> Isometry<D>
     where
         f32: Dimension<D>,
@@ -48,7 +50,7 @@ impl Playground {
     }
 }
 
-/// Returns the velocity of the cast of the second shape.
+/// Returns the velocity of the second shape in the cast, a unit vector.
 fn velocity<const D: usize>(panel: &Panel) -> Vector<f32, D>
 where
     f32: Dimension<D>,
@@ -56,7 +58,8 @@ where
     turn::<D>([0, 1], panel.value("direction")) * vector::<D>([1.0, 0.0, 0.0])
 }
 
-/// Returns the time of impact of the second shape with the first; `None` if there is none.
+/// Returns the first impact of the second shape with the first; `None` if there is none within
+/// [`MARGIN`].
 fn time_of_impact<const D: usize>(
     [first, second]: &[Placed<D>; 2],
     panel: &Panel,
@@ -69,8 +72,8 @@ where
     impact(&still, &moving, &ImpactOptions::new().with_max_time(MARGIN))
 }
 
-/// Returns the contact of both shapes. Separate shapes within the margin also have a contact, with
-/// a negative depth.
+/// Returns the contact of both shapes. Separate shapes within [`MARGIN`] have a contact with a
+/// negative depth.
 fn nearest_contact<const D: usize>([first, second]: &[Placed<D>; 2]) -> Option<Contact<f32, D>>
 where
     f32: Dimension<D>,
@@ -95,7 +98,8 @@ where
             .number("prediction", "Contacts up to", 0.1, [0.0, 1.0, 0.01])
     }
 
-    /// The objects are in a world for the manifold; all other queries need no world.
+    /// Adds both shapes to the world, which computes their manifold. All other queries need no
+    /// world.
     fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         *self = Self::default();
         let (groups, query) =
@@ -109,10 +113,11 @@ where
         Ok(())
     }
 
-    /// Shapes and query types of objects can be replaced; the handles stay valid.
+    /// Replaces the shapes and query types of the objects, whose handles stay valid.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let &[first, second] = self.objects.as_slice() else { return Ok(()) };
-        // Both shapes are set whichever control changed: a shape of equal size gives the same contacts.
+        // Both shapes are set whichever control changed. A shape of equal size gives equal
+        // contacts.
         world.set_shape(first, solid(panel.chosen("first"), panel.value("size")))?;
         world.set_shape(second, solid(panel.chosen("second"), panel.value("size2")))?;
         let pose = Pose {
@@ -135,7 +140,7 @@ where
         Ok(())
     }
 
-    /// The second shape stays where the user leaves it.
+    /// Moves the object. The second shape then stays where the user leaves it.
     fn dragged(
         &mut self,
         world: &mut World<D>,
@@ -147,7 +152,7 @@ where
         Ok(())
     }
 
-    /// Draws closest points, contact, and the path of the cast with its impact.
+    /// Draws the closest points, the contact, and the path of the cast with its impact.
     fn draw(&self, world: &World<D>, panel: &Panel, canvas: &mut Canvas<'_, D>) {
         let Some(pair) = self.placed(world) else { return };
         let [first, second] = &pair;
@@ -155,7 +160,7 @@ where
         let nearest = closest_points(&poses[0], &*first.shape, &poses[1], &*second.shape, MARGIN);
         canvas.drawing.closest_points(&nearest, canvas.renderer);
         canvas.drawing.contacts(nearest_contact(&pair), canvas.renderer);
-        // In 3D and in 2D the start, the impact and the end are drawn.
+        // The drawing shows the shape at the start, at the impact and at the end of the path.
         let sweep = SweptShape {
             shape: &second.shape,
             position: f32::isometry(&second.pose),
@@ -165,7 +170,8 @@ where
         canvas.drawing.cast(&sweep, time_of_impact(&pair, panel).as_ref(), canvas.renderer);
     }
 
-    /// Returns all results about the two shapes, computed here, and the manifold of the world.
+    /// Returns the results of all queries about the two shapes, and the number of contact points in
+    /// the world.
     fn readouts(&self, world: &World<D>, panel: &Panel) -> Vec<Readout> {
         let Some(pair) = self.placed(world) else { return Vec::new() };
         let [first, second] = &pair;
@@ -186,7 +192,8 @@ where
             readouts.push(Readout::new("Point 1", format!("{:.3?}", points[0].as_slice())));
             readouts.push(Readout::new("Point 2", format!("{:.3?}", points[1].as_slice())));
         }
-        // The points of the world: a flat side has several, a round one has one.
+        // The manifold of the world has several points for two flat sides, and one point for a
+        // round side.
         let contacts = world.contact_views().map(|(_, _, manifold)| manifold.len()).sum::<usize>();
         readouts.push(Readout::new("Contact points", contacts));
         let time = time_of_impact(&pair, panel).map(|hit| hit.toi);

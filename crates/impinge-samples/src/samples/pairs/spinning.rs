@@ -4,15 +4,16 @@ use impinge::query::{RigidMotion, nonlinear_time_of_impact};
 
 use crate::prelude::*;
 
-/// The maximum time of the impact, and the pause after it.
+/// The maximum time of the impact. `PAUSE` is the time after the impact before the motion starts
+/// again, both in seconds.
 const SECONDS: f32 = 4.0;
 const PAUSE: f32 = 1.0;
 
 /// Two rotating bars that fly towards each other. Their first contact is computed at the start, and
-/// they stop at it.
+/// they stop there.
 #[derive(Debug, Default)]
 pub(crate) struct Spinning<const D: usize> {
-    /// The left and the right bar.
+    /// The left bar, then the right one.
     bars: Vec<CollisionObjectHandle>,
     /// The first contact of the bars; `None` if there is none within the maximum time.
     hit: Option<Impact<f32, D>>,
@@ -24,7 +25,8 @@ impl<const D: usize> Spinning<D>
 where
     f32: Dimension<D>,
 {
-    /// Returns both motions as functions of time, from which both positions and the impact are computed.
+    /// Returns the motions of both bars as functions of time, from which their positions and the
+    /// impact are computed.
     fn motions(panel: &Panel) -> [Box<dyn RigidMotion<f32, D>>; 2] {
         let linear = vector([0.6, 0.0, 0.0]);
         let offset = panel.value("offset");
@@ -36,13 +38,13 @@ where
         ]
     }
 
-    /// Returns the time of the impact; the maximum time if there is none.
+    /// Returns the time of the impact, or the maximum time if there is none.
     fn end(&self) -> f32 {
         self.hit.map_or(SECONDS, |hit| hit.toi)
     }
 }
 
-/// Returns the shape of a bar: thin, 2.4 long.
+/// Returns the shape of both bars: 2.4 long and 0.08 thick.
 fn bar<const D: usize>() -> Cuboid<f32, D> {
     Cuboid::new(vector([1.2, 0.04, 0.3]))
 }
@@ -69,7 +71,8 @@ where
         self.changed(world, panel)
     }
 
-    /// The impact is found without stepping: no contact is missed, however thin or fast the bars are.
+    /// Computes the impact without stepping, so that no contact is missed, however thin or fast the
+    /// bars are.
     fn changed(&mut self, _: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let (bar, [left, right]) = (bar(), Self::motions(panel));
         let options = ImpactOptions::new().with_max_time(SECONDS);
@@ -78,7 +81,7 @@ where
         Ok(())
     }
 
-    /// The bars stop at the impact, and begin again after a pause.
+    /// Moves the bars until the impact, and starts again after a pause.
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
         self.time += TIME_STEP;
         if self.time > self.end() + PAUSE {
@@ -91,7 +94,7 @@ where
         Ok(())
     }
 
-    /// Draws the point of the future contact.
+    /// Draws the point and the normal of the impact, already before it happens.
     fn draw(&self, _: &World<D>, _: &Panel, canvas: &mut Canvas<'_, D>) {
         if let Some(hit) = &self.hit {
             canvas.point(&hit.world1, 0.15, RED);
@@ -99,7 +102,7 @@ where
         }
     }
 
-    /// The distance falls to zero at the time of impact, and not before.
+    /// Returns times and the distance, which falls to zero at the time of impact and not before.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let &[left, right] = self.bars.as_slice() else { return Vec::new() };
         let poses = [left, right].map(|object| isometry(&pose_of(world, object)));

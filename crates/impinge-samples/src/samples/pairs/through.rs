@@ -1,23 +1,23 @@
-//! A solid that moves through another.
+//! The depth of a solid that moves through another solid.
 
 use crate::prelude::*;
 
 /// The number of steps of the path: four seconds.
 const STEPS: usize = 240;
 
-/// The depth at each step of the path, as a graph above the picture.
+/// Two solids, and a graph of their depth at each step of the path.
 #[derive(Debug, Default)]
 pub(crate) struct Through {
-    /// The resting solid and the moving one.
+    /// The resting solid, then the moving one.
     objects: Vec<CollisionObjectHandle>,
-    /// The number of steps made.
+    /// The number of steps since the start.
     step: usize,
     /// The depth at each step of the path; negative while the solids are apart.
     depths: Vec<f32>,
 }
 
 impl Through {
-    /// Returns the contact of the two solids at any distance.
+    /// Returns the contact of the two solids; at distances up to 100 its depth is negative.
     fn contact<const D: usize>(&self, world: &World<D>) -> Option<Contact<f32, D>>
     where
         f32: Dimension<D>,
@@ -29,7 +29,7 @@ impl Through {
         contact(&poses[0], &**shape1, &poses[1], &**shape2, 100.0)
     }
 
-    /// Returns the position from −3 to 3, repeated.
+    /// Returns the x coordinate of the moving solid, which runs from −3 to 3 repeatedly.
     fn x(&self) -> f32 {
         6.0 * number(self.step % STEPS) / number(STEPS) - 3.0
     }
@@ -57,7 +57,7 @@ where
         Ok(())
     }
 
-    /// Rebuilds the solids and clears the graph.
+    /// Replaces the shapes of the solids, clears the graph, and starts the path again.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         for (object, name) in self.objects.iter().zip(["first", "second"]) {
             world.set_shape(*object, solid(panel.chosen(name), 0.8))?;
@@ -69,7 +69,7 @@ where
 
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
         self.step += 1;
-        // The path begins again, and so does the graph.
+        // The graph is cleared when the path starts again.
         if self.step.is_multiple_of(STEPS) {
             self.depths.clear();
         }
@@ -77,7 +77,7 @@ where
         Ok(world.set_position(second, at([self.x(), panel.value("height"), 0.0]))?)
     }
 
-    /// One value for each step of the path.
+    /// Adds the current depth to the graph.
     fn updated(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         self.depths.extend(self.contact(world).map(|contact| contact.depth));
         self.depths.truncate(STEPS);
@@ -87,7 +87,8 @@ where
     fn draw(&self, world: &World<D>, _: &Panel, canvas: &mut Canvas<'_, D>) {
         let found = self.contact(world);
         canvas.drawing.contacts(found, canvas.renderer);
-        // Time to the right, depth upwards; the line at depth zero is touching.
+        // The graph shows time to the right and depth upwards. The solids touch where the curve
+        // crosses the line of depth zero.
         let width = 6.0 / number(STEPS);
         let spot = |(n, depth): (usize, &f32)| point([width * number(n) - 3.0, 3.0 + depth, 0.0]);
         let graph: Vec<_> = self.depths.iter().enumerate().map(spot).collect();

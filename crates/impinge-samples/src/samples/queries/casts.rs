@@ -1,18 +1,18 @@
-//! A shape cast, and its first impact.
+//! A shape cast, and the objects that it hits.
 
 use impinge_record::{CastQuestion, Detail, PlacedShape, Query, Question};
 
 use crate::prelude::*;
 
-/// The length of the cast.
+/// The length of the path of a cast.
 const LENGTH: f32 = 9.0;
 
-/// Posts around the origin, and a solid that is cast from there in a rotating direction.
+/// Posts around the origin, and a solid that is cast from the origin in a rotating direction.
 #[derive(Debug, Default)]
 pub(crate) struct Casts<const D: usize> {
-    /// The direction of the cast.
+    /// The direction of the cast, in radians from x to y.
     angle: f32,
-    /// The impacts of the last cast, the first one first.
+    /// The impacts of the last cast, sorted by time.
     hits: Vec<Impact<f32, D>>,
 }
 
@@ -20,14 +20,14 @@ impl<const D: usize> Casts<D>
 where
     f32: Dimension<D>,
 {
-    /// Returns the cast of the solid at the origin, rotated, with the whole path as its velocity.
+    /// Returns the cast of the rotated solid from the origin. Its velocity is the whole path.
     fn question(&self, panel: &Panel) -> CastQuestion<f32, D> {
         let velocity = turn::<D>([0, 1], self.angle) * vector::<D>([LENGTH, 0.0, 0.0]);
         let shape = solid(panel.chosen("solid"), panel.value("size"));
         CastQuestion {
             start: PlacedShape { position: turned([0.0; 3], 3.0 * self.angle), shape },
             velocity,
-            // At time 1 the solid is at the end of the path.
+            // The solid reaches the end of the path at time 1.
             options: ImpactOptions::new()
                 .with_max_time(1.0)
                 .with_target_distance(panel.value("gap")),
@@ -62,13 +62,13 @@ where
         Ok(())
     }
 
-    /// Only the direction changes: a cast is a query, and changes no object.
+    /// Rotates the direction of the cast. A cast is a query, which changes no object.
     fn advance(&mut self, _: &mut World<D>, _: &mut Panel) -> Result<(), SampleError> {
         self.angle += TAU / 720.0;
         Ok(())
     }
 
-    /// Finding the first impact alone is faster than finding all.
+    /// Runs the cast. Finding only the first impact is faster than finding all impacts.
     fn updated(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let cast = self.question(panel);
         let question = if panel.is_set("all") {
@@ -85,12 +85,13 @@ where
         Ok(())
     }
 
-    /// Draws the start, the impact and the end of the path.
+    /// Draws the solid at the start, at the impacts and at the end of the path.
     fn draw(&self, _: &World<D>, panel: &Panel, canvas: &mut Canvas<'_, D>) {
         let CastQuestion { start, velocity, .. } = self.question(panel);
         let (shape, position) = (&start.shape, start.position);
         let sweep = SweptShape { shape, position, velocity, max_time: 1.0 };
-        // Each impact is drawn with the whole sweep; without one the sweep is drawn alone.
+        // Each impact is drawn together with the whole path. Without an impact the path is drawn
+        // alone.
         if self.hits.is_empty() {
             canvas.drawing.cast(&sweep, None, canvas.renderer);
         }

@@ -1,37 +1,37 @@
-//! The clearance along a path.
+//! The clearance of a body along a path.
 
 use crate::prelude::*;
 
-/// The number of points of the path at which the clearance is computed.
+/// The number of sections of the path, at whose ends the clearance is computed.
 const PLACES: usize = 120;
 
-/// A point of the path with its distance from the obstacles.
+/// A point of the path, and its clearance.
 #[derive(Clone, Copy, Debug)]
 struct Place<const D: usize> {
     /// The point.
     at: Point<f32, D>,
-    /// The distance from the obstacles; zero where the body would touch one.
+    /// The distance of the body at this point from the obstacles; zero if it would touch one.
     distance: f32,
 }
 
-/// A body on a wavy path between obstacles, which can be dragged.
+/// A body on a wavy path between obstacles. The user can drag the obstacles.
 #[derive(Debug, Default)]
 pub(crate) struct Clearance<const D: usize> {
-    /// The body that follows the path.
+    /// The object that follows the path.
     body: Option<CollisionObjectHandle>,
-    /// The path with its distances.
+    /// The points of the path with their clearances.
     places: Vec<Place<D>>,
     step: usize,
 }
 
-/// Returns a point of the path; `place` is from 0 to `PLACES`.
+/// Returns a point of the path. `place` is from 0 (start) to [`PLACES`] (end).
 fn path<const D: usize>(place: usize) -> Point<f32, D> {
     let share = number(place) / number(PLACES);
     let sine = impinge::math::Real::sine_cosine(2.0 * TAU * share).0;
     point([12.0 * share - 6.0, 1.5 * sine, 0.0])
 }
 
-/// Returns red at distance zero, green from `wanted` on.
+/// Returns a colour from red at distance 0 to green at distances of `wanted` or more.
 fn color(distance: f32, wanted: f32) -> Color {
     let share = min(distance / wanted, 1.0);
     let shade = |from: f32, to: f32| {
@@ -54,7 +54,7 @@ where
         )
     }
 
-    /// Adds obstacles of several kinds, left and right of the path.
+    /// Adds the body, and obstacles of several kinds on both sides of the path.
     fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         *self = Self::default();
         let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
@@ -70,13 +70,13 @@ where
         Ok(())
     }
 
-    /// A larger body has less clearance: the distances change at once.
+    /// Changes the radius of the body. A larger body has less clearance.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let Some(body) = self.body else { return Ok(()) };
         Ok(world.set_shape(body, ShapeHandle::new(Ball::new(panel.value("radius"))))?)
     }
 
-    /// Moves on by a point of the path every three steps.
+    /// Moves the body to the next point of the path every three steps.
     fn advance(&mut self, world: &mut World<D>, _: &mut Panel) -> Result<(), SampleError> {
         self.step += 1;
         let Some(body) = self.body else { return Ok(()) };
@@ -84,7 +84,7 @@ where
         Ok(world.set_position(body, f32::isometry(&Pose::from_translation(place.coords)))?)
     }
 
-    /// Computes the distance of the body from everything else, at each point.
+    /// Computes the distance of the body from all other objects, for each point of the path.
     fn updated(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         let found = self.body.and_then(|body| world.collision_object(body));
         let Some(body) = found else { return Ok(()) };
@@ -92,7 +92,7 @@ where
         let measured = (0..=PLACES).map(|place| {
             let at = path(place);
             let position = f32::isometry(&Pose::from_translation(at.coords));
-            // The limit exceeds all distances here; a small limit is faster.
+            // The limit of 100 exceeds all distances here. A smaller limit would be faster.
             let near = world.closest_object(&position, &**body.shape(), 100.0, &others);
             Place { at, distance: near.map_or(100.0, |near| near.distance) }
         });
@@ -100,7 +100,7 @@ where
         Ok(())
     }
 
-    /// Each piece of the path has the colour of its nearer end.
+    /// Draws each section of the path in the colour of its end with the smaller distance.
     fn draw(&self, _: &World<D>, panel: &Panel, canvas: &mut Canvas<'_, D>) {
         for pair in self.places.windows(2) {
             let least = min(pair[0].distance, pair[1].distance);

@@ -1,4 +1,4 @@
-//! Samples of queries of a world.
+//! Samples of queries on a world.
 
 pub(crate) mod casts;
 pub(crate) mod clearance;

@@ -6,26 +6,26 @@ use impinge_scenes::asteroids;
 use crate::prelude::*;
 use crate::scene::Play;
 
-/// An object that was found, with its distance.
+/// An object that the query found, with its distance from the probe.
 #[derive(Debug)]
 struct Near<const D: usize> {
-    /// The closest points: on the probe, and on the object.
+    /// The closest points: the first on the probe, the second on the object.
     ends: [Point<f32, D>; 2],
-    /// The distance of these points.
+    /// The distance between the closest points.
     distance: f32,
 }
 
-/// A ball that can be dragged through a field of asteroids.
+/// A ball in a field of asteroids, which the user can drag.
 #[derive(Debug, Default)]
 pub(crate) struct Nearest<const D: usize> {
-    /// The asteroids.
+    /// The scene with the asteroids.
     play: Play<D>,
     /// The ball from which distances are measured.
     probe: Option<CollisionObjectHandle>,
-    /// The nearest first.
+    /// The objects that the query found, the nearest first.
     near: Vec<Near<D>>,
     step: usize,
-    /// Whether the user has dragged the probe.
+    /// `true` after the user has dragged the probe.
     is_held: bool,
 }
 
@@ -52,7 +52,7 @@ where
         Ok(())
     }
 
-    /// The probe moves back and forth until it is dragged.
+    /// Moves the probe back and forth until the user drags it.
     fn advance(&mut self, world: &mut World<D>, _: &mut Panel) -> Result<(), SampleError> {
         self.step += 1;
         if let Some(probe) = self.probe.filter(|_| !self.is_held) {
@@ -73,7 +73,8 @@ where
         Ok(())
     }
 
-    /// Distances are between the shapes. The probe itself is excluded.
+    /// Finds the objects nearest to the probe, by the distances between the shapes. The probe
+    /// itself is excluded.
     fn updated(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let found = self.probe.and_then(|probe| world.collision_object(probe));
         let Some(probe) = found else { return Ok(()) };
@@ -92,7 +93,7 @@ where
         Ok(())
     }
 
-    /// Draws a line to each, red to the nearest.
+    /// Draws a line to each found object: red to the nearest, blue to the others.
     fn draw(&self, _: &World<D>, _: &Panel, canvas: &mut Canvas<'_, D>) {
         for (rank, near) in self.near.iter().enumerate() {
             canvas.line(near.ends, if rank == 0 { RED } else { BLUE });

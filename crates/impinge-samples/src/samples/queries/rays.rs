@@ -18,19 +18,20 @@ where
     hit: Option<RayIntersection<f32, D>>,
 }
 
-/// Rays from the centre of a field of asteroids in all directions of the xy plane, like those of a scanner.
+/// Rays from the centre of a field of asteroids in all directions of the xy plane, like those of a
+/// scanner.
 #[derive(Debug, Default)]
 pub(crate) struct Rays<const D: usize>
 where
     f32: Space<D>,
 {
-    /// The asteroids.
+    /// The scene with the asteroids.
     play: Play<D>,
     /// The origin of all rays.
     eye: Point<f32, D>,
-    /// The rays of the last update.
+    /// The rays of the last update with their hits.
     shots: Vec<Shot<D>>,
-    /// The direction of the first ray.
+    /// The direction of the first ray, in radians from x to y.
     angle: f32,
 }
 
@@ -38,7 +39,8 @@ impl<const D: usize> Rays<D>
 where
     f32: Dimension<D>,
 {
-    /// The query goes through the recorder, so that the recording has it with its result.
+    /// Casts a ray of length `reach`. The query goes through the recorder, so that the recording
+    /// contains the query and its result.
     fn shoot(
         &self,
         world: &mut World<D>,
@@ -47,8 +49,8 @@ where
     ) -> Result<Shot<D>, SampleError> {
         let direction = turn::<D>([0, 1], direction) * vector::<D>([1.0, 0.0, 0.0]);
         let ray = Ray::new(self.eye, direction);
-        // The direction has length 1, so that times are lengths. A ray that begins inside a solid hits it at time
-        // zero.
+        // The direction has length 1, so that times are lengths. A ray that starts inside a solid
+        // hits it at time zero.
         let asked = RayQuestion { ray, max_time: reach, solid: true };
         let answer = world.ask(&Query::new(Question::FirstRayHit(asked)))?;
         let hit = answer.first().and_then(|found| match found.detail {
@@ -72,7 +74,7 @@ where
         )
     }
 
-    /// The eye is at the average position of the asteroids.
+    /// Adds the asteroids. The origin of the rays is the mean of their positions.
     fn build(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         let play = Play::start(asteroids(60), world)?;
         let places = play.handles().iter().map(|object| pose_of(world, *object).translation);
@@ -87,7 +89,7 @@ where
         self.play.advance(world)
     }
 
-    /// Casts the rays after the update, at the new positions of the asteroids.
+    /// Casts the rays after the update, when the asteroids are at their new positions.
     fn updated(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let (count, reach) = (panel.count("count"), panel.value("reach"));
         let directions = (0..count).map(|n| self.angle + TAU * number(n) / number(count));
@@ -96,7 +98,7 @@ where
         Ok(())
     }
 
-    /// Draws each ray up to its hit, or to its length.
+    /// Draws each ray up to its hit, or with its full length.
     fn draw(&self, _: &World<D>, panel: &Panel, canvas: &mut Canvas<'_, D>) {
         for Shot { ray, hit } in &self.shots {
             let end = hit.map_or(panel.value("reach"), |hit| hit.toi);

@@ -6,10 +6,10 @@ use impinge_scenes::few_moving;
 use crate::prelude::*;
 use crate::scene::Play;
 
-/// Drifting boxes, of which one in a hundred moves.
+/// Boxes, one in a hundred of which moves.
 #[derive(Debug, Default)]
 pub(crate) struct BroadPhase<const D: usize> {
-    /// The boxes in the world.
+    /// The scene with the boxes.
     play: Play<D>,
 }
 
@@ -24,8 +24,8 @@ where
             .flag("loosened", "Loosened boxes", true)
     }
 
-    /// The margin: large enough to be visible. Fat AABBs do not change while objects move less than
-    /// it.
+    /// Returns a margin that is large enough to be visible. The loosened box of an object does not
+    /// change while the object moves less than the margin.
     fn margin(&self) -> f32 {
         0.15
     }
@@ -35,7 +35,7 @@ where
         Ok(())
     }
 
-    /// Rebuilds the scene if the count has changed; the flags are read while drawing.
+    /// Rebuilds the scene if the count has changed. The flags are read in `draw`.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         if world.len() == panel.count("count") {
             return Ok(());
@@ -47,7 +47,7 @@ where
         self.play.advance(world)
     }
 
-    /// A drawing of a world can include the boxes of objects and of nodes.
+    /// Draws the boxes of objects and of tree nodes.
     fn draw(&self, world: &World<D>, panel: &Panel, canvas: &mut Canvas<'_, D>) {
         let DebugOptions { tree_node, loosened_box, .. } = DebugOptions::all();
         let options = DebugOptions {
@@ -58,7 +58,8 @@ where
         DebugDrawing::new(options).world(world, canvas.renderer);
     }
 
-    /// Returns the number of all possible pairs, and of the remaining pairs.
+    /// Returns the number of all pairs of objects, and the number of pairs that the broad phase
+    /// keeps.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let all = world.len() * world.len().saturating_sub(1) / 2;
         vec![

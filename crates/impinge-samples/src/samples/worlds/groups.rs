@@ -1,4 +1,4 @@
-//! Groups and pair filters.
+//! Collision groups and pair filters.
 
 use impinge::world::{BroadPhasePairFilter, CollisionObject};
 use impinge_record::Registry;
@@ -7,13 +7,13 @@ use impinge_scenes::sparse_drift;
 use crate::prelude::*;
 use crate::scene::Play;
 
-/// The number of teams; the team of an object follows from its index.
+/// The number of teams. The team of an object depends on its index.
 const TEAMS: usize = 3;
 
-/// Drifting boxes, each a member of one of three groups.
+/// Drifting boxes, each a member of the group of its team.
 #[derive(Debug, Default)]
 pub(crate) struct Groups<const D: usize> {
-    /// The boxes in the world.
+    /// The scene with the boxes.
     play: Play<D>,
 }
 
@@ -21,12 +21,13 @@ impl<const D: usize> Groups<D>
 where
     f32: Dimension<D>,
 {
-    /// Each object is a member of the group of its team; the rule sets its whitelist.
+    /// Sets the groups of all objects by the rule in `panel`, and registers or removes the pair
+    /// filter.
     fn assign(&self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let handles = self.play.handles().iter();
         for (index, object) in handles.enumerate() {
-            // Two objects may touch if each is in a group that the other whitelists, and in none that it
-            // blacklists.
+            // Two objects may touch if each is in a group that the other whitelists, and in no
+            // group that the other blacklists.
             let team = index % TEAMS;
             let mut groups = CollisionGroups::new();
             groups.set_membership(&[team]);
@@ -38,7 +39,7 @@ where
             }
             world.set_collision_groups(*object, groups)?;
         }
-        // A filter is code: the recording has its name, and the registry the function.
+        // A filter is code: the recording contains its name, and the registry the filter.
         if panel.is_set("filter") {
             world.register_broad_phase_pair_filter("same first digit")?;
         } else {
@@ -48,13 +49,13 @@ where
     }
 }
 
-/// Returns the team of an object from its label.
+/// Returns the team of an object from its label; `None` for other labels.
 fn team(label: &str) -> Option<usize> {
     let index: usize = label.strip_prefix("object ")?.parse().ok()?;
     Some(index % TEAMS)
 }
 
-/// A pair filter: accepts only pairs whose numbers begin with the same digit.
+/// A pair filter that accepts only objects whose numbers begin with the same digit.
 #[derive(Clone, Copy, Debug)]
 struct SameFirstDigit;
 
@@ -89,13 +90,13 @@ where
         Registry::new().with_filter("same first digit", SameFirstDigit)
     }
 
-    /// In the scene all pairs may touch; the groups are set afterwards.
+    /// Adds the boxes, then sets their groups. In the original scene all pairs may touch.
     fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         self.play = Play::start(sparse_drift(90), world)?;
         self.assign(world, panel)
     }
 
-    /// Groups can change at any time; pairs start and stop at the next update.
+    /// Sets the groups again. They can change at any time; pairs start and stop at the next update.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         self.assign(world, panel)
     }
@@ -104,10 +105,10 @@ where
         self.play.advance(world)
     }
 
-    /// Pairs are counted by the labels of both objects, not by their groups, so that the numbers test the
-    /// rule.
+    /// Returns the numbers of contacts within and between teams. Teams are taken from the labels,
+    /// not from the groups, so that the numbers verify the rule.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
-        // Each manifold counts once.
+        // Each manifold counts as one contact.
         let is_within: Vec<_> = world
             .contact_views()
             .map(|(one, two, _)| team(one.data()) == team(two.data()))

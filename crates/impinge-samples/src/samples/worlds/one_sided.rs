@@ -1,17 +1,17 @@
-//! A one-sided surface: contacts from above, none from below.
+//! A one-sided surface, which has contacts from above and none from below.
 
 use crate::prelude::*;
 
-/// A ball that rises through a hill and falls on it.
+/// A ball that rises through a hill and descends onto it.
 #[derive(Debug, Default)]
 pub(crate) struct OneSided {
-    /// The hill and the ball.
+    /// The objects of the hill and the ball.
     objects: Vec<CollisionObjectHandle>,
-    /// The step of the motion of the ball.
+    /// The number of steps since the start.
     step: usize,
 }
 
-/// Returns the triangles of the hill, one-sided or two-sided.
+/// Returns the mesh of the hill, one-sided or two-sided.
 fn hill<const D: usize>(panel: &Panel) -> ShapeHandle<f32, D>
 where
     f32: Dimension<D>,
@@ -22,7 +22,7 @@ where
 }
 
 impl OneSided {
-    /// Returns the position of the ball at a step: up through the hill, and down again.
+    /// Returns the current position of the ball, which moves up through the hill and down again.
     fn position<const D: usize>(&self) -> Isometry<D>
     where
         f32: Dimension<D>,
@@ -51,7 +51,7 @@ where
         Ok(())
     }
 
-    /// The shape is replaced while the ball moves on.
+    /// Replaces the shape of the hill while the ball moves on.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let &[surface, _] = self.objects.as_slice() else { return Ok(()) };
         Ok(world.set_shape(surface, hill(panel))?)
@@ -63,7 +63,8 @@ where
         Ok(world.set_position(ball, self.position())?)
     }
 
-    /// The normal points from the hill to the ball, which was added later.
+    /// Returns the depth and the normal of the contact. The normal points from the hill to the
+    /// ball, since the hill was added first.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let deepest = world.contact_views().map(|(_, _, manifold)| manifold.deepest_contact());
         let deepest = deepest.map(|point| point.contact).next();

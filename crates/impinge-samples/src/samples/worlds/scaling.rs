@@ -1,30 +1,31 @@
-//! One scene at many sizes, near the origin and far from it.
+//! A scene at many sizes, near the origin and far from it.
 
 use crate::prelude::*;
 
-/// The number of solids in the row.
+/// The number of solids in a row.
 const COUNT: usize = 6;
 
-/// Solids that move up and down on a slab. All lengths are multiplied by a power of two, so that the results
-/// scale exactly.
+/// Solids that move up and down on a slab. All lengths are multiplied by a power of two, so that
+/// the results scale exactly.
 #[derive(Debug, Default)]
 pub(crate) struct Scaling {
-    /// The solids on the slab.
+    /// The objects of the solids on the slab.
     solids: Vec<CollisionObjectHandle>,
-    /// The index of the current step of the motion of the solids.
+    /// The number of steps of the motion.
     step: usize,
 }
 
-/// The factor of all lengths.
+/// Returns the factor of all lengths, a power of two.
 fn scale(panel: &Panel) -> f32 {
     let exponent = panel.value("exponent").floor();
-    // Powers of two are exact, so that all lengths have the same digits at every size.
+    // Products with a power of two are exact, so that all lengths have equal mantissas at every
+    // size.
     let factor = if exponent < 0.0 { 0.5 } else { 2.0 };
     (0..).take_while(|n| number(*n) < exponent.abs()).fold(1.0, |scale, _| scale * factor)
 }
 
 impl Scaling {
-    /// Returns the position of a solid: above the slab, in it, and above it again.
+    /// Returns the position of a solid, which moves down to the slab and up again.
     fn position<const D: usize>(&self, index: usize, panel: &Panel) -> Isometry<D>
     where
         f32: Dimension<D>,
@@ -36,7 +37,7 @@ impl Scaling {
         turned([x * scale, height * scale, 0.0], 0.3 * number(index))
     }
 
-    /// Returns the largest depth of a contact.
+    /// Returns the depth of the deepest contact; `None` if there is no contact.
     fn depth<const D: usize>(world: &World<D>) -> Option<f32>
     where
         f32: Dimension<D>,
@@ -59,7 +60,8 @@ where
         )
     }
 
-    /// Shapes and positions are scaled; margins and predictions of zero need no scaling.
+    /// Adds the slab and the solids, with scaled shapes and positions. Predictions are zero and
+    /// need no scaling.
     fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let (scale, groups, query) =
             (scale(panel), CollisionGroups::new(), ContactQuery::default());
@@ -75,7 +77,7 @@ where
         Ok(())
     }
 
-    /// The motion continues at another size.
+    /// Rebuilds the scene at another size, and continues the motion.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let step = self.step;
         self.rebuild(world, panel)?;
@@ -91,7 +93,8 @@ where
         Ok(())
     }
 
-    /// The depth in units of the size has all its digits at every size near the origin.
+    /// Returns the deepest contact, also in units of the size. At the origin that value is exactly
+    /// equal at all sizes.
     fn readouts(&self, world: &World<D>, panel: &Panel) -> Vec<Readout> {
         let points = world.contact_views().map(|(_, _, manifold)| manifold.len()).sum::<usize>();
         let (depth, scale) = (Self::depth(world).unwrap_or(0.0), scale(panel));

@@ -1,4 +1,4 @@
-//! The scenes of `impinge-scenes`: rain, asteroids, a crowd, thousands of boxes.
+//! The scenes of `impinge-scenes`, such as rain, asteroids, a crowd or thousands of boxes.
 
 use impinge::narrow_phase::ContactEvent;
 use impinge_scenes::Scene;
@@ -6,26 +6,26 @@ use impinge_scenes::Scene;
 use crate::prelude::*;
 use crate::scene::Play;
 
-/// A constructor of a scene with a number of objects.
+/// A function that creates a scene with a number of objects.
 type MakeScene<const D: usize> = fn(usize) -> Scene<D>;
 
-/// A scene whose motions are functions of the step.
+/// A scene whose positions are functions of the step.
 #[derive(Debug)]
 pub(crate) struct Scenery<const D: usize> {
-    /// Makes the scene for a number of objects.
+    /// Creates the scene with a number of objects.
     make: MakeScene<D>,
-    /// The initial and the largest number of objects.
+    /// The initial and the maximum number of objects.
     counts: [u32; 2],
-    /// The scene in the world.
+    /// The scene with its objects in the world.
     play: Play<D>,
-    /// The number of pairs that started touching since the start.
+    /// The number of times since the start that a pair began to touch.
     started: usize,
-    /// The number of pairs that stopped touching since the start.
+    /// The number of times since the start that a pair stopped touching.
     stopped: usize,
 }
 
 impl<const D: usize> Scenery<D> {
-    /// Creates a sample with the initial and the largest number of objects.
+    /// Creates a sample with the initial and the maximum number of objects.
     pub(crate) fn new(make: MakeScene<D>, counts: [u32; 2]) -> Self {
         Self { make, counts, play: Play::default(), started: 0, stopped: 0 }
     }
@@ -40,7 +40,7 @@ where
         Panel::new().number("count", "Objects", first, [10.0, most, 10.0])
     }
 
-    /// The margin for objects of size 1 that move by a few percent of their size in a step.
+    /// Returns a margin for objects of size 1 that move by a few percent of their size in a step.
     fn margin(&self) -> f32 {
         0.04
     }
@@ -60,7 +60,7 @@ where
         self.play.advance(world)
     }
 
-    /// Events of contacts and of proximities are both counted: a pair started or stopped touching.
+    /// Counts the pairs that began or stopped touching, by events of contacts and of proximities.
     fn updated(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         let contacts =
             world.contact_events().iter().map(|event| matches!(event, ContactEvent::Started(..)));
@@ -75,7 +75,8 @@ where
         Ok(())
     }
 
-    /// Pairs exist while the fat AABBs overlap, with contacts or without.
+    /// Returns the numbers of pairs. A pair exists while the loosened boxes overlap, with contacts
+    /// or without.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         vec![
             Readout::new("Pairs with contacts kept", world.contact_pairs().count()),

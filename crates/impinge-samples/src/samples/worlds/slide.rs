@@ -2,25 +2,27 @@
 
 use crate::prelude::*;
 
-/// The number of tilted normals that are kept for the picture.
+/// The number of tilted normals that are drawn.
 const SHOWN: usize = 100;
 
-/// The box moves back and forth over the floor with a small penetration, like a body under gravity.
+/// A box that moves back and forth over a floor with a small penetration, like a body under
+/// gravity.
 #[derive(Debug, Default)]
 pub(crate) struct Slide<const D: usize> {
-    /// The box.
+    /// The object of the box.
     slider: Option<CollisionObjectHandle>,
-    /// The surface.
+    /// The object of the floor.
     floor: Option<CollisionObjectHandle>,
     step: usize,
-    /// The number of normals that were not vertical since the start.
+    /// The number of normals since the start that were not vertical.
     count: usize,
-    /// The last contacts with tilted normals: the contact point, and the end of the normal from it.
+    /// The last contacts with tilted normals: the contact point, and the point at distance 1 along
+    /// the normal.
     bumps: Vec<[Point<f32, D>; 2]>,
 }
 
-/// Returns the flat floor with its kind of contacts.
-/// Both kinds have the same triangles; they differ in the treatment of internal edges.
+/// Returns the flat floor. The control `contacts` selects whether each triangle has contacts of its
+/// own.
 fn floor<const D: usize>(panel: &Panel) -> ShapeHandle<f32, D>
 where
     f32: Dimension<D>,
@@ -36,8 +38,7 @@ impl<const D: usize> Slide<D>
 where
     f32: Dimension<D>,
 {
-    /// Returns the position of the box, whose path crosses the edges of the triangles and is
-    /// parallel to none of them.
+    /// Returns the position of the box. In 3D its path is parallel to no edge of the triangles.
     fn position(&self, panel: &Panel) -> Isometry<D> {
         let way = 8.0 * to_and_fro(number(self.step) / 600.0) - 4.0;
         turned([way, 0.4 - panel.value("sunk"), 0.37 * way], 0.0)
@@ -69,7 +70,7 @@ where
         Ok(())
     }
 
-    /// The surface is replaced below the box, and the count starts again.
+    /// Replaces the floor below the box, and resets the count of tilted normals.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         self.bumps.clear();
         self.count = 0;
@@ -83,7 +84,8 @@ where
         Ok(world.set_position(slider, self.position(panel))?)
     }
 
-    /// A tilted normal would stop a body as if it had hit a bump (a ghost collision).
+    /// Collects tilted normals. Such a normal would stop a body as if it had hit a bump (a ghost
+    /// collision).
     fn updated(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         let points = world.contact_views().flat_map(|(_, _, manifold)| manifold.contacts());
         let leaning =
@@ -108,7 +110,7 @@ where
         }
     }
 
-    /// Zero for a surface, many for separate triangles.
+    /// Returns counts. Tilted normals occur only if each triangle has its own contacts.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let points = world.contact_views().map(|(_, _, manifold)| manifold.len()).sum::<usize>();
         vec![

@@ -1,27 +1,27 @@
-//! A surface that deforms at each step, and balls on it.
+//! A surface that changes its shape at each step, and balls on it.
 
 use impinge::math::Real;
 
 use crate::prelude::*;
 
-/// The period of the wave in steps: its shapes are made once.
+/// The period of the wave in steps. The shapes of a period are computed once.
 const PERIOD: usize = 60;
 /// The number of cells of the surface along each axis.
 const CELLS: usize = 16;
 
-/// The shapes of one period, and the balls.
+/// A surface with the shapes of one period, and balls that follow it.
 #[derive(Debug, Default)]
 pub(crate) struct Waves<const D: usize> {
-    /// The shapes of a period.
+    /// The shape at each step of a period.
     surfaces: Vec<ShapeHandle<f32, D>>,
-    /// The object whose shape is replaced.
+    /// The object whose shape is replaced in each step.
     surface: Option<CollisionObjectHandle>,
-    /// The balls, from left to right.
+    /// The objects of the balls, from left to right.
     balls: Vec<CollisionObjectHandle>,
     step: usize,
 }
 
-/// Returns the height of the wave at a point, at a phase from 0 to 1.
+/// Returns the height of the wave at a point. `phase` is from 0 to 1.
 fn height(x: f32, z: f32, phase: f32, amplitude: f32) -> f32 {
     let along = 0.7 * x + 0.4 * z;
     amplitude * Real::sine_cosine(along - TAU * phase).0
@@ -31,7 +31,7 @@ impl<const D: usize> Waves<D>
 where
     f32: Dimension<D>,
 {
-    /// Makes a height field for each step of a period.
+    /// Computes a height field for each step of a period.
     fn make_surfaces(&mut self, panel: &Panel) {
         let amplitude = panel.value("amplitude");
         let surface = |n: usize| {
@@ -41,18 +41,18 @@ where
         self.surfaces = (0..PERIOD).map(surface).collect();
     }
 
-    /// Returns the position where a ball of radius 0.4 lands if it falls vertically, by a cast
-    /// against the surface alone.
+    /// Returns the position at which a ball of radius 0.4 lands if it falls vertically. It is found
+    /// by a cast against the current surface.
     fn fallen(&self, ball: usize) -> Isometry<D> {
         let above = [2.0 * number(ball) - 6.0, 10.0, scattered(ball, 0) * 8.0 - 4.0];
         let (shape, here) = (Ball::new(0.4), isometry(&Pose::identity()));
         let surface = &self.surfaces[self.step % PERIOD];
-        // The world is not used: it still has the surface of the previous step.
+        // The world is not used, since it still contains the surface of the previous step.
         let still = Moving::still(&here, &**surface);
         let start = isometry(&Pose::from_translation(vector::<D>(above)));
         let falling = Moving::new(&start, &vector([0.0, -1.0, 0.0]), &shape);
         let hit = impact(&still, &falling, &ImpactOptions::new());
-        // The depth to which a body would penetrate.
+        // The ball penetrates the surface by 0.005, like a body under gravity.
         let fall = hit.map_or(0.0, |hit| hit.toi + 0.005);
         at([above[0], above[1] - fall, above[2]])
     }
@@ -80,13 +80,13 @@ where
         Ok(())
     }
 
-    /// New heights take effect at the next step.
+    /// Computes the surfaces with the new height, which are used from the next step on.
     fn changed(&mut self, _: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         self.make_surfaces(panel);
         Ok(())
     }
 
-    /// Moves the surface, then the balls; the update handles both.
+    /// Replaces the surface, then moves the balls. One update of the world handles both.
     fn advance(&mut self, world: &mut World<D>, _: &mut Panel) -> Result<(), SampleError> {
         self.step += 1;
         if let Some(surface) = self.surface {
@@ -98,7 +98,7 @@ where
         Ok(())
     }
 
-    /// The normal of a flat position has a y of 1.
+    /// Returns the number of contacts, and the largest tilt of a normal: 0 on a horizontal surface.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let deepest = world.contact_views().map(|(_, _, manifold)| manifold.deepest_contact());
         let steepest = deepest.map(|point| 1.0 - point.contact.normal[1].abs()).reduce(max);
