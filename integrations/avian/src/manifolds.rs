@@ -7,7 +7,7 @@ use impinge::math::{Point, Space, Vector};
 use impinge::narrow_phase::{
     ContactManifoldGenerator, ContactPrediction, DefaultContactDispatcher,
 };
-use impinge::query::{Contact, ContactId, ContactManifold, TrackedContact};
+use impinge::query::{Contact, ContactId, ManifoldView};
 use impinge::shape::{FeatureId, Shape};
 
 use crate::Collider;
@@ -62,26 +62,22 @@ where
         self.has_parts
     }
 
-    /// Calls `read` with the manifolds of the pair up to the distance `prediction`, computed
-    /// without state; none is empty.
-    pub(crate) fn contacts(&self, prediction: f32, read: impl FnOnce(&[&ContactManifold<f32, D>])) {
-        let Some(shapes) = self.shapes else { return read(&[]) };
-        let found = f32::contacts(&self.poses, shapes, &ahead(prediction));
-        match &found[..] {
-            // Two convex shapes have at most one manifold.
-            [one] => read(&[one]),
-            found => read(&found.iter().collect::<Vec<_>>()),
-        }
+    /// Computes the manifolds of the pair up to the distance `prediction`, without state, and passes
+    /// each to `write`.
+    pub(crate) fn contacts(&self, prediction: f32, write: impl FnMut(ManifoldView<'_, f32, D>)) {
+        let Some(shapes) = self.shapes else { return };
+        f32::each_manifold(&self.poses, shapes, &ahead(prediction), write);
     }
 
-    /// Updates `state` and calls `read` with the manifolds of the pair up to the distance `prediction`; none is empty.
+    /// Updates `state` and passes each manifold of the pair up to the distance `prediction` to
+    /// `write`.
     pub(crate) fn update(
         &self,
         state: &mut PairState<D>,
         prediction: f32,
-        read: impl FnOnce(&[&ContactManifold<f32, D>]),
+        write: impl FnMut(ManifoldView<'_, f32, D>),
     ) {
-        let Some([shape1, shape2]) = self.shapes else { return read(&[]) };
+        let Some([shape1, shape2]) = self.shapes else { return };
         let ([pose1, pose2], prediction) = (&self.poses, ahead(prediction));
         let dispatcher = DefaultContactDispatcher::<D>::new();
         let PairState { generator, ids } = state;
@@ -90,26 +86,23 @@ where
         if generator.num_contacts() > 0 {
             generator.contacts(&mut manifolds);
         }
-        read(&manifolds);
-    }
-
-    /// Returns the normal of a manifold, from the first collider to the second; `None` if the
-    /// manifold is empty.
-    pub(crate) fn normal(manifold: &ContactManifold<f32, D>) -> Option<Vec_<D>> {
-        manifold.contacts().first().map(|tracked| f32::vec(&tracked.contact.normal))
+        manifolds.into_iter().filter_map(ManifoldView::of_manifold).for_each(write);
     }
 
     /// Returns the points of a manifold.
-    pub(crate) fn touches(
+    pub(crate) fn touches<'v>(
         &self,
-        manifold: &ContactManifold<f32, D>,
-    ) -> impl Iterator<Item = Touch<D>> {
+        manifold: ManifoldView<'v, f32, D>,
+    ) -> impl Iterator<Item = Touch<D>> + use<'v, D> {
         let between: Vector<f32, D> = f32::translation(&self.poses[1]);
-        let contacts = manifold.contacts();
-        contacts.iter().enumerate().map(move |(index, tracked)| {
-            let name =
-                if self.has_parts { own_name(tracked.id) } else { feature_names(contacts, index) };
-            touch(&tracked.contact, &between, name)
+        let (has_parts, mut names) = (self.has_parts, FeatureNames::default());
+        manifold.contacts().map(move |point| {
+            let name = if has_parts {
+                own_name(point.id)
+            } else {
+                names.next([point.feature1, point.feature2])
+            };
+            touch(&point.contact, &between, name)
         })
     }
 }
@@ -134,21 +127,32 @@ where
     Touch { anchors, penetration: contact.depth, name }
 }
 
-/// Encodes the features of two convex shapes as Avian does: the kind in the two upper bits. The four bits below count
-/// points with equal features, such as the points of a round cap.
-fn feature_names<const D: usize>(contacts: &[TrackedContact<f32, D>], index: usize) -> [u32; 2] {
-    let features = |tracked: &TrackedContact<f32, D>| {
-        [tracked.kinematic.feature1(), tracked.kinematic.feature2()]
-    };
-    let own = features(&contacts[index]);
-    let before = contacts[..index].iter().filter(|other| features(other) == own).count();
-    let code =
-        |kind: u32, number: u32| kind << 30 | (before as u32 & 0xF) << 26 | number & 0x3FF_FFFF;
-    own.map(|feature| match feature {
-        FeatureId::Vertex(number) => code(1, number),
-        FeatureId::Edge(number) => code(2, number),
-        FeatureId::Face(number) => code(3, number),
-    })
+/// Encodes the features of the points of one manifold of two convex shapes as Avian does: the kind
+/// in the two upper bits. The four bits below count the earlier points with equal features, such as
+/// the points of a round cap.
+#[derive(Default)]
+struct FeatureNames {
+    /// The features of the first points, of which two convex shapes have at most four.
+    earlier: [Option<[FeatureId; 2]>; 4],
+    count: usize,
+}
+
+impl FeatureNames {
+    /// Returns the ids of the next point, which lies on these features.
+    fn next(&mut self, features: [FeatureId; 2]) -> [u32; 2] {
+        let equal = self.earlier.iter().filter(|earlier| **earlier == Some(features)).count();
+        if let Some(slot) = self.earlier.get_mut(self.count) {
+            *slot = Some(features);
+        }
+        self.count += 1;
+        let code =
+            |kind: u32, number: u32| kind << 30 | (equal as u32 & 0xF) << 26 | number & 0x3FF_FFFF;
+        features.map(|feature| match feature {
+            FeatureId::Vertex(number) => code(1, number),
+            FeatureId::Edge(number) => code(2, number),
+            FeatureId::Face(number) => code(3, number),
+        })
+    }
 }
 
 /// Encodes a contact id as two feature ids. Avian matches two points if both of their ids agree, in either order, so

@@ -4,7 +4,7 @@
 use bevy_impinge::{ColliderError, Glam};
 use impinge::math::{Point, Vector};
 use impinge::narrow_phase::ContactPrediction;
-use impinge::query::ContactManifold;
+use impinge::query::ManifoldView;
 use impinge::shape::{ScaleError, Shape, ShapeHandle};
 
 /// The largest number of subdivisions: about 6000 points in 3D.
@@ -12,13 +12,14 @@ const MAX_DETAIL: u32 = 64;
 
 /// The operations that differ by dimension; implemented for `f32` with `D` = 2 and `D` = 3.
 pub trait Dimension<const D: usize>: Glam<D> {
-    /// Computes the contacts of two placed shapes, without state.
+    /// Computes the contacts of two placed shapes, without state, and passes each manifold to `each`.
     #[doc(hidden)]
-    fn contacts(
+    fn each_manifold(
         poses: &[Self::Isometry; 2],
         shapes: [&dyn Shape<f32, D>; 2],
         prediction: &ContactPrediction<f32>,
-    ) -> Vec<ContactManifold<f32, D>>;
+        each: impl FnMut(ManifoldView<'_, f32, D>),
+    );
 
     /// Creates the convex hull of points.
     #[doc(hidden)]

@@ -13,9 +13,7 @@ use crate::collide::{
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector};
 use crate::memory::clone_fields;
 use crate::query::composite::{Touched, touched};
-use crate::query::{
-    ContactManifold, ManifoldView, PairRef, PlacedSolids, Placement, Proximity, materialise,
-};
+use crate::query::{ContactManifold, ManifoldView, PairRef, PlacedSolids, Placement, Proximity};
 use crate::shape::{Geometry, Kind, Shape};
 use crate::tables::ByDimension;
 use crate::tables::entries;
@@ -218,13 +216,10 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
         pair_number: u64,
         old: ContactManifold<N, D>,
     ) -> ContactManifold<N, D> {
-        let (raw, is_swapped) = self.kept();
-        if raw.points.is_empty() {
+        if self.len() == 0 {
             return ContactManifold::default();
         }
-        let pair = ordered_pair(placed, is_swapped);
-        let placement = Placement::of_pair(placed, pair_number, is_swapped);
-        materialise(&pair, raw, &placement, old)
+        self.view(placed, [0, 1], pair_number).manifold_in(old)
     }
 }
 
@@ -432,11 +427,15 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for CompositeState<N, D> {
         &self,
         placed: &[Placed<'_, N, D>; 2],
         pair_number: u64,
-        old: Vec<ContactManifold<N, D>>,
+        mut old: Vec<ContactManifold<N, D>>,
     ) -> Vec<ContactManifold<N, D>> {
-        let pair = ordered_pair(placed, self.swapped);
-        let placement = Placement::of_pair(placed, pair_number, self.swapped);
-        self.contacts.manifolds(&pair, &placement, old)
+        old.resize_with(self.contacts.patches().len(), ContactManifold::default);
+        for (patch, manifold) in old.iter_mut().enumerate() {
+            if let Some(view) = self.view(placed, [0, 1], pair_number, patch) {
+                *manifold = view.manifold_in(core::mem::take(manifold));
+            }
+        }
+        old
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::kinematic::KinematicSides;
 use super::{Contact, ContactKinematic};
-use crate::collide::{Pair, Placed, RawManifold, RawPoint};
+use crate::collide::{Pair, RawManifold, RawPoint};
 use crate::math::{Point, Pose, Real, Unit, Vector};
 
 /// The id of a contact, unique among all contacts of a world at all times.
@@ -247,7 +247,7 @@ pub(crate) struct Placement<'a, N: Real, const D: usize> {
     pub(crate) is_swapped: bool,
 }
 
-impl<'a, N: Real, const D: usize> Placement<'a, N, D> {
+impl<N: Real, const D: usize> Placement<'_, N, D> {
     /// Passes a contact of a raw manifold with the normal `own` on: its id, its point on the user's
     /// first solid in the world frame, and its depth. The bits are those of [`placed`].
     #[inline(always)]
@@ -262,17 +262,11 @@ impl<'a, N: Real, const D: usize> Placement<'a, N, D> {
         let id = ContactId { pair: self.pair, number: raw.id };
         each(id, self.pose1.point(&own_first), -raw.distance);
     }
-
-    /// Returns the placement of two solids given in the user's order.
-    #[inline]
-    pub(crate) fn of_pair(placed: &'a [Placed<'_, N, D>; 2], pair: u64, is_swapped: bool) -> Self {
-        Self { pose1: &placed[usize::from(is_swapped)].pose, pair, is_swapped }
-    }
 }
 
 /// Converts a raw manifold to the public type; `pair` must be the pair for which `raw` was built.
 /// Reuses the memory of `old`.
-pub(crate) fn materialise<N: Real, const D: usize>(
+pub(super) fn materialise<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     raw: &RawManifold<N, D>,
     placement: &Placement<'_, N, D>,

@@ -6,7 +6,7 @@ use crate::tables::entries;
 use core::fmt;
 
 use super::kinematic::KinematicSides;
-use super::manifold::{placed, tracked};
+use super::manifold::{materialise, placed, tracked};
 use super::{
     Contact, ContactId, ContactKinematic, ContactManifold, Placement, TrackedContact, composite,
 };
@@ -356,7 +356,26 @@ impl<N: Space<D>, const D: usize> ManifoldView<'_, N, D> {
     /// Converts the view to a manifold that owns its data: all contacts with their kinematics.
     #[must_use]
     pub fn to_manifold(&self) -> ContactManifold<N, D> {
-        ContactManifold::from_contacts((0..self.len()).map(|index| self.tracked_contact(index)))
+        entries::manifold_of_view(self, ContactManifold::default())
+    }
+
+    /// Implements [`Self::to_manifold`] in the memory of `old`.
+    pub(crate) fn manifold_in(&self, mut old: ContactManifold<N, D>) -> ContactManifold<N, D> {
+        match self.0 {
+            ViewSource::Convex(raw, placement, pair) => {
+                materialise(&pair.in_order(placement.is_swapped), raw, &placement, old)
+            }
+            ViewSource::Patch(patch, placement, pair) => {
+                let pair = pair.in_order(placement.is_swapped);
+                let points = patch.points.iter();
+                old.refill(points.map(|point| composite::tracked(&pair, patch, point, &placement)));
+                old
+            }
+            ViewSource::Made(manifold) => {
+                old.clone_from(manifold);
+                old
+            }
+        }
     }
 
     /// Implements [`Self::tracked_contact`].

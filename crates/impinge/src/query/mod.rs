@@ -28,8 +28,8 @@ pub use impact::{
 };
 pub(crate) use impact::{Flight, impact_of_flight, impact_of_pair, time_of_pair};
 pub use kinematic::{ContactKinematic, ContactSide, NeighborhoodGeometry};
+pub(crate) use manifold::Placement;
 pub use manifold::{ContactId, ContactManifold, TrackedContact};
-pub(crate) use manifold::{Placement, materialise};
 pub use manifold_view::{ContactPoint, ManifoldView};
 pub(crate) use manifold_view::{PairRef, PlacedSolids};
 pub use mass::{mass_properties, mass_properties_with};

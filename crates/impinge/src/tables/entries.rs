@@ -148,6 +148,12 @@ compiled! {
     ) -> Vec<ContactManifold<N, D>> = CompositeState::manifolds;
 
     /// Returns contact `index` of a manifold view, with its kinematic.
+    /// Converts a view to a manifold that owns its data, in the memory of `old`.
+    fn manifold_of_view(
+        view: &ManifoldView<'_, N, D>,
+        old: ContactManifold<N, D>,
+    ) -> ContactManifold<N, D> = ManifoldView::manifold_in;
+
     fn tracked_contact(view: &ManifoldView<'_, N, D>, index: usize) -> TrackedContact<N, D> =
         ManifoldView::tracked;
 

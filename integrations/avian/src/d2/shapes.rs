@@ -5,7 +5,7 @@ use bevy_impinge::ColliderError;
 use bevy_math::Vec2;
 use bevy_math::primitives::RegularPolygon;
 use impinge::dim2::math::{Isometry, Point};
-use impinge::dim2::query::{ContactManifold, ContactPrediction, contact_manifolds};
+use impinge::dim2::query::{ContactPrediction, ManifoldView, each_contact_manifold};
 use impinge::dim2::shape::{Shape, ShapeHandle};
 use impinge::dim2::transformation::convex_shape;
 
@@ -15,12 +15,13 @@ use crate::collider::points;
 use crate::scaling::Dimension;
 
 impl Dimension<2> for f32 {
-    fn contacts(
+    fn each_manifold(
         [pose1, pose2]: &[Isometry<Self>; 2],
         [shape1, shape2]: [&dyn Shape<Self, 2>; 2],
         prediction: &ContactPrediction<Self>,
-    ) -> Vec<ContactManifold<Self>> {
-        contact_manifolds(pose1, shape1, pose2, shape2, prediction, None)
+        each: impl FnMut(ManifoldView<'_, Self>),
+    ) {
+        each_contact_manifold(pose1, shape1, pose2, shape2, prediction, None, each);
     }
 
     fn hull(points: &[Point<Self>]) -> Result<ShapeHandle<Self>, ColliderError> {

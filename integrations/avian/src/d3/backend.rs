@@ -10,8 +10,7 @@ use bevy_ecs::system::lifetimeless::SRes;
 use bevy_impinge::Glam;
 use bevy_math::{Isometry3d, Quat, Vec2, Vec3};
 use impinge::dim3::math::Isometry;
-use impinge::dim3::query::ContactManifold as Found;
-use impinge::dim3::query::MassProperties;
+use impinge::dim3::query::{ManifoldView, MassProperties};
 
 use super::{Collider, PairContacts};
 use crate::manifolds::{Meeting, Touch};
@@ -47,9 +46,9 @@ impl Collider {
     ) -> Vec<ContactManifold> {
         let poses = beside([position1, position2], [rotation1, rotation2]);
         let (meeting, mut manifolds) = (Meeting::new([self, other], poses), Vec::new());
-        meeting.contacts(prediction_distance, |found| {
-            rewrite(&meeting, found, position1, &mut manifolds);
-        });
+        let mut rewriting = Rewriting::new(position1, &mut manifolds);
+        meeting.contacts(prediction_distance, |found| rewriting.add(&meeting, found));
+        rewriting.end();
         manifolds
     }
 }
@@ -80,13 +79,16 @@ impl AnyCollider for Collider {
         let poses = beside([position1, position2], [rotation1.into(), rotation2.into()]);
         let (meeting, margin) = (Meeting::new([self, other], poses), prediction_distance);
         if !meeting.has_parts() {
-            return meeting
-                .contacts(margin, |found| rewrite(&meeting, found, position1, manifolds));
+            let mut rewriting = Rewriting::new(position1, manifolds);
+            meeting.contacts(margin, |found| rewriting.add(&meeting, found));
+            return rewriting.end();
         }
         let old = warmth(manifolds);
+        let mut rewriting = Rewriting::new(position1, manifolds);
         context.0.with((context.entity1, context.entity2), |state| {
-            meeting.update(state, margin, |found| rewrite(&meeting, found, position1, manifolds));
+            meeting.update(state, margin, |found| rewriting.add(&meeting, found));
         });
+        rewriting.end();
         if context.1.match_contacts && manifolds.len() > MATCHED {
             warm(manifolds, &old);
         }
@@ -122,18 +124,33 @@ fn warm(manifolds: &mut [ContactManifold], old: &[Warmth]) {
     }
 }
 
-/// Replaces the contacts of a pair by those of this step.
-fn rewrite(
-    meeting: &Meeting<'_, 3>,
-    found: &[&Found<f32>],
+/// Replaces the contacts of a pair by those of this step, in the memory of the old ones.
+struct Rewriting<'m> {
     position1: Vec3,
-    manifolds: &mut Vec<ContactManifold>,
-) {
-    manifolds.resize_with(found.len(), || ContactManifold::new([], Vec3::ZERO));
-    for (manifold, found) in manifolds.iter_mut().zip(found) {
-        manifold.normal = Meeting::normal(found).unwrap_or_default();
+    manifolds: &'m mut Vec<ContactManifold>,
+    count: usize,
+}
+
+impl<'m> Rewriting<'m> {
+    fn new(position1: Vec3, manifolds: &'m mut Vec<ContactManifold>) -> Self {
+        Self { position1, manifolds, count: 0 }
+    }
+
+    fn add(&mut self, meeting: &Meeting<'_, 3>, found: ManifoldView<'_, f32>) {
+        if self.count == self.manifolds.len() {
+            self.manifolds.push(ContactManifold::new([], Vec3::ZERO));
+        }
+        let manifold = &mut self.manifolds[self.count];
+        self.count += 1;
+        manifold.normal = f32::vec(&found.normal());
         manifold.points.clear();
-        manifold.points.extend(meeting.touches(found).map(|touch| point(&touch, position1)));
+        let touches = meeting.touches(found);
+        manifold.points.extend(touches.map(|touch| point(&touch, self.position1)));
+    }
+
+    /// Removes the old manifolds that are left.
+    fn end(self) {
+        self.manifolds.truncate(self.count);
     }
 }
 

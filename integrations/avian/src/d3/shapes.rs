@@ -4,7 +4,7 @@ use avian3d::prelude::{Position, Rotation};
 use bevy_impinge::ColliderError;
 use bevy_math::Vec3;
 use impinge::dim3::math::{Isometry, Point, Vector};
-use impinge::dim3::query::{ContactManifold, ContactPrediction, contact_manifolds};
+use impinge::dim3::query::{ContactPrediction, ManifoldView, each_contact_manifold};
 use impinge::dim3::shape::{HeightField, Shape, ShapeHandle};
 use impinge::dim3::transformation::convex_shape;
 
@@ -14,12 +14,13 @@ use crate::collider::points;
 use crate::scaling::Dimension;
 
 impl Dimension<3> for f32 {
-    fn contacts(
+    fn each_manifold(
         [pose1, pose2]: &[Isometry<Self>; 2],
         [shape1, shape2]: [&dyn Shape<Self, 3>; 2],
         prediction: &ContactPrediction<Self>,
-    ) -> Vec<ContactManifold<Self>> {
-        contact_manifolds(pose1, shape1, pose2, shape2, prediction, None)
+        each: impl FnMut(ManifoldView<'_, Self>),
+    ) {
+        each_contact_manifold(pose1, shape1, pose2, shape2, prediction, None, each);
     }
 
     fn hull(points: &[Point<Self>]) -> Result<ShapeHandle<Self>, ColliderError> {

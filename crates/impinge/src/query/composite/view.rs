@@ -25,24 +25,8 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         Some(ManifoldView::of_patch(self.patches().get(patch)?, placement, pair))
     }
 
-    /// Returns one manifold for each patch; `pair` must be the pair of the last update. Reuses the
-    /// memory of `old`.
-    pub(crate) fn manifolds(
-        &self,
-        pair: &Pair<'_, N, D>,
-        placement: &Placement<'_, N, D>,
-        mut old: Vec<ContactManifold<N, D>>,
-    ) -> Vec<ContactManifold<N, D>> {
-        old.resize_with(self.patches().len(), ContactManifold::default);
-        for (manifold, patch) in old.iter_mut().zip(self.patches()) {
-            let tracked = patch.points.iter().map(|point| tracked(pair, patch, point, placement));
-            manifold.refill(tracked);
-        }
-        old
-    }
-
-    /// Implements [`Self::manifolds`] for shapes at given poses; `next` returns the touching solids
-    /// of each contact, in order.
+    /// Returns one manifold for each patch, for shapes at given poses; `next` returns the touching
+    /// solids of each contact, in order. Reuses the memory of `old`.
     pub(crate) fn manifolds_on<'a>(
         &self,
         poses: [&Pose<N, D>; 2],

@@ -7,7 +7,8 @@ use crate::collide::manifold::tests::scene::{
 use crate::collide::{Pair, RawManifold};
 use crate::convex::Separation;
 use crate::math::{Isometry3, Point, Pose, Real, Unit, Vector};
-use crate::query::{Placement, materialise};
+use crate::query::Placement;
+use crate::query::manifold::materialise;
 use crate::shape::{Ball, Capsule, Cuboid, Cylinder, FeatureId, Plane, Segment, Shape};
 
 fn reproduces<N: Scene<D>, const D: usize>(accuracy: f64) {
