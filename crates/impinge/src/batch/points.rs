@@ -97,9 +97,9 @@ impl<'a, N: Space<D>, const D: usize> PointBatch<'a, N, D> {
         entries::contains(self, control, out)
     }
 
-    /// Calls `answer` for each pair with its point and shape, the columns of the pair's chunk, and
-    /// the index of the pair's slot in these columns. Point and shape are `None` if the point or
-    /// the pose is not finite.
+    /// Calls `answer` for each pair with its point and shape, the columns of the pair's chunk, and the index of the
+    /// pair's slot in these columns. `answer` receives `None` instead of the point and shape if the point or the pose
+    /// is not finite.
     fn each<C: AnswerColumns>(
         &self,
         control: &Control<'_>,

@@ -12,8 +12,8 @@
 //! searching", 1975) over the boxes of a sample. So all tiles have about the same number of objects, even if the
 //! density of the objects varies. The grown boxes of two near objects overlap, and the pair belongs to the tile that
 //! contains the lowest corner of this overlap: the reference point of Dittrich and Seeger ("Data redundancy and
-//! duplicate detection in spatial join processing", 2000). Both boxes contain that point, so both objects are assigned
-//! to that tile.
+//! duplicate detection in spatial join processing", 2000). Both grown boxes contain that point, so both objects are
+//! assigned to that tile.
 //!
 //! A [`Tiles`] consists of the clearance and the cuts in preorder. A subtree of n tiles has n - 1 cuts: first its own
 //! cut, then the ⌊n/2⌋ - 1 cuts of the ⌊n/2⌋ tiles below it, then the cuts of the tiles above it.
@@ -340,8 +340,8 @@ fn halves<N: Real, const D: usize>(bounds: &Aabb<N, D>, cut: &TileCut<N>) -> [Aa
 /// sides twice.
 type CutLoad = (u64, usize);
 
-/// Returns the cut with the least cost. If no box and no bound has a usable finite lower face, returns any finite cut
-/// inside the bounds.
+/// Returns the cut with the least cost. If [`Faces::even_cuts`] yields no candidate on any axis, returns a cut
+/// perpendicular to the first axis: at the upper bound if that is finite, else at zero.
 fn best_cut<N: Real, const D: usize>(
     boxes: &[Aabb<N, D>],
     bounds: &Aabb<N, D>,

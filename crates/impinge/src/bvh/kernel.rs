@@ -110,8 +110,8 @@ impl TaskList {
         self.len = 0;
     }
 
-    /// Clears the list. Shrinks the arrays if they are more than four times as long as the longest list since the last
-    /// call.
+    /// Clears the list. Shrinks the arrays if they have more than 2048 elements and are more than four times as long as
+    /// the longest list since the last call.
     pub(super) fn give_back(&mut self) {
         self.clear();
         let needed = (2 * self.longest).max(64 * LANES);
@@ -189,8 +189,9 @@ pub(super) trait Kernel: Copy {
         keys: &mut [f32; LANES],
     ) -> u32;
 
-    /// Returns the mask of [`Self::enter`] and the least key. The lowest four bits of a key are the lane index, and the
-    /// other bits are those of the time, rounded down. The key of a lane that is not entered is `u32::MAX`.
+    /// Returns the mask of [`Self::enter`] and the least key, and writes all keys to `keys`. The lowest four bits of a
+    /// key are the lane index, and the other bits are those of the time, rounded down. The key of a lane that is not
+    /// entered is `u32::MAX`.
     fn enter_nearest<const D: usize>(
         self,
         block: &Block<D>,
@@ -202,9 +203,9 @@ pub(super) trait Kernel: Copy {
     /// Returns the least of sixteen keys of [`Self::enter_nearest`].
     fn least_lane_key(self, keys: &[u32; LANES]) -> u32;
 
-    /// Returns the lanes whose squared distance may be at most `limit`, and writes lower bounds of the squares to
-    /// `keys`, in squared units of the gaps. The mask contains every lane within the limit; a finite limit excludes
-    /// empty lanes.
+    /// Returns the lanes whose squared distance may be at most `limit`, and writes the squares to `keys`, in squared
+    /// units of the gaps. Keys have rounding errors ([`Gaps::distance`] allows for them). The mask contains every lane
+    /// within a limit of [`Gaps::limit`]; a finite limit excludes empty lanes.
     fn apart<const D: usize>(
         self,
         block: &Block<D>,

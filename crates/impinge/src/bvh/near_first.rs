@@ -4,7 +4,7 @@
 //! neighbor queries", 1995), as long as it is within the limit, which shrinks with each result. One block for each
 //! layer is open, with the keys of its children; the next child is selected only when its turn comes, since most are
 //! never visited. The order is rough: objects of a later block may be nearer than some of an earlier one. This avoids
-//! the queue of [`Frontier`](super::Frontier), which costs more than the boxes that it saves.
+//! the queue of [`Frontier`](super::Frontier), whose upkeep costs more than the tests of boxes that it saves.
 
 use super::gaps::Gaps;
 use super::kernel::{Kernel, with_kernel};
@@ -22,8 +22,9 @@ pub(crate) const GROUP: usize = 4;
 
 /// A query that computes keys for the lanes of a block, and rejects lanes beyond a limit.
 pub(super) trait Probe<const D: usize> {
-    /// Returns the lanes whose key may be at most `limit`, and writes lower bounds of the keys, which are zero or more.
-    /// The mask contains every lane whose exact key is at most `limit`.
+    /// Returns the lanes whose key may be at most `limit`, and writes the keys, which are zero or more and may have
+    /// rounding errors. The mask contains every lane whose exact key is within the time or distance from which `limit`
+    /// was converted.
     fn test<K: Kernel>(
         &self,
         kernel: K,

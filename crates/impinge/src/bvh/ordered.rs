@@ -3,8 +3,8 @@
 //!
 //! Blocks and objects wait in one queue, sorted by key (Hjaltason and Samet, "Distance browsing in
 //! spatial databases", 1999). The key of a block is not above those of its contents, so objects
-//! leave the queue in the order of their keys. A search that stops at an object has opened only the
-//! blocks that it needed.
+//! leave the queue in the order of their keys. A search that stops at an object has opened only
+//! blocks whose lower bound is at most the object's key.
 
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;

@@ -3,7 +3,8 @@
 //! Objects leave the queue by ascending bound (Hjaltason and Samet, "Distance browsing in spatial databases", 1999).
 //! Bounds may be negative, which ranks overlaps by depth. A bound is expensive, so it is computed only when its entry
 //! reaches the front of the queue; most entries never do. Until then the rank is the larger of two rough bounds: the
-//! distance of the boxes and the gap along one direction. Both are computed for all children of a block at once.
+//! distance of the boxes and the gap along the direction of [`BoxRanking::toward`]. Both are computed for all children
+//! of a block at once.
 
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -18,7 +19,7 @@ use crate::math::{Mapped, Point, Real, Vector, filled, max};
 /// Initial capacity of the queue: enough for most searches.
 const EXPECTED: usize = 128;
 
-/// Error bound of heights, in `f32` rounding units of the coordinates.
+/// Error bound of a dot product of a direction and a corner, in `f32` rounding units of the largest coordinate.
 const ROUNDING: f32 = 16.0;
 
 /// The caller's part of a search. Each object has a rank: its distance from the query's solid, or a negative number for
@@ -35,8 +36,8 @@ pub(crate) trait BoxRanking<N: Real, const D: usize> {
     /// Returns the largest rank of interest, which must not increase during the search. `None` ends the search.
     fn limit(&self) -> Option<N>;
 
-    /// Returns a point near which a single object may end the search early. The object nearest to it is visited first,
-    /// and may be visited again. `None` to skip this.
+    /// Returns a point whose nearest object may end the search early. The search first visits an object near the point,
+    /// if the object's box is within the limit; it may visit the object again. `None` if no such point is known.
     fn guess_near(&self) -> Option<Point<N, D>> {
         None
     }
@@ -86,7 +87,8 @@ pub(crate) fn visit_ranked<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
-    /// Runs the search. It ends, since each block is opened at most once and each entry is refined at most once.
+    /// Runs the search. It ends, since each block and each object is queued at most twice: with a rough bound and with
+    /// a refined bound.
     fn run(&mut self) {
         while let Some(Reverse(entry)) = self.queue.pop() {
             let Some(limit) = self.question.limit() else { return };
@@ -160,7 +162,7 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
     }
 
     /// Refines the bound of a block and returns it if it comes first. `None` if the bound exceeds `limit`, or if
-    /// another entry comes first: then the block is queued again.
+    /// another entry comes first; in the latter case the block is queued again.
     fn first(&mut self, entry: RankedNode, bound: N, limit: N) -> Option<RankedNode> {
         let (entry, is_beyond) = (entry.refined(bound), bound > limit);
         let is_first = self.queue.peek().is_none_or(|Reverse(other)| entry <= *other);
@@ -221,7 +223,8 @@ mod tests {
     use crate::bvh::{Bounds, Lanes};
     use crate::math::xorshift::Xorshift;
 
-    /// A ranking in which an object near `target` has the rank of its least x coordinate, any other its distance.
+    /// A ranking in which the rank of an object whose box overlaps `target` is the box's least x coordinate minus 100;
+    /// the rank of any other object is its distance from `target`.
     struct ByFirst<'a> {
         boxes: &'a [Aabb<f64, 3>],
         target: Aabb<f64, 3>,

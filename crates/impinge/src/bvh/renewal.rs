@@ -2,7 +2,8 @@
 //! step.
 //!
 //! Objects inserted since the last renewal are at the end, or in lanes of removed objects, so the order degrades. A
-//! renewal fills another tree with these objects, and the other tree then replaces this one:
+//! renewal fills another tree with all objects of the sparing tree, and then replaces the sparing tree by the other
+//! tree:
 //!
 //! ```text
 //!   this tree        | all slots, in any order                       |
@@ -25,8 +26,8 @@ use super::{Bounds, LANES, NONE, Tree};
 /// Slots routed in one step, and objects sorted and copied in one step.
 const ROUTED: usize = 1024;
 const COPIED: usize = 512;
-/// Late objects added in one step: at least [`FOLLOWED`], and at least the fraction 1 / [`FOLLOWED_OF`] of those left,
-/// so that this stage ends however many objects are inserted.
+/// Late objects added in one step: the larger of [`FOLLOWED`] and the fraction 1 / [`FOLLOWED_OF`] of those left.
+/// Inserted objects also add work units, hence steps, so this stage ends however many objects are inserted.
 const FOLLOWED: usize = 128;
 const FOLLOWED_OF: usize = 16;
 /// Work units that a new object and a changed object add; each [`OF_STEP`] units make one additional step in the next

@@ -1,5 +1,5 @@
-//! Trees of static boxes: built at once, in an order that costs more to compute and less to search, and then changed
-//! one box at a time.
+//! Trees of static boxes: built at once, in an order that costs more to compute and less to search than the k-d order
+//! of [`super::order`], and then changed one box at a time.
 //!
 //! Ranges of slots are cut by the surface area heuristic (Goldsmith and Salmon 1987; binned as by Wald, "On fast
 //! construction of SAH-based bounding volume hierarchies", 2007), but only between whole blocks of the layer: so all
@@ -33,7 +33,8 @@ impl<const D: usize> StillItem<D> {
         self.bounds.lo[axis] * 0.5 + self.bounds.hi[axis] * 0.5
     }
 
-    /// Returns the sort key on an axis: the centre, ties by id. A total order, so that the result is unique.
+    /// Returns the sort key on an axis: the centre, ties by id. Keys of two boxes differ, so the sorted order is
+    /// unique.
     #[inline]
     fn key(&self, axis: usize) -> u64 {
         key(self.middle(axis), self.id)

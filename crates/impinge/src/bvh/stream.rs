@@ -1,10 +1,9 @@
 //! Rays against triangles, many together, in lockstep.
 //!
-//! The next step of a single ray waits for loads and depends on unpredictable branches. So all rays
-//! that open a block do so one after another, then all rays at leaf blocks test triangles, then all
-//! other rays return to an open block. Within such a phase no ray depends on the ray before it, no
-//! branch is unpredictable, and loads of several blocks overlap. Each single ray visits blocks in
-//! the order of [`near_first`](super::near_first).
+//! The next step of a single ray waits for loads and depends on unpredictable branches. So all rays that open a block
+//! do so one after another, then all rays at leaf blocks test triangles, then all other rays return to an open block.
+//! Within such a phase no ray depends on the ray before it, most branches are predictable, and loads of several blocks
+//! overlap. Each single ray visits blocks in the order of [`near_first`](super::near_first).
 //!
 //! ```text
 //! to_open   ── open_blocks ────> to_open | at_leaf | to_return

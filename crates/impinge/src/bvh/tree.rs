@@ -474,7 +474,7 @@ impl<const D: usize> Tree<D> {
     }
 
     /// Iterates over the changed objects in escaped blocks, as of the last refit. The
-    /// [`super::Joiner`] may not have reported ended pairs of these.
+    /// [`super::Joiner`] may not have reported all ended pairs of these objects.
     pub(crate) fn escaped(&self) -> impl Iterator<Item = u32> + '_ {
         let changed = move |&block: &u32| {
             let mask = self.layers[0].changed[block as usize];

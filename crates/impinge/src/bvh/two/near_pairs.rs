@@ -36,8 +36,8 @@ const EXPECTED: usize = 64;
 /// that block is opened.
 const MUCH_WIDER: f64 = 8.0;
 
-/// A direction toward the other tree: a unit vector in the frame of each tree. In one frame, the
-/// two vectors are opposite.
+/// The direction from each tree toward the other tree: a unit vector in the frame of the first
+/// tree, and one in the frame of the second. Rotated into one frame, the two vectors are opposite.
 pub(crate) type Toward<N, const D: usize> = [Vector<N, D>; 2];
 
 /// The relative pose of two trees, and the receiver of pairs of their objects.
@@ -90,7 +90,8 @@ pub(crate) trait TreePair<N: Real, const D: usize> {
     fn visit(&mut self, which: usize, own: u32, others: &[u32]);
 }
 
-/// A pair of blocks, one of each tree. At equal distances, pairs in low layers come first.
+/// A pair of blocks, one of each tree. At equal distances, pairs whose first blocks are in lower
+/// layers come first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct BlockPair {
     /// Bits of a lower bound of the distance of two objects, one in each block. It is zero or more,
@@ -169,7 +170,8 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
     }
 
     /// Raises the lower bound of a pair, and returns the pair if it is still first. `None` if the
-    /// pair is beyond the limit, or if another pair is now first: then the pair is queued again.
+    /// pair is beyond the limit, or if another pair is now first; in the latter case the pair is
+    /// queued again.
     fn first(&mut self, mut pair: BlockPair) -> Option<BlockPair> {
         let gap = if pair.is_rough { self.gap(&pair) } else { self.best_gap(&pair) };
         let is_beyond = gap > self.question.limit();
@@ -245,8 +247,8 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         }
     }
 
-    /// Queues the children of block `which`, each paired with the other block, unless
-    /// [`Self::best_gap`] exceeds the limit.
+    /// Queues the children of block `which` that are near the other block, each paired with the
+    /// other block, unless [`Self::best_gap`] of the new pair exceeds the limit.
     fn open_one(&mut self, which: usize, pair: &BlockPair) {
         for below in self.near_below(which, pair) {
             let is_beyond = self.best_gap(&below) > self.question.limit();
@@ -332,9 +334,9 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         near.into_iter().map(move |(distance, block)| below(&pair, which, block, distance))
     }
 
-    /// Returns the lanes of a block whose boxes are within the bound of `aabb` and overlap it by at
-    /// least `depth`. `aabb` is in the frame of the block's tree. Near lanes come first; at equal
-    /// distances the lowest lane. Distances are rounded down.
+    /// Returns the lanes of a block whose boxes are within the bound of `aabb`, shrunk by
+    /// [`TreePair::depth`] on each side. `aabb` is in the frame of the block's tree. Near lanes
+    /// come first; at equal distances the lowest lane. Distances are rounded down.
     fn near(&self, which: usize, layer: u8, block: u32, aabb: &Aabb<N, D>) -> NearLanes<N> {
         let (tree, layer) = (self.trees[which], usize::from(layer));
         let gaps = Gaps::new(aabb, tree.size()).within(self.question.depth());

@@ -1,11 +1,11 @@
 //! Pairs of objects of two trees that may touch, each tree in its own frame.
 //!
 //! The search is depth first over pairs of blocks. The box of one block is transformed once into
-//! the frame of the other tree, and compared with all boxes in the other block. It is compared
-//! along the axes of both frames and across its slab. The axes of both frames separate most
-//! disjoint boxes (Gottschalk, Lin and Manocha, "`OBBTree`", 1996, also test the cross products of
-//! edges). The larger of two blocks is opened, and the child with the deepest overlap comes next,
-//! without a queue.
+//! the frame of the other tree, and compared with all boxes in the other block. The boxes are
+//! compared along the axes of both frames and across the slab of the first block. The axes of both
+//! frames separate most disjoint boxes (Gottschalk, Lin and Manocha, "`OBBTree`", 1996, also test
+//! the cross products of edges). The larger of two blocks is opened; its children go on a stack,
+//! and the child with the deepest overlap comes next.
 //!
 //! A search for the nearest pair is best first (Hjaltason and Samet, "Incremental distance join
 //! algorithms for spatial databases", 1998), after a descent straight to two objects. The direction
@@ -30,9 +30,10 @@ use crate::math::order::sort_few;
 use crate::math::simd::Level;
 use crate::math::{Mapped, Pose, Real, Vector, filled, max_component, unit};
 
-/// Rounding error of heights, as a multiple of the `f32` epsilon times the sum of all lengths: 3
-/// for a rotation, 3 for a scalar product and 2 for directions that are not exactly of unit length,
-/// on up to three axes. The rest is reserve.
+/// Rounding error of gaps, as a multiple of the `f32` epsilon times the sum of the sizes of both
+/// trees and the components of the translations between their frames: 3 for a rotation, 3 for a
+/// scalar product and 2 for directions that are not exactly of unit length, on up to three axes.
+/// The rest is reserve.
 const ROUNDING: f32 = 64.0;
 
 /// The relative pose of two trees, and the receiver of pairs of their objects.
@@ -62,8 +63,8 @@ pub(crate) trait TouchQuery<N: Real, const D: usize> {
     }
 
     /// Returns a box around an object of the first (0) or the second (1) tree, in the frame of the
-    /// other tree, up to rounding errors. If any objects are near the box, the next call is
-    /// [`Self::visit`] for this object.
+    /// other tree, up to rounding errors. If objects of the other tree are near the box, the next
+    /// call (after [`Self::corners`]) is [`Self::visit`] for this object.
     fn object_in_other(&mut self, which: usize, id: u32) -> Aabb<N, D>;
 
     /// Returns the corners of the object of the last call of [`Self::object_in_other`], in the
@@ -210,8 +211,8 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
         region.held(self.level, &self.trees[which].layers[layer].blocks[block])
     }
 
-    /// Queues the children of block `which`, each paired with the other block. The deepest overlap
-    /// is put last, and a stack takes it next.
+    /// Queues the children of block `which`, each paired with the other block. The child with the
+    /// least gap is put last, so that a stack takes it next.
     fn open(&self, which: usize, pair: &OpenPair, margin: f32, agenda: &mut impl Agenda) {
         let Held { mask, gaps } = self.held(which, pair, margin);
         let (layer, first) = (pair.layers[which] - 1, pair.blocks[which] * small(LANES));

@@ -190,7 +190,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
         let axis = longest_axis(&bodies);
         let key = |body: &Covered<N, D>| (order_of(body.balls[0].center[axis]), body.number);
         sort_few(&mut bodies, |one, other| key(one) < key(other));
-        // Splits at a multiple of 8, so that fewer groups are needed.
+        // Splits at a multiple of 8 if that leaves a second part, so that fewer groups are needed.
         let half = bodies.len().div_ceil(2);
         let full = half.next_multiple_of(LANES);
         let back = bodies.split_off(if full < bodies.len() { full } else { half });
