@@ -248,8 +248,9 @@ pub(crate) struct Placement<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Real, const D: usize> Placement<'a, N, D> {
-    /// Passes a contact of a raw manifold with the normal `own` on: its id, its point on the user's
-    /// first solid in the world frame, and its depth. The bits are those of [`placed`].
+    /// Calls `each` with the id of a contact of a raw manifold, its point on the user's first solid
+    /// in the world frame, and its depth; `own` is the normal of that manifold. The values are
+    /// bitwise equal to those of [`placed`].
     #[inline(always)]
     pub(super) fn place(
         &self,

@@ -22,18 +22,18 @@ const MAX_STEPS: usize = 1024;
 /// The maximum number of separate steps of two parts before all parts are tested again.
 const MAX_PART_STEPS: usize = 64;
 
-/// The maximum number of consecutive steps within the `NEAR` distance, if no tolerance is given.
+/// The maximum number of consecutive steps with a gap below [`NEAR`], if no tolerance is given.
 const MAX_NEAR_STEPS: usize = 256;
 
-/// The bodies are near if the gap is at most this fraction of their sizes and distance, 2^-20, or
-/// this many epsilon of them.
+/// Limits of a near gap: a fraction of the sum of the bodies' sizes and distance (2^-20), and a
+/// number of epsilons of that sum. The larger limit applies.
 const NEAR: [f64; 2] = [1.0 / 1_048_576.0, 64.0];
 
-/// Parts of composites are advanced one by one if the bodies are at most this fraction of their
-/// sizes apart.
+/// Parts of composites are advanced one by one if the gap is less than this fraction of the sum of
+/// the bodies' sizes.
 const PARTS_WITHIN: f64 = 1.0 / 128.0;
 
-/// Parts are advanced separately while no point moves by more than this fraction of the sizes.
+/// Parts are advanced separately while no point moves by more than this fraction of that sum.
 const PARTS_WAY: f64 = 1.0 / 32.0;
 
 /// Returns the first impact of two bodies that move and rotate.
@@ -392,7 +392,7 @@ impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
     }
 
     /// Returns the distance by which the bodies may still approach before an impact is reported:
-    /// the gap, or in `Contact` the gap above its start value plus `slack`.
+    /// the gap, or in [`Mode::Contact`] the gap minus the gap at the start, plus `slack`.
     fn excess(&self, mode: Mode<N>) -> N {
         match mode {
             Mode::Apart => self.gap,
@@ -400,8 +400,8 @@ impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
         }
     }
 
-    /// Returns whether the bodies have an impact: the gap, or in `Contact` the excess, is used up
-    /// within its tolerance.
+    /// Returns whether the bodies have an impact: the gap is within the tolerance or, in
+    /// [`Mode::Contact`], the excess is at most half of [`Self::slack`].
     fn is_hit(&self, mode: Mode<N>) -> bool {
         match mode {
             Mode::Apart => self.gap <= self.tolerance,

@@ -48,8 +48,8 @@ pub(super) fn of_segment(
         return Some(0);
     }
     let side = sign(area(&ends[0], &ends[1], point));
-    // If the segment rises on the side of larger x, the point is on its left. Exchanging x and y
-    // exchanges left and right.
+    // A rising segment that has the point on its left crosses the ray's line at a larger x than the
+    // point's. For a ray along y, left and right are exchanged.
     let is_above = (rises == (side > 0)) == (direction.axis == 0);
     match side {
         0 => None,

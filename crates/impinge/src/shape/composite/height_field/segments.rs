@@ -42,7 +42,7 @@ impl<N: Real> HeightField<N, 2> {
         Ok(field)
     }
 
-    /// Makes a cell a hole if `is_hole(cell)` is true, and no hole otherwise.
+    /// Makes each cell a hole for which `is_hole(cell)` is true, and every other cell no hole.
     #[must_use]
     pub fn with_holes(mut self, mut is_hole: impl FnMut(usize) -> bool) -> Self {
         let cells = self.num_cells();

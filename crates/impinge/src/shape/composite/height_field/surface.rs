@@ -340,8 +340,8 @@ impl<N: Real> HeightField<N, 3> {
     }
 }
 
-/// A triangle at a grid point: the unit vectors along its two sides that leave the point (zero
-/// without length), and its front normal.
+/// A triangle at a grid point: the unit vectors along its two sides that leave the point (zero for
+/// a side without length), and its front normal.
 struct StarFace<N: Real> {
     edges: [Vector<N, 3>; 2],
     front: Vector<N, 3>,
