@@ -35,7 +35,7 @@ const fn parts(axis: usize, is_positive: bool) -> PartFeatures {
     [side(axis, is_positive), vertex(axis, is_positive, false), vertex(axis, is_positive, true)]
 }
 
-/// Returns the index in `parts` of the feature `id`; `None` if it belongs to another side.
+/// Returns the index in `parts` of the feature `id`; `None` if the feature belongs to another side.
 #[inline(always)]
 fn part(parts: &PartFeatures, id: FeatureId) -> Option<usize> {
     let end = usize::from(id == parts[1]) + 2 * usize::from(id == parts[2]);

@@ -219,8 +219,8 @@ impl BoxPairFeatures {
     #[inline(always)]
     pub(super) fn new(sides: &FaceSides, bits: u8, parts: u64) -> Self {
         let mut pairs = OWN_PAIRS;
-        // For each corner a byte: the contribution of its own face, to which that of the other face
-        // is added.
+        // A byte for each corner: the contribution of the corner's own face. The contribution of
+        // the other face is added.
         let own = u64::from_le_bytes([
             pairs[0], pairs[1], pairs[2], pairs[3], pairs[4], pairs[5], pairs[6], pairs[7],
         ]);
