@@ -141,11 +141,10 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     /// that the contact left its features: query again after a larger motion. A corner keeps its
     /// nearest point on the plane or line of the other solid. Two crossing lines give their nearest
     /// points; two points, or a point and a line, give the shortest connection. If the connection
-    /// vanishes, and for lines that are nearly parallel, the points and the normal at the last
-    /// update move with their solids. For the deepest contact on a round rim the distance and the
-    /// normal have errors of second order, its position on the rim of first order; the other
-    /// contacts on that rim follow the deepest one. If a pose is not finite, the result is not
-    /// finite.
+    /// vanishes, and for nearly parallel lines, the points and the normal at the last update move
+    /// with their solids. The deepest contact on a round rim has errors of second order in distance
+    /// and normal, of first order in position; the other contacts on that rim follow it. If a pose
+    /// is not finite, the result is not finite.
     #[must_use]
     pub fn contact<R: AbstractRotation<N, D>>(
         &self,
@@ -249,9 +248,8 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         (normal - self.normal1).norm() <= least_angle()
     }
 
-    /// Returns whether a line of the contact is too far from perpendicular to the manifold's normal
-    /// to give that normal. The limit is larger for the second line, which a nearly parallel first
-    /// line replaces.
+    /// Returns whether a line is too far from perpendicular to the manifold's normal to give that
+    /// normal. The limit is larger for the second line, which may be parallel to the first.
     fn is_steep(&self) -> bool {
         let is_tilted = |geometry: NeighborhoodGeometry<N, D>, normal: &Vector<N, D>, least: N| {
             match geometry {

@@ -102,7 +102,8 @@ impl<N: Real> FlatOutline<N> {
     }
 }
 
-/// Returns the unit normal of the largest triangle, and twice its area.
+/// Returns the unit normal of the largest triangle, and twice its area; `None` if no triangle has
+/// an area.
 fn widest_normal(positions: &[Vector<f64, 3>; 4]) -> Option<(Vector<f64, 3>, f64)> {
     let [a, b, c, d] = positions;
     let triangles = [[a, b, c], [a, c, d], [a, d, b], [b, d, c]];

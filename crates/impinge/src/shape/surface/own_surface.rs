@@ -1,12 +1,13 @@
-//! Additional methods of the library's own surfaces. They make contacts faster to compute and do
-//! not change them.
+//! Additional methods of the library's own surfaces. Most of them make contacts faster to compute
+//! and do not change them; others tell the algorithms about bodies and ghosts.
 
 use core::fmt;
 
 use crate::math::{Point, Real, Vector};
 use crate::shape::{FaceSeams, FeatureId, Sidedness, Surface};
 
-/// A surface of this library. Its methods change the cost of contacts, never the contacts.
+/// A surface of this library. Only [`Self::is_body`] and [`Self::is_beside_ghost`] change which
+/// contacts are found; the other methods change only the cost.
 pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
     /// Calls [`Surface::admits`] for two normals, for the second only if the first is rejected
     /// (else the second result is false). The neighbourhood of the feature is evaluated once.
@@ -59,8 +60,8 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
         false
     }
 
-    /// Returns whether a surface in 3D has two properties. Parts are adjacent if and only if they
-    /// have corners at one position. A seam admits no normal along which a direction into an
+    /// Returns whether a surface in 3D has two properties: parts are adjacent if and only if they
+    /// have corners at one position, and a seam admits no normal along which a direction into an
     /// adjacent part rises.
     fn has_regular_seams(&self) -> bool {
         false
