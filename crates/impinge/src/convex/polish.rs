@@ -10,7 +10,7 @@
 //! sum to one. The derivatives with respect to `n`, the weights and `λ` give linear equations for a
 //! step. Combining active sets and curvature in this way is the VU-decomposition of C. Lemaréchal,
 //! F. Oustry and C. Sagastizábal, "The U-Lagrangian of a Convex Function" (2000). The normal after
-//! a step is accepted only by its height, as everywhere in this module.
+//! a step is accepted only if its height is larger, as everywhere in this module.
 
 use smallvec::SmallVec;
 
@@ -44,13 +44,13 @@ struct ActiveSet<N: Real, const D: usize> {
     weights: SmallVec<[N; 4]>,
 }
 
-/// Raises the height of `best`, given points of the difference that are lowest along it, or nearly
-/// so. Returns the points that face each other along the normal, if they were found; they are as
-/// accurate as the normal before the last step. `best` may be improved even if the result is
-/// `None`.
+/// Raises the height of `best` by Newton's method; `vertices` are points of the difference that are
+/// lowest along its normal, or nearly so. Returns the points that face each other along the normal,
+/// as accurate as the normal before the last step; `None` if they were not found. `best` may be
+/// improved even if the result is `None`.
 ///
-/// Does nothing for flat cores. A point that the next normal finds beyond the active points becomes
-/// active; a point with a negative weight becomes inactive.
+/// Returns `None` for flat cores. A support point of the next normal that lies beyond the active
+/// points becomes active; a point with a negative weight becomes inactive.
 pub(super) fn polish<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &mut SupportCandidate<N, D>,
@@ -98,8 +98,8 @@ pub(super) fn polish<N: Simplicial<D>, const D: usize>(
     None
 }
 
-/// Replaces `best` by the exact normal of a round face close to it if that is better. At such a
-/// normal the height has a maximum without a derivative.
+/// Replaces `best` by the exact normal of a round face close to it if that normal has a larger
+/// height. At such a normal the height has a maximum without a derivative.
 fn try_round_faces<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &mut SupportCandidate<N, D>,
@@ -123,7 +123,8 @@ pub(super) fn lowest<N: Simplicial<D>, const D: usize>(
     vertices.iter().filter(|vertex| height(vertex) <= least + slack).copied().collect()
 }
 
-/// Finds the active points of both cores; `None` if all are corners, or if an extent is not finite.
+/// Finds the active points of both cores; `None` if all are corners, or if a core has none because
+/// coordinates are NaN.
 fn activate<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,

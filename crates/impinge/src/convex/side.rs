@@ -33,8 +33,8 @@ const GOLDEN: f64 = 0.618_033_988_749_894_8;
 /// Cap on the steps of the golden section: 43 steps shrink an interval to 1e-9 of its length.
 const STEPS: usize = 43;
 
-/// A polished normal of a ring with a larger height than the known one, and the points that are
-/// lowest along it, or nearly so.
+/// A refined normal of a ring whose height is larger than the height of the known normal, and
+/// points that are lowest along it, or nearly so.
 pub(super) struct Better<N: Real> {
     pub(super) best: SupportCandidate<N, 3>,
     pub(super) mix: Option<Mix<N, 3>>,
@@ -66,7 +66,7 @@ struct NormalRing<N: Real> {
     axis: Vector<N, 3>,
     /// Component of the normals along the axis.
     rise: N,
-    /// Unit vectors perpendicular to the axis and to each other.
+    /// Unit vectors perpendicular to the axis and to each other; `from` is at angle zero.
     from: Vector<N, 3>,
     aside: Vector<N, 3>,
 }
@@ -97,7 +97,7 @@ impl<N: Real> NormalRing<N> {
     }
 
     /// Returns whether the height of the opposite normal is close to `height`, the height at angle
-    /// zero. If it is not, the heights vary enough to find the best normal without the ring.
+    /// zero. If the heights differ more, they vary enough to find the best normal without the ring.
     fn is_even(&self, difference: &dyn Difference<N, 3>, height: N) -> bool {
         height - self.height(difference, N::lit(core::f64::consts::PI)) <= N::lit(MAX_UNEVENNESS)
     }
@@ -145,8 +145,8 @@ impl<N: Real> NormalRing<N> {
         highest
     }
 
-    /// Returns the ring with angles measured from its highest normal between the two neighbouring
-    /// samples, found by golden section.
+    /// Returns the ring with angles measured from its highest normal within `PITCH` of angle zero,
+    /// found by golden section.
     fn risen(&self, difference: &dyn Difference<N, 3>) -> Option<Self> {
         let (mut low, mut high) = (-N::lit(PITCH), N::lit(PITCH));
         let inner = |low: N, high: N| {
@@ -169,8 +169,9 @@ impl<N: Real> NormalRing<N> {
         self.rotated(if heights[0] >= heights[1] { left } else { right })
     }
 
-    /// Polishes the normal at angle zero by Newton's method, over the points that are lowest along
-    /// normals on all sides of it.
+    /// Refines the normal at angle zero by Newton's method, with the points that are lowest along
+    /// four normals around it. If the method does not converge, uses [`climb`] instead, and `mix`
+    /// is `None`.
     fn polished(
         &self,
         difference: &dyn Difference<N, 3>,

@@ -27,8 +27,8 @@ fn errors<N: Simplicial<3> + Own<3>>(sample: &Sample<3>, found: &Separation<N, 3
     ]
 }
 
-/// Checks random samples of every pair of kinds; `allowed` is the error relative to the size of the
-/// pair.
+/// Checks random samples of every pair of kinds; `allowed` is the largest error, relative to
+/// [`Sample::scale`].
 fn check<N>(rounds: usize, allowed: f64)
 where
     N: Simplicial<3> + Own<3>,
