@@ -26,8 +26,8 @@ const ROUNDING: f32 = 16.0;
 /// an overlap.
 pub(crate) trait BoxRanking<N: Real, const D: usize> {
     /// Returns a unit vector along which the contents of `aabb` are probably separated from the query's solid, and an
-    /// upper bound of that solid's extent along the vector. The gap along it must be a lower bound of the ranks in the
-    /// box. `None` if no such direction is known.
+    /// upper bound of that solid's extent along the vector. The gap along the vector must be a lower bound of the ranks
+    /// in the box. `None` if no such direction is known.
     fn toward(&self, aabb: &Aabb<N, D>) -> Option<(Vector<N, D>, N)>;
 
     /// Returns a lower bound of the rank of the object.
@@ -191,7 +191,7 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
             let lane = mask.trailing_zeros();
             mask &= mask - 1;
             let (gap, distance) = (gaps[lane as usize], self.gaps.distance(keys[lane as usize]));
-            // Overlapping boxes have distance zero, whatever the depth.
+            // Overlapping boxes have distance zero at any depth, so for these only the gap bounds the rank.
             let bound = if distance > N::ZERO { max(gap, distance) } else { gap };
             let is_beyond = bound > limit;
             if !is_beyond {
@@ -203,7 +203,7 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
 }
 
 impl RankedNode {
-    /// Returns the entry with the larger of `bound` and its own bound, marked as not rough.
+    /// Returns the entry with the larger of `bound` and its previous bound, marked as not rough.
     fn refined<N: Real>(self, bound: N) -> Self {
         Self { rank: rank_of(bound).max(self.rank), is_rough: false, ..self }
     }

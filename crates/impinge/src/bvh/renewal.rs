@@ -93,13 +93,14 @@ impl<const D: usize> Renewal<D> {
         }
     }
 
-    /// Records that an object was inserted in the old tree; it is added in the last stage.
+    /// Records that an object was inserted in the old tree; the last stage adds the object to the other tree.
     pub(super) fn insert(&mut self, id: u32) {
         self.late.push(id);
         self.owed_units += OF_INSERT;
     }
 
-    /// Records that a box of the old tree has changed; also sets it in the other tree.
+    /// Records that a box of the old tree has changed; also sets the box in the other tree if the object is there
+    /// already.
     pub(super) fn set(&mut self, id: u32, bounds: &Bounds<D>) {
         if self.other.contains(id) {
             self.other.set_still(id, bounds);
@@ -121,7 +122,8 @@ impl<const D: usize> Renewal<D> {
         (0..steps).any(|_| self.step(tree))
     }
 
-    /// Performs one step of the current stage, then commits the other tree. Returns `true` if it is complete.
+    /// Performs one step of the current stage, then commits the other tree. Returns `true` if the other tree is
+    /// complete.
     fn step(&mut self, tree: &Tree<D>) -> bool {
         match self.stage {
             Stage::Route(slot, end) => self.route(tree, slot, end),
@@ -189,8 +191,8 @@ impl<const D: usize> Renewal<D> {
         rest == 0
     }
 
-    /// Adds an object to the other tree: at the end if `at_end`, else in the best slot. Skips an object that was
-    /// removed or that the other tree already contains.
+    /// Adds an object to the other tree: at the end if `at_end`, else in the slot that [`Tree::find_slot`] returns.
+    /// Skips an object that was removed or that the other tree already contains.
     fn add(&mut self, tree: &Tree<D>, id: u32, at_end: bool) {
         let bounds = tree.bounds(id).filter(|_| !self.other.contains(id));
         if let Some(bounds) = bounds {

@@ -42,7 +42,7 @@ pub(super) struct Schedule<const D: usize> {
     /// First slot whose object has not been sorted yet.
     fresh: usize,
     /// First slots of the runs sorted since the last renewal, ascending. Each run is more than
-    /// twice as long as the next, except where the limit for a sparing tree kept them apart.
+    /// twice as long as the next, except where the limit for a sparing tree kept two runs apart.
     runs: Vec<usize>,
     /// The centres being sorted, and the parts not yet sorted.
     snapshot: Vec<Item<D>>,

@@ -42,7 +42,7 @@ impl<const D: usize> StillItem<D> {
 }
 
 impl<const D: usize> Tree<D> {
-    /// Builds a tree from boxes with distinct ids. It is refitted and committed.
+    /// Builds a tree from boxes with distinct ids. The tree is refitted and committed.
     pub(crate) fn of_still(lanes: Lanes, boxes: impl Iterator<Item = (u32, Bounds<D>)>) -> Self {
         let mut items: Vec<_> = boxes.map(|(id, bounds)| StillItem { bounds, id }).collect();
         arrange(&mut items);
@@ -65,8 +65,8 @@ impl<const D: usize> Tree<D> {
         tree
     }
 
-    /// Sets the box of an object, which is inserted if it is new. No pairs begin. The path from its block to the top is
-    /// refitted, so searches are valid at once.
+    /// Sets the box of an object, and inserts the object if it is new. No pairs begin. The path from its block to the
+    /// top is refitted, so searches are valid at once.
     ///
     /// An object that would enlarge its block much moves to another slot.
     pub(crate) fn put(&mut self, id: u32, bounds: &Bounds<D>) {

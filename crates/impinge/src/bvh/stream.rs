@@ -37,7 +37,7 @@ pub(crate) struct Walk {
     limit: f32,
     /// Bit mask of the layers with an open block that has unvisited children.
     open: u32,
-    /// Next block and its layer.
+    /// The block that the ray opens or tests next, and the layer of this block.
     layer: usize,
     block: u32,
     /// Lanes of the leaf block whose triangles the ray may cross.
@@ -65,7 +65,7 @@ impl List {
     /// A list without rays.
     const EMPTY: Self = Self { rays: [0; 2 * RAYS], len: 0 };
 
-    /// Appends a ray if `is_in`. Writes it in any case, which needs no branch.
+    /// Appends a ray if `is_in`. Writes the ray past the end in either case, which needs no branch.
     #[inline(always)]
     fn push_if(&mut self, ray: u8, is_in: bool) {
         self.rays[self.len % (2 * RAYS)] = ray;

@@ -1,10 +1,10 @@
-//! Pairs of objects of two trees, each in its own frame, near ones first.
+//! Searches for pairs of objects of two trees, each tree in its own frame, nearer pairs first.
 //!
 //! The search is best first over pairs of blocks, one of each tree (Hjaltason and Samet,
-//! "Incremental distance join algorithms for spatial databases", 1998). It begins with a descent
-//! straight to two objects, whose distance rejects other pairs. The lanes of both blocks are
-//! compared with each other, or only the lanes of the wider block if it is much wider. A box of one
-//! tree is transformed into the frame of the other, so that the axes of both frames separate
+//! "Incremental distance join algorithms for spatial databases", 1998). The search begins with a
+//! descent straight to two objects, whose distance rejects other pairs. The lanes of both blocks
+//! are compared with each other, or only the lanes of the wider block if it is much wider. A box of
+//! one tree is transformed into the frame of the other, so that the axes of both frames separate
 //! blocks. Other directions separate further blocks: along these, the extent of a block is bounded
 //! by its box and its slab.
 //!
@@ -43,11 +43,11 @@ pub(crate) type Toward<N, const D: usize> = [Vector<N, D>; 2];
 /// The relative pose of two trees, and the receiver of pairs of their objects.
 pub(crate) trait TreePair<N: Real, const D: usize> {
     /// Transforms a box from the frame of the first (0) or the second (1) tree into the frame of
-    /// the other; the result encloses it.
+    /// the other tree; the result encloses the transformed box.
     fn in_other(&self, which: usize, aabb: &Aabb<N, D>) -> Aabb<N, D>;
 
     /// Returns a box around an object of the first (0) or the second (1) tree, in the frame of the
-    /// other.
+    /// other tree.
     fn object_in_other(&self, which: usize, id: u32) -> Aabb<N, D>;
 
     /// Returns the largest distance between boxes of pairs to visit; a negative distance ends the
@@ -61,8 +61,8 @@ pub(crate) trait TreePair<N: Real, const D: usize> {
     /// objects within [`Self::limit`].
     fn depth(&self) -> N;
 
-    /// Returns the direction along which the nearest objects so far are separated; `None` before
-    /// two objects have been compared.
+    /// Returns the direction along which the nearest two objects compared so far are separated;
+    /// `None` before two objects have been compared.
     fn best(&self) -> Option<Toward<N, D>>;
 
     /// Returns the direction for a unit vector in the frame of the first (0) or the second (1)
@@ -70,7 +70,7 @@ pub(crate) trait TreePair<N: Real, const D: usize> {
     fn toward(&self, which: usize, along: &Vector<N, D>) -> Option<Toward<N, D>>;
 
     /// Returns the direction from a point of the first tree to a point of the second, each in its
-    /// tree's frame; `None` if there is none.
+    /// tree's frame; `None` if the points coincide, or if [`Self::toward`] returns `None`.
     fn between(&self, points: [Point<N, D>; 2]) -> Option<Toward<N, D>>;
 
     /// Returns an upper bound of the extent of an object of the first (0) or the second (1) tree
@@ -116,7 +116,7 @@ struct PairSearch<'a, 'q, N: Real, const D: usize> {
 type NearLanes<N> = SmallVec<[(N, u32); LANES]>;
 
 /// Visits the pairs of objects of two trees that may be within the bound and limit of `question`,
-/// near ones roughly first.
+/// nearer pairs roughly first.
 pub(crate) fn visit_pairs<N: Real, const D: usize>(
     trees: [&Tree<D>; 2],
     question: &mut dyn TreePair<N, D>,
@@ -203,16 +203,17 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         self.question.gap(toward, extents)
     }
 
-    /// Returns the gap along the direction of the nearest objects so far, if the boxes of the two
-    /// blocks are disjoint; else minus infinity.
+    /// Returns the gap along the direction of [`TreePair::best`], if that is known and the boxes of
+    /// the two blocks are disjoint; else minus infinity.
     fn best_gap(&self, pair: &BlockPair) -> N {
         let best = self.question.best().filter(|_| pair.are_apart);
         best.map_or(-N::INFINITY, |toward| self.gap_along(&toward, pair))
     }
 
     /// Returns the largest gap along directions that are likely to separate the contents of two
-    /// blocks. These are the direction of the nearest objects so far and the direction between the
-    /// block centres if their boxes are disjoint, else the normals of their slabs.
+    /// blocks. If the boxes of the blocks are disjoint, these are the direction of
+    /// [`TreePair::best`] and the direction between the centres of the boxes; else the normals of
+    /// the blocks' slabs.
     fn gap(&self, pair: &BlockPair) -> N {
         let gap = self.best_gap(pair);
         if gap > self.question.limit() {
@@ -298,9 +299,9 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
     }
 
     /// Returns directions that may separate single objects from all of leaf block `which`, each
-    /// with the extent of the block along it. They are the two normals of its slab and, if the
-    /// limit is positive, the direction of the nearest objects so far, with the extent of the
-    /// block's objects.
+    /// with the extent of the block along it. The directions are the two normals of the block's
+    /// slab and, if the limit is positive, the direction of [`TreePair::best`], with the extent of
+    /// the block's objects.
     fn sides(&self, which: usize, pair: &BlockPair) -> SmallVec<[(Toward<N, D>, N); 3]> {
         let block = self.slab_box(which, pair);
         let across = block.slab.and_then(|slab| Some(unit(&slab.across::<N>())?.0));

@@ -46,8 +46,8 @@ pub(crate) trait TouchQuery<N: Real, const D: usize> {
     /// search.
     fn max_distance(&self) -> Option<N>;
 
-    /// Returns `true` if the maximum distance shrinks to the best distance so far. Pairs of blocks
-    /// are then opened by ascending gap, instead of depth first.
+    /// Returns `true` if the maximum distance shrinks to the least distance found so far. Pairs of
+    /// blocks are then opened by ascending gap, instead of depth first.
     fn is_for_nearest(&self) -> bool {
         false
     }
@@ -56,8 +56,8 @@ pub(crate) trait TouchQuery<N: Real, const D: usize> {
     /// visit them again.
     fn guess(&mut self, _objects: [u32; 2]) {}
 
-    /// Returns the direction along which the nearest objects so far are separated, as a unit vector
-    /// toward the other tree in the frame of each tree; `None` if unknown.
+    /// Returns the direction along which the nearest two objects compared so far are separated, as
+    /// a unit vector toward the other tree in the frame of each tree; `None` if unknown.
     fn best(&self) -> Option<Toward<N, D>> {
         None
     }
@@ -68,7 +68,7 @@ pub(crate) trait TouchQuery<N: Real, const D: usize> {
     fn object_in_other(&mut self, which: usize, id: u32) -> Aabb<N, D>;
 
     /// Returns the corners of the object of the last call of [`Self::object_in_other`], in the
-    /// frame of the other tree; `None` if it has none.
+    /// frame of the other tree; `None` if the object has no corners.
     fn corners(&self) -> Option<[Vector<N, D>; 3]> {
         None
     }
@@ -144,9 +144,9 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
     }
 
     /// Returns `true` if the contents of two blocks are beyond the maximum distance, along the
-    /// direction of the nearest objects so far or the direction between the centres of the blocks.
-    /// The gaps are computed in the scalar type, which resolves more than `f32` between distant
-    /// blocks.
+    /// direction of [`TouchQuery::best`] or the direction between the centres of the blocks.
+    /// Returns `false` if [`TouchQuery::best`] returns `None`. The gaps are computed in the scalar
+    /// type, which resolves more than `f32` between distant blocks.
     fn is_beyond(&self, pair: &OpenPair) -> bool {
         let Some((best, max_distance)) = self.question.best().zip(self.question.max_distance())
         else {
@@ -234,8 +234,8 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
         }
     }
 
-    /// Visits near objects of two leaf blocks: each near object of the block that has fewer, with
-    /// the near objects of the other block.
+    /// Visits near objects of two leaf blocks: each near object of the block with fewer near
+    /// objects, paired with the near objects of the other block.
     fn meet(&mut self, pair: &OpenPair, mut margin: f32) {
         let mut masks = [0; 2];
         for which in [0, 1] {
