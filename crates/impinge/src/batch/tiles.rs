@@ -234,8 +234,8 @@ impl<N: Real, const D: usize> Tiles<N, D> {
         subtree.tile
     }
 
-    /// Returns the tiles to which each object must be assigned: all tiles that overlap its box grown by half the
-    /// clearance.
+    /// Returns the tiles to which each object must be assigned: all tiles that overlap the object's box, grown by half
+    /// the clearance.
     ///
     /// `boxes` are the boxes of all objects or of some of them, as [`boxes()`](super::boxes) computes them. An object
     /// without a box has no tile. An unbounded or huge box may overlap all tiles.

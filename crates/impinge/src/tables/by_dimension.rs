@@ -155,8 +155,7 @@ pub trait ByDimension<N: Real, const D: usize>:
     /// in 2D, for a thin triangle, and where `tolerance` leaves the region uncertain.
     fn over(triangle: &Triangle<N, D>, center: &Point<N, D>, tolerance: N) -> Option<FeatureId>;
 
-    /// Returns the interval of times in which the line of a ray is inside a solid; `None` if it
-    /// misses.
+    /// Returns the interval of times in which the line of a ray is inside a solid; `None` if the line misses the solid.
     fn ray_span(solid: Kind<'_, N, D>, ray: &Ray<N, D>) -> Option<Span<N, D>>;
 
     /// Returns the first hit of a ray on a mesh.
@@ -183,7 +182,7 @@ pub trait ByDimension<N: Real, const D: usize>:
     /// Converts a solid of revolution to a `Kind`. The 2D implementation is unreachable.
     fn revolved(solid: &Revolved<N>) -> Kind<'_, N, D>;
 
-    /// Returns the convex hull of points; `None` if it has no area (2D) or volume (3D).
+    /// Returns the convex hull of points; `None` if the hull has no area (2D) or volume (3D).
     fn hull(points: &[Point<N, D>]) -> Option<ShapeHandle<N, D>>;
 
     /// Adds the lines and triangles of a convex solid to a sketch.

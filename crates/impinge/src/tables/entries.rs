@@ -86,8 +86,8 @@ compiled! {
         options: &ImpactOptions<N>,
     ) -> Option<Impact<N, D>> = impact_of_flight;
 
-    /// Returns the interval of times in which the line of a ray is inside a solid; `None` if it
-    /// misses.
+    /// Returns the interval of times in which the line of a ray is inside a solid; `None` if the
+    /// line misses the solid.
     fn ray_span(solid: Kind<'_, N, D>, ray: &Ray<N, D>) -> Option<Span<N, D>> =
         <Here as ByDimension<N, D>>::ray_span;
 

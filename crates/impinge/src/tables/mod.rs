@@ -28,8 +28,9 @@ pub(crate) use self::by_dimension::ByDimension;
 /// `N` and `D`.
 ///
 /// An `inlined trait` has entries whose work is small compared with a call: in a build without debug assertions, their
-/// generic code is compiled into the caller. A build with debug assertions usually does not optimise the caller. There
-/// a call of the entry is many times as fast, even if this crate is not optimised either.
+/// generic code is compiled into the caller. A build with debug assertions usually does not optimise the caller. In
+/// such a build a call of the entry is many times as fast as its code in the caller, even if this crate is not
+/// optimised either.
 ///
 /// Entries of a list `where feature = "…"` are compiled in this crate only with that feature, else
 /// in the crates that call them.
