@@ -59,8 +59,8 @@ impl<N: Real> Section<N> {
 
     /// Returns the largest height of `p` above a side, and the normal of that side.
     ///
-    /// The directions +x and +y are also tried, after the sides: a cone without height or radius
-    /// has no side with this normal.
+    /// The directions +x and +y are also tried, after the sides. A cone without height or radius is
+    /// a disk or a segment, and no normal of a side points at points beyond its rim or apex.
     fn highest(&self, p: &Vector<N, 2>) -> (N, Vector<N, 2>) {
         let (x, y) = (Vector::<N, 2>::x(), Vector::<N, 2>::y());
         let mut best = (self.height(&-y, p), -y);

@@ -66,8 +66,8 @@ fn height_over<N: Real>(
     is_over.then(|| (max((center - corners[0]).dot(&normal), N::ZERO), normal))
 }
 
-/// Returns the nearest point of a triangle that is a segment up to rounding: its other sides lie on
-/// the longest one.
+/// Returns the point nearest to `center` of a triangle that is a segment up to rounding, on its
+/// longest side: the other two sides lie on that side.
 fn on_longest_side<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Foot<N, 3> {
     let side = longest_side(corners);
     Foot::new([corners[side], corners[(side + 1) % 3]], center)
@@ -95,7 +95,7 @@ fn longest_side<N: Real>(corners: &[Point<N, 3>; 3]) -> usize {
     longer(longer(0, 1), 2)
 }
 
-/// Returns the nearest point of the three sides; the first side wins a tie.
+/// Returns the point of the three sides nearest to `center`; the first side wins a tie.
 fn on_nearest_side<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Foot<N, 3> {
     let [a, b, c] = *corners;
     let mut best = Foot::new([a, b], center);
@@ -121,7 +121,7 @@ fn lies_over<N: Real>(corners: &[Point<N, 3>; 3], front: &Vector<N, 3>, p: &Poin
     })
 }
 
-/// Returns a bound of the distance of the corners and `p` from the origin.
+/// Returns the largest distance of the corners and `p` from the origin.
 fn reach<N: Real>(corners: &[Point<N, 3>; 3], p: &Point<N, 3>) -> N {
     corners.iter().fold(p.coords.norm(), |most, corner| max(corner.coords.norm(), most))
 }
