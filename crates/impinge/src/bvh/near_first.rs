@@ -77,8 +77,8 @@ impl Open {
     /// A block without unvisited children.
     const NOTHING: Self = Self { keys: [0.0; LANES], mask: 0, first: 0 };
 
-    /// Removes the unvisited child with the least key and returns its index; `None` if there is none, or if the key
-    /// exceeds `limit` (the child is removed nevertheless).
+    /// Removes the unvisited child with the least key and returns its index; `None` if all children are visited, or if
+    /// the least key exceeds `limit` (the child is removed nevertheless).
     #[inline(always)]
     fn next<K: Kernel>(&mut self, kernel: K, limit: f32) -> Option<u32> {
         if self.mask == 0 {

@@ -15,7 +15,7 @@
 //!   the other tree   | sorted                              | late    |  3. Follow: objects that came in the meantime
 //! ```
 //!
-//! The regions are the leaves of a k-d tree over a sample (a sample sort), so the new order is close to that of
+//! The regions are the leaves of a k-d tree over a sample (a sample sort), so the new order is close to the order of
 //! [`sort`]. Removals and changed boxes are applied to both trees at once. The result depends only on the calls, never
 //! on measured time.
 

@@ -295,7 +295,7 @@ impl<const D: usize> Tree<D> {
 
 impl<const D: usize> Schedule<D> {
     /// Resets the schedule after the order was renewed; keeps the memory. Slots before `ordered`
-    /// are sorted as a whole, and slots from there to `fresh` as a run.
+    /// are sorted as a whole, and slots from `ordered` to `fresh` as a run.
     fn begin(&mut self, ordered: usize, fresh: usize) {
         (self.base, self.ordered, self.fresh) = (None, ordered, fresh);
         self.runs.clear();

@@ -66,21 +66,23 @@ compiled! {
         with_features: bool,
     ) -> Option<Witness<N, D>> = witness_of_placed;
 
-    /// Computes the time and place at which two solids that translate first touch.
+    /// Computes the time at which two solids that translate first touch, and the contact at that
+    /// time; `None` without an impact.
     fn impact(
         one: &Moving<'_, N, D>,
         other: &Moving<'_, N, D>,
         options: &ImpactOptions<N>,
     ) -> Option<Impact<N, D>> = impact_of_pair;
 
-    /// Computes the time at which two solids that translate first touch.
+    /// Computes the time at which two solids that translate first touch; `None` without an impact.
     fn time_of_impact(
         one: &Moving<'_, N, D>,
         other: &Moving<'_, N, D>,
         options: &ImpactOptions<N>,
     ) -> Option<N> = time_of_pair;
 
-    /// Computes the time and place at which two solids that translate and rotate first touch.
+    /// Computes the time at which two solids that translate and rotate first touch, and the contact
+    /// at that time; `None` without an impact.
     fn nonlinear_impact(
         flight: &Flight<'_, N, D>,
         options: &ImpactOptions<N>,

@@ -29,7 +29,7 @@ impl<N: Real> ConvexHull<N> {
     /// centre of each must lie on the hull, within 64 epsilon of the largest coordinate, and each side must belong to
     /// exactly two faces.
     ///
-    /// The cost is that of the hull, plus one test of all its faces for each given face.
+    /// The cost is the cost of the hull, plus one test of all its faces for each given face.
     ///
     /// ```
     /// use impinge::dim3::math::Point;

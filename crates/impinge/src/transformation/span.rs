@@ -46,7 +46,7 @@ pub(super) fn larger(a: f64, b: f64) -> f64 {
 }
 
 /// Returns the unit vector along a vector between scaled points, and the length of the vector;
-/// `None` if it is zero.
+/// `None` for a zero vector.
 pub(super) fn direction<const D: usize>(v: &Vector<f64, D>) -> Option<(Vector<f64, D>, f64)> {
     let length = v.norm();
     (length > 0.0).then(|| (v / length, length))

@@ -101,7 +101,8 @@ struct BlockPair {
     blocks: [u32; 2],
     /// Whether the boxes of the two blocks are disjoint.
     are_apart: bool,
-    /// Whether the distance is only that of the boxes or of the parent pair, and can be raised.
+    /// Whether `distance` is only the distance of the boxes or of the parent pair, so that
+    /// [`PairSearch::gap`] may raise it.
     is_rough: bool,
 }
 
@@ -323,7 +324,7 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
     }
 
     /// Iterates over the children of block `which` that are near the other block, each paired with
-    /// the other block; near ones first.
+    /// the other block; nearer children first.
     fn near_below(
         &self,
         which: usize,
