@@ -24,10 +24,10 @@ impl<N: Real> ConvexHull<N> {
     /// Builds the solid with the given corners and faces. Each face is a polygon, given by the
     /// indices of its corners in order, in either direction.
     ///
-    /// The hull is computed from the points, as by [`Self::try_from_points`]: coplanar faces become one, and points
-    /// that are not corners are left out, so vertices and faces get new indices. The given faces are only checked: the
-    /// centre of each must lie on the hull, within 64 epsilon of the largest coordinate, and each side must belong to
-    /// exactly two faces.
+    /// The hull is computed from the points, as by [`Self::try_from_points`]: coplanar faces become
+    /// one, and points that are not corners are left out, so vertices and faces get new indices.
+    /// The given faces are only checked: the centre of each must lie on the hull, within 64 epsilon
+    /// of the largest coordinate, and each side must belong to exactly two faces.
     ///
     /// The cost is the cost of the hull, plus one test of all its faces for each given face.
     ///

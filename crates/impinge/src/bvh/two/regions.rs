@@ -30,8 +30,8 @@ pub(super) struct TreePose<const D: usize> {
     pub(super) shift: [f32; D],
 }
 
-/// A convex region in the frame of the blocks that it is tested against: the intersection of a box and slabs. Box and
-/// slabs are widened by the maximum distance and the rounding error.
+/// A convex region in the frame of the blocks that it is tested against: the intersection of a box
+/// and slabs. Box and slabs are widened by the maximum distance and the rounding error.
 pub(super) struct RotatedBox<const D: usize> {
     bounds: Bounds<D>,
     /// Slabs along the axes of the region's own frame, and its block's slab.
