@@ -155,7 +155,7 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
         }
     }
 
-    /// Replaces the manifold of the pair in `lane`; returns `false` if it has to fall back.
+    /// Replaces the manifold of the pair in `lane`; returns `false` if the pair has to fall back.
     #[inline(always)]
     fn write_manifold<F: Form<N, D>>(&self, lane: usize, raw: &mut RawManifold<N, D>) -> bool {
         let [is_found, is_apart, is_two] =

@@ -195,7 +195,8 @@ pub(crate) fn contacts_in_lanes<N: Space<D>, const D: usize>(
     <N::Algorithms>::update_pair(&question, raw)
 }
 
-/// Runs a task with the algorithm for two solids in 2D; `false` if there is none or the task fails.
+/// Runs a task with the algorithm for two solids in 2D; returns `false` if their kinds have no
+/// algorithm or the task fails.
 fn run2<N: Space<2>>([one, other]: [&Solid<N, 2>; 2], task: impl Task<N, 2>) -> bool {
     match (one, other) {
         (Solid::Cuboid(_), Solid::Cuboid(_)) => task.run::<Boxes2>(),
@@ -204,7 +205,8 @@ fn run2<N: Space<2>>([one, other]: [&Solid<N, 2>; 2], task: impl Task<N, 2>) -> 
     }
 }
 
-/// Runs a task with the algorithm for two solids in 3D; `false` if there is none or the task fails.
+/// Runs a task with the algorithm for two solids in 3D; returns `false` if their kinds have no
+/// algorithm or the task fails.
 fn run3<N: Space<3>>([one, other]: [&Solid<N, 3>; 2], task: impl Task<N, 3>) -> bool {
     match (one, other) {
         (Solid::Cuboid(_), Solid::Cuboid(_)) => task.run::<Boxes3>(),
@@ -213,8 +215,8 @@ fn run3<N: Space<3>>([one, other]: [&Solid<N, 3>; 2], task: impl Task<N, 3>) -> 
     }
 }
 
-/// Runs a task with the algorithm for a ball and another solid; `false` if there is none or the
-/// task fails.
+/// Runs a task with the algorithm for a ball and another solid; returns `false` if no solid is a
+/// ball or the task fails.
 fn run_with_ball<N: Space<D>, const D: usize>(
     solids: [&Solid<N, D>; 2],
     task: impl Task<N, D>,
@@ -262,7 +264,7 @@ impl<N: Space<D>, P: KeptPairs<N, D>, const D: usize> Task<N, D> for Many<'_, P>
     }
 }
 
-/// Way to compute `L` lanes: SIMD vectors or scalar arithmetic.
+/// A way to compute `L` lanes: with SIMD vectors or with scalars.
 trait BatchLanes<const L: usize>: Copy {
     /// Runs [`Batch::find`]; compiled once for all implementations of [`KeptPairs`].
     fn find<B: Batch<N, D>, N: Real, const D: usize>(

@@ -344,7 +344,7 @@ struct SegmentContacts<V, M> {
     second: LaneContact<V, M>,
     /// Lanes with a second contact; elsewhere `second` is unused.
     is_two: M,
-    /// Lanes where these contacts are complete; the others fall back.
+    /// Lanes where these contacts are complete; the other lanes fall back.
     is_known: M,
 }
 

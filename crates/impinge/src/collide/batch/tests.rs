@@ -1,4 +1,5 @@
-//! Compares batches of 8 pairs with batches of one, bit for bit, on every instruction set.
+//! Compares batches of 8 pairs with batches of one and with the builder for one pair, bit for bit,
+//! on every instruction set.
 
 use super::{
     BallBall, BallCuboid, BallSegment, Batch, Boxes2, Boxes3, ClosedForm, KeptPairs, Many,
@@ -261,9 +262,10 @@ fn request<N: Real>(prediction: f64, sine: f64) -> ManifoldRequest<N> {
     ManifoldRequest { prediction: N::lit(prediction), sine: N::lit(sine), max_points: 4 }
 }
 
-/// Makes a case degenerate or invalid; `number` selects how. A translation or rotation gets an
-/// entry that is not finite, extreme or zero; a solid gets an extreme length or a length of zero;
-/// the second pose becomes equal to the first; or the request changes.
+/// Makes a case degenerate or invalid; `number` selects how. A translation gets an entry that is
+/// NaN, infinite, extreme or zero, a rotation an entry that is NaN or infinite, or a solid an
+/// extreme length or a length of zero; or the second pose becomes equal to the first; or the
+/// request changes.
 fn spoiled<N: Real, const D: usize>(case: &mut Case<N, D>, number: usize) {
     let strange = [N::lit(f64::NAN), N::INFINITY, -N::INFINITY, N::MAX, N::ZERO, N::MIN_POSITIVE];
     let value = strange[number / 7 % strange.len()];

@@ -41,7 +41,7 @@ use crate::math::{Point, Pose, Real, Vector, max_component};
 use crate::shape::FeatureId;
 
 /// Largest distance that a contact may move in one step and stay the same contact, as a fraction of
-/// the pair's size: half the diagonal of the smaller box.
+/// the pair's size: half the diagonal of the local box of the smaller solid.
 pub(super) const SHARE: f64 = 1.0 / 16.0;
 
 /// Largest distance, along each axis and as a fraction of the pair's size, between crossings of the
@@ -278,8 +278,9 @@ pub(in crate::collide) fn renew<N: Real, const D: usize>(
     true
 }
 
-/// Returns new points in the order in which they get ids: their coordinates along an [`askew`]
-/// direction, ascending, and their indices. Input: their indices and positions on the first solid.
+/// Sorts new points into the order in which they get ids: by ascending coordinate along an
+/// [`askew`] direction. Takes the index and the position on the first solid of each point; returns
+/// the coordinate and the index of each.
 ///
 /// The direction is fixed in the frame of the first solid. If the points are the four corners of a
 /// rectangle, the last is opposite to the first. In a solver that visits contacts in this order, as

@@ -108,7 +108,7 @@ fn nearest_first<K: PartialOrd + Copy>(
         for at in Ones::<FEW>(pending) {
             (keys[at], others[at]) = nearest(at, new);
             let has_one = keys[at] < never;
-            // A point without a match now has none later either.
+            // An old point without a match now has none later either.
             old &= !(u32::from(!has_one) << at);
         }
         // New points that are nearest to at least one old point.

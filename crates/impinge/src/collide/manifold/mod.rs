@@ -257,8 +257,8 @@ fn keeps_pose<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
 }
 
 /// Replaces the points of a manifold by at least one and at most `limit` candidates, and sets its
-/// normal. One of the deepest points gets the distance of the pair; its own distance differs from
-/// that by rounding, or by up to `SLACK` times the size.
+/// normal. One of the deepest points gets exactly the distance of the pair; the distance computed
+/// for that point differs from it by rounding, or by up to `SLACK` times the size.
 pub(in crate::collide) fn choose<N: Real, const D: usize>(
     candidates: &mut [Candidate<N, D>],
     choice: &PointChoice<'_, N, D>,

@@ -6,12 +6,12 @@
 //!        '- right --'
 //! ```
 //!
-//! The best four of a few candidates come from trying all such diagonals. If more than four points
-//! are wanted, or there are many candidates, the points are corners of the convex hull (A. M.
-//! Andrew, "Another efficient algorithm for convex hulls in two dimensions", 1979), found by
-//! dynamic programming (J. E. Boyce, D. P. Dobkin, R. L. Drysdale and L. J. Guibas, "Finding
-//! extremal polygons", 1985). Both are exact up to [`FEW`] candidates; a longer hull is first
-//! reduced ([`coarsen`]).
+//! The best four of a few candidates come from trying all such diagonals. Of more than [`FEW`]
+//! candidates, only corners of the convex hull are tried (A. M. Andrew, "Another efficient
+//! algorithm for convex hulls in two dimensions", 1979). More than four points come from dynamic
+//! programming over these corners (J. E. Boyce, D. P. Dobkin, R. L. Drysdale and L. J. Guibas,
+//! "Finding extremal polygons", 1985). Both are exact up to [`FEW`] candidates; a longer hull is
+//! first reduced ([`coarsen`]).
 //!
 //! Old points, those of the previous manifold, are all kept if they span [`ENOUGH`] of the best
 //! choice and include a deepest one; otherwise each weighs slightly more than a new one. So solids

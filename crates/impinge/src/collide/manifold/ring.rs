@@ -378,7 +378,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
         self.replace(&[farthest]);
     }
 
-    /// Replaces the corners by some of them, in the same order.
+    /// Replaces the corners by some of them, in the order of `corners`.
     fn replace(&mut self, corners: &[RingCorner<N>]) {
         for (at, corner) in corners.iter().enumerate() {
             let (face, lane) = (&mut self.faces[at / LANES], at % LANES);

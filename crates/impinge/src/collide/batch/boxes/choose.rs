@@ -102,7 +102,8 @@ impl<const COUNT: usize> KeptSlots<COUNT> {
 }
 
 impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_, N, D, COUNT, L> {
-    /// Replaces the points of a manifold, and its normal, by at most `limit` candidates.
+    /// Replaces the points of a manifold by at most `limit` candidates, and its normal by the new
+    /// normal.
     ///
     /// 1. Old points find their slots by code, else by features ([`Self::kept`]).
     /// 2. Slots that are too far from their old points lose the ids ([`Self::drop_jumped`]).
@@ -317,8 +318,8 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
     }
 
     /// Returns the slot that gets the distance `gap`: the slot with the smallest distance among the
-    /// level slots that continue an old point. If there are none, it is chosen among all level
-    /// slots, else among all slots.
+    /// level slots that continue an old point; if there are none, among all level slots; if there
+    /// are none either, among all slots.
     #[inline(always)]
     fn deepest(&self, slots: u32, kept: u32) -> usize {
         let level = self.level & slots;

@@ -61,8 +61,8 @@ const SIDES_AT: u32 = 7;
 const MARK: u32 = 1 << 31;
 
 impl SideFeatures {
-    /// Returns 0 for a slot between the ends of the other side, 1 at its first end, 2 at its
-    /// second.
+    /// Returns where the candidate in `slot` lies on the other side: 0 between its ends, 1 at its
+    /// first end, 2 at its second end.
     #[inline(always)]
     const fn at_end(self, slot: usize) -> u8 {
         self.at_ends >> (2 * slot) & 3

@@ -170,7 +170,7 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
         (self.sides, self.at_ends) = (per_pair(self.sides), per_pair(self.at_ends));
     }
 
-    /// Replaces the manifold of the pair in `lane`; returns `false` if it has to fall back.
+    /// Replaces the manifold of the pair in `lane`; returns `false` if the pair has to fall back.
     #[inline(always)]
     fn write_manifold(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 2>) -> bool {
         let features = SideFeatures { sides: self.sides[lane], at_ends: self.at_ends[lane] };

@@ -134,7 +134,8 @@ where
         self.admission
     }
 
-    /// Returns coordinates `u`, `v` and height of the corner of the parallelogram with these signs.
+    /// Returns the coordinates `u`, `v` and the height of the parallelogram's corner with the signs
+    /// `signs` along both arms.
     #[inline(always)]
     fn arm_end(&self, signs: [bool; 2]) -> ([V; 2], V) {
         let (center, arms, climbs) = (&self.faces.center, &self.faces.arms, &self.faces.climbs);
@@ -290,7 +291,7 @@ fn drop_coincident<S: Simd, V, M: SimdMask<S>>(
     }
 }
 
-/// Returns the lanes where the corner has these signs of the coordinates on the other face.
+/// Returns the lanes where the coordinates of the corner on the other face have the signs `signs`.
 #[inline(always)]
 fn is_at<S: Simd, V, M: SimdMask<S>>(position: &CornerPosition<V, M>, signs: [bool; 2]) -> M {
     let [x, y] = position.beyond;

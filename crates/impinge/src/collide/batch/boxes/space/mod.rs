@@ -162,7 +162,7 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
         self.columns = Columns::of(self);
     }
 
-    /// Replaces the manifold of the pair in `lane`; returns `false` if it has to fall back.
+    /// Replaces the manifold of the pair in `lane`; returns `false` if the pair has to fall back.
     #[inline(always)]
     fn write_manifold(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 3>) -> bool {
         if self.is_apart >> lane & 1 == 1 {

@@ -24,7 +24,8 @@ pub(super) struct SupportingParts<M> {
 impl<M> SupportingParts<M> {
     /// Computes the part from the components `tilt` of a unit vector along the two axes of the
     /// face. `is_middle` are the lanes where the face is perpendicular to the second axis of the
-    /// box, where a tie frees the second axis of the face.
+    /// box; if both tilts are equal there, the second axis of the face counts as the less tilted
+    /// one, else the first.
     #[inline(always)]
     pub(super) fn of<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>>(
         simd: S,
