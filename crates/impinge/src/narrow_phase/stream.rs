@@ -1,4 +1,4 @@
-//! All contacts of an update in two dense lists, with the index of each contact in the lists before.
+//! All contacts of an update in two dense lists, each contact with its index in the previous lists.
 //!
 //! ```text
 //! manifolds   [pair 7 | 0..4]  [pair 9 | 4..6]  [pair 3 | 6..10] ...         in memory order
@@ -93,8 +93,8 @@ impl<N: Real, const D: usize> StreamManifold<N, D> {
 /// Features, parts and kinematics are not in the stream: read them by
 /// [`CollisionWorld::contact_pair`].
 ///
-/// After [`CollisionWorld::rewind`], or to read another world, call [`Self::clear`]: contact ids are
-/// unique in one history of one world only.
+/// After [`CollisionWorld::rewind`], or to read another world, call [`Self::clear`]: contact ids
+/// are unique in one history of one world only.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};

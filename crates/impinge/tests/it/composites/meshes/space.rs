@@ -89,7 +89,8 @@ fn a_filler_without_area_is_no_seam() {
     assert_eq!(whole.snapped(2, &unit([0.0, 1.0, 1.0])), None, "the filler has no face");
 }
 
-/// Returns two squares that meet along the x axis; the one at negative y slopes down by `degrees`.
+/// Returns two squares that meet along the x axis; the square at negative y slopes down by
+/// `degrees`.
 fn roof<N: Real>(degrees: f64) -> TriMesh<N, 3> {
     let (sine, cosine) = degrees.to_radians().sine_cosine();
     let vertices = [

@@ -60,7 +60,8 @@ fn compare<N: Space<3>>(
     of_mesh == N::ZERO
 }
 
-/// Asserts that moving by the depth of the contact separates the two, and that both orders agree.
+/// Asserts that moving by the depth of the contact separates the solid and the mesh, and that both
+/// orders agree.
 fn check_way_out<N: Space<3>>(
     Twins { mesh, hull }: &Twins<N>,
     m1: &Isometry3<N>,
