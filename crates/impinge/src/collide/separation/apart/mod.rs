@@ -192,7 +192,8 @@ struct FlatPair<'a, N: Real> {
     solids: [FlatCore<'a, N, 3>; 2],
     /// Radii around both cores; zero, because these kinds have none.
     radii: [N; 2],
-    /// Unit of length in which the size of the cores is about 1.
+    /// Unit of length: the sum of both bounding radii and the distance of the origins is 1 to 2
+    /// units.
     units: Units<N>,
     /// Centres of the cores in their own frames, in units of the pair.
     middles: [Vector<N, 3>; 2],

@@ -96,8 +96,8 @@ pub(in crate::collide::separation) fn project<N: Real>(
     if flat > N::ZERO {
         let point = section.nearest(&p);
         let (offset, distance) = unit(&(p - point)).unwrap_or((outward, flat));
-        // Close to the surface the offset is mostly rounding, and the normal of a flat side may be
-        // better.
+        // Close to the surface the offset is mostly rounding error. It is used only if the height
+        // along it is at least that along the best side normal, up to rounding.
         let rounding_error = rounding_error(section.rim.norm() + p.norm());
         let certain = offset.x >= N::ZERO && section.height(&offset, &p) + rounding_error >= flat;
         let outward = if certain { offset } else { outward };

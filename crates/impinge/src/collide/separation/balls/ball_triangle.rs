@@ -34,7 +34,8 @@ pub(in crate::collide::separation) fn project<N: Real>(
         return Projection { distance, outward, point: center - outward * distance };
     }
     let mut projected = on_nearest_side(corners, center).projection();
-    // Close to a side the offset is mostly rounding, and the normal of the triangle may be better.
+    // Close to a side the offset is mostly rounding error. The normal of the triangle replaces it
+    // if the height along this normal is larger by more than rounding.
     let normal = toward(&front, &(center - corners[0]));
     if height(&normal, corners, center)
         > height(&projected.outward, corners, center) + rounding_error(reach(corners, center))

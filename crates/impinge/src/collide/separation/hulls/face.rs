@@ -20,7 +20,8 @@ pub(super) struct LocalSolid<'s, 'a, N: Real> {
     pub(super) heights: Heights<N>,
 }
 
-/// The face with the largest signed height of the other solid above it, with both solids.
+/// The reference face, with both solids: of all faces of both solids, the face with the largest
+/// signed height of the other solid above it.
 pub(super) struct ReferenceFace<'s, 'a, N: Real> {
     pub(super) own: LocalSolid<'s, 'a, N>,
     pub(super) other: LocalSolid<'s, 'a, N>,

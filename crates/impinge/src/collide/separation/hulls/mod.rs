@@ -35,8 +35,8 @@
 //!
 //! [`Polytope`]: crate::shape::Polytope
 //!
-//! A triangle is a prism without height ([`polyhedral`]). Thin triangles, flat boxes and large
-//! hulls fall back as well.
+//! A triangle is a prism without height ([`polyhedral`]). Pairs with thin triangles, flat boxes or
+//! large hulls fall back without the test.
 
 mod edges;
 mod face;

@@ -77,9 +77,12 @@ fn count_f64(count: usize) -> f64 {
     f64::from(u32::try_from(count).expect("a small number"))
 }
 
-/// Returns the largest of these errors of `found`: its points do not lie its distance apart along
-/// its normal, the gap along its normal is not its distance, its distance is less than that of
-/// `truth`, or its first point is not extreme along its normal.
+/// Returns the largest of four errors of `found`:
+///
+/// - the distance from `point1 + normal * distance` to `point2`;
+/// - the difference between `distance` and the gap of the solids along `normal`;
+/// - the amount by which `distance` is less than the distance of `truth`;
+/// - the distance of `point1` from the first solid's supporting plane with the normal `normal`.
 pub(in super::super) fn error<N: Real>(
     pair: &Pair<'_, N, 3>,
     found: &Separation<N, 3>,

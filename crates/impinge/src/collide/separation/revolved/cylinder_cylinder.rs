@@ -85,7 +85,8 @@ impl<N: Real> RevolvedResult<N> {
     }
 }
 
-/// A separation in the frame of one solid, from it to the other, in units of the pair.
+/// A separation in the frame of one solid and in units of the pair; `normal` points from this solid
+/// to the other one.
 #[derive(Clone, Copy)]
 pub(in crate::collide::separation) struct RevolvedFound<N: Real> {
     pub(in crate::collide::separation) distance: N,

@@ -281,7 +281,7 @@ impl<V> TrianglePacket<V> {
         let low = dot(nearest, a).smaller(dot(nearest, b)).smaller(dot(nearest, c));
         let slack = V::all(simd, N::lit(ROUNDING) * N::EPSILON) * size;
         let bound = low / length - slack;
-        // False for NaN, and for values that are inexact because of underflow.
+        // `is_bound` is false for NaN, and for values that are inexact because of underflow.
         let is_bound = bound.simd_gt(slack)
             & low.simd_gt(V::all(simd, N::MIN_POSITIVE / N::EPSILON))
             & size.simd_lt(V::all(simd, N::MAX.sqrt()));
