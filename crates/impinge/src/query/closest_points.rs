@@ -47,7 +47,6 @@ impl<N: Real, const D: usize> ClosestPoints<N, D> {
 /// `max_distance` is treated as zero. Returns [`ClosestPoints::Disjoint`] if a pose is not finite
 /// or a composite has no parts. For composites the points lie on the nearest parts;
 /// [`witness`](super::witness()) returns the indices of these parts.
-/// indices of these parts.
 pub fn closest_points<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,

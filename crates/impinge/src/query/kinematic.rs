@@ -451,8 +451,8 @@ const MIN_SINE_SQUARED: f64 = 1e-6;
 
 /// Returns the points of the two cores that face each other along the normal.
 ///
-/// A point or line is fixed to its solid, and the point on a plane follows it. For two planes the
-/// point on the first is fixed.
+/// A point or a line is fixed to its solid; the point on a plane follows the point or the line of
+/// the other solid. For two planes the point on the first plane is fixed.
 fn feet<N: Real, const D: usize>(
     [point1, point2]: [&Point<N, D>; 2],
     geometries: [NeighborhoodGeometry<N, D>; 2],

@@ -28,14 +28,14 @@ pub(crate) struct PartArrival<N: Real, const D: usize> {
 /// indices. `None` if no parts hit each other up to the end of the path.
 ///
 /// The contacts of the whole shapes decide whether a contact at the start is an impact. If they are
-/// no impact, the contacts of the whole shapes also decide about each later impact of two parts:
-/// tested alone, the parts of a floor would stop a solid that has sunk into it at their inner
-/// edges.
+/// no impact, the contacts of the whole shapes also decide about each later impact of two parts: if
+/// the parts of a floor were tested alone, their inner edges would stop a solid that has sunk into
+/// the floor.
 ///
-/// Of two composites, only the parts of the composite with fewer parts that the box of the other
-/// composite hits are searched. Each of these searches the other composite along its path; paths
-/// end at the first impact found so far. After a start in contact that is not an impact, each part
-/// that is hit also costs the contacts of the whole shapes at that time.
+/// Of two composites, the one with fewer parts is searched for the parts that the box of the other
+/// composite hits. Each part found searches the other composite along its path; paths end at the
+/// first impact found so far. After a start in contact that is not an impact, each part that is hit
+/// also costs the contacts of the whole shapes at that time.
 pub(crate) fn first_arrival<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     path: &Path<N, D>,

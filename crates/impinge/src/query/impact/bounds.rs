@@ -316,8 +316,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         Rate { speed, bend: N::ZERO }
     }
 
-    /// Returns the direction that separates the bodies. `None` if one is a composite and neither a
-    /// half-space, since other parts may be separated by another direction.
+    /// Returns the direction that separates the bodies. `None` if one of the bodies is a composite
+    /// and neither is a half-space, since other parts may be separated by another direction.
     fn direction(&self) -> Option<&Vector<N, D>> {
         let flat = self.bodies.iter().any(|body| body.is_half_space());
         let whole = self.bodies.iter().all(|body| body.shape.as_composite().is_none());

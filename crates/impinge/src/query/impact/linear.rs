@@ -133,8 +133,8 @@ pub(crate) enum Beginning<N: Real, const D: usize> {
 /// Conservative advancement (Mirtich, "Impulse-based dynamic simulation", 1996). The solids stay
 /// apart at least until the gap along the normal of the nearest points is used up at the closing
 /// speed along that normal. If that speed is not positive, they stay apart for ever. The signed
-/// distance of convex solids is a convex function of time, and this is Newton's method on it, from
-/// the left: it never passes the first touch.
+/// distance of convex solids is a convex function of time; conservative advancement is Newton's
+/// method on this function, from the left: no step passes the first touch.
 pub(crate) fn advance<N: Space<D>, const D: usize>(
     start: &Pair<'_, N, D>,
     path: &Path<N, D>,

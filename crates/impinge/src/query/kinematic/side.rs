@@ -117,8 +117,8 @@ impl<N: Real, const D: usize> KinematicSide<N, D> {
     }
 }
 
-/// Returns the side of a feature that is most nearly perpendicular to `outward`; `None` if it is
-/// not perpendicular up to rounding.
+/// Returns the side of a feature that is most nearly perpendicular to `outward`; `None` if even
+/// this side is not perpendicular up to rounding.
 fn perpendicular_edge<N: Real, const D: usize>(
     feature: &Feature<N, D>,
     outward: &Vector<N, D>,

@@ -78,11 +78,11 @@ pub struct PointProjection<N: Real, const D: usize> {
 /// outside, the nearest part decides. For a point inside, the part in which it is deepest decides,
 /// with the nearest point of that part's own boundary, which may lie inside another part. So the
 /// depth is at most the depth in the union, and equal to it where parts do not overlap. Of several
-/// equal parts the one with the lowest index wins. Triangles in 3D and segments are surfaces, which
-/// contain the points on them and enclose nothing (but closed meshes have
-/// [`signed_distance`](crate::shape::TriMesh::signed_distance)). Distances from them are as
-/// accurate far from the mesh's origin as near it. A composite without parts is infinitely far from
-/// every point.
+/// parts with equal results the one with the lowest index wins. Triangles in 3D and segments are
+/// surfaces, which contain the points on them and enclose nothing (but closed meshes have
+/// [`signed_distance`](crate::shape::TriMesh::signed_distance)). Distances from triangles and
+/// segments are as accurate far from the mesh's origin as near it. A composite without parts is
+/// infinitely far from every point.
 ///
 /// For a composite, the cost is a search for the parts near the point.
 ///

@@ -240,7 +240,8 @@ mod tests {
         })
     }
 
-    /// Checks that the results for single rays and for batches equal those of the parts one by one.
+    /// Checks that the results for single rays and for batches equal those of casts against each
+    /// part.
     fn agrees<N: Space<3>>(scale: f64, speed: f64) {
         let (state, mut hits) = (&mut 5, 0);
         for count in [1, 12, 300, 5000] {

@@ -291,8 +291,8 @@ pub trait PartSearch<N: Real, const D: usize>: Send + Sync {
 /// The rule for the contact normals of parts that form one surface. It lets solids slide over the
 /// seams between parts.
 ///
-/// Without it, the edges between the triangles of a floor would stop a sliding box. All vectors are
-/// in the frame of the composite.
+/// Without this rule, the edges between the triangles of a floor would stop a sliding box. All
+/// vectors are in the frame of the composite.
 ///
 /// ```
 /// use impinge::dim2::math::{Point, Vector};

@@ -145,8 +145,8 @@ impl BendShape {
     }
 }
 
-/// Returns the signed height over a plane of the corner farthest from it, which is the corner not
-/// on the shared edge. `front` is the unit normal of the plane.
+/// Returns the signed height, over a plane, of the corner that is farthest from the plane: the
+/// corner not on the shared edge. `front` is the unit normal of the plane.
 fn height_of<N: Real>(
     corners: &[Point<N, 3>; 3],
     plane: &[Point<N, 3>; 3],

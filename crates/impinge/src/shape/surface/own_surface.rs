@@ -21,8 +21,8 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
         [is_first, !is_first && self.admits(part, feature, second)]
     }
 
-    /// Runs [`Self::admits_in_turn`] at a corner of a triangle, for normals other than its own;
-    /// `known` has the seams of the triangle.
+    /// Runs [`Self::admits_in_turn`] at a corner of a triangle, for normals other than the normal
+    /// of the triangle; `known` has the seams of the triangle.
     fn corner_admits_in_turn(
         &self,
         part: u32,
@@ -71,7 +71,7 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
 /// The surface of a composite for the algorithms of the library. A surface of the library also has
 /// the methods of `OwnSurface`; a user's surface has only those of [`Surface`].
 ///
-/// Public only because a hidden method returns it; users can neither construct nor use one.
+/// Public only because a hidden method returns this type; users can neither construct nor use it.
 #[derive(Clone, Copy)]
 pub struct SurfaceAccess<'a, N: Real, const D: usize> {
     surface: &'a dyn Surface<N, D>,

@@ -75,8 +75,8 @@ impl<N: Real> HeightField<N, 3> {
         self
     }
 
-    /// Returns the field scaled along the axes of its frame, about its origin, by multiplying its
-    /// own scale.
+    /// Returns the field scaled along the axes of its frame, about its origin: the scale of the
+    /// field is multiplied by `scale`.
     ///
     /// # Errors
     /// If a factor is zero or not finite, or a scaled coordinate is not finite.
