@@ -8,10 +8,10 @@
 //!                              d ----- c
 //! ```
 //!
-//! Faces have no links to their neighbours. The orientation of a new face follows from that of the
-//! removed ones, never from a sign that rounding could change, so the surface stays closed whatever
-//! faces rounding makes visible. Indices of vertices are `u16`, because the rounds of `epa3` are
-//! capped.
+//! Faces have no links to their neighbours. The orientation of a new face follows from the
+//! orientation of the removed faces, never from a sign that rounding could change. So the surface
+//! stays closed even if rounding makes wrong faces visible. Indices of vertices are `u16`, because
+//! the rounds of `epa3` are capped.
 
 use smallvec::SmallVec;
 
