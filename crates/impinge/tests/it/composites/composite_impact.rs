@@ -1,4 +1,4 @@
-//! Tests the first impact of moving composites; both orders must agree to the bit.
+//! Tests the first impact of moving composites, which must be the same to the bit in both orders.
 
 use crate::support::composite_support;
 use crate::support::query_support;
@@ -244,8 +244,8 @@ where
     true
 }
 
-/// Returns the surface of a screw thread of pitch 1 around the y axis: its radius varies by 0.25
-/// along a helix.
+/// Returns the surface of a screw thread of pitch 1 around the y axis: its crest, at `radius +
+/// 0.25`, and its groove, at `radius - 0.25`, are helices.
 fn thread<N: Space<3>>(radius: f64, pitches: u32) -> Pieces<N, 3> {
     let (around, rows) = (24, 8 * pitches);
     let mut points = Vec::new();
@@ -382,8 +382,8 @@ where
     found.is_finite_number()
 }
 
-/// Tests patches that lie close to each other. Both rotate, each about its own centre, or only the
-/// first rotates.
+/// Tests two patches in 3D, and two chains in 2D, that lie close to each other. Both bodies move
+/// and rotate, each about its own centre, or only the first body moves.
 fn patches_that_turn<N: Space<2, Isometry = Isometry2<N>> + Space<3, Isometry = Isometry3<N>>>() {
     let (random, mut hits) = (&mut Random(31, false), [0, 0]);
     for round in 0..40 {

@@ -306,8 +306,8 @@ fn with_corner_at_origin<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>
     })
 }
 
-/// Asserts that a distance of zero, an intersection, and a contact occur together, in either order.
-/// Returns whether the shapes touch.
+/// Asserts that a distance of zero, an intersection, and a contact occur together, in either order
+/// of the shapes. Returns whether the shapes touch.
 fn check_one_fact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,

@@ -236,8 +236,8 @@ fn edges_of_a_sphere_have_its_normals_and_no_others() {
     }
 }
 
-/// Returns whether the feature is the highest along the normal among all triangles at it; `None` if
-/// the heights are too close to decide.
+/// Returns whether the vertex or edge is the highest place, along the normal, of the triangles that
+/// share it; `None` if the heights are too close to decide.
 fn is_highest(mesh: &TriMesh<f64, 3>, ends: &[usize], normal: &Vector<f64, 3>) -> Option<bool> {
     let at = mesh.vertices()[ends[0]].coords.dot(normal);
     let around = mesh.triangles().iter().filter(|t| ends.iter().all(|&e| t.contains(&number(e))));
