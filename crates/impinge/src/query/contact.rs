@@ -64,8 +64,8 @@ impl<N: Real, const D: usize> Contact<N, D> {
 ///
 /// For a composite the result is the deepest contact of its manifolds: the contact of a part, with
 /// a normal of the whole surface ([`Surface`](crate::shape::Surface)). A one-sided surface has no
-/// contacts from behind. The cost is that of [`distance`](crate::query::distance), plus that of the
-/// contacts of all parts that overlap.
+/// contacts from behind. The cost is that of [`distance`](crate::query::distance()), plus that of
+/// the contacts of all parts that overlap.
 ///
 /// ```
 /// use impinge::math::{Isometry3, Vector};

@@ -32,7 +32,7 @@ impl<N: Real> FlatOutline<N> {
         Self { ring, points, normal }
     }
 
-    /// Applies the rule of [`super::SupportMap::core_feature`] to the flat polygon.
+    /// Applies the rule of [`crate::shape::SupportMap::core_feature`] to the flat polygon.
     pub(in crate::shape) fn fill_toward(&self, direction: &Vector<N, 3>, out: &mut Feature<N, 3>) {
         if self.ring.len() < 3 {
             return self.fill_side(0, out);
