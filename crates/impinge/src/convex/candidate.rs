@@ -1,4 +1,4 @@
-//! A normal and a lower bound of the signed distance along it.
+//! A normal, and the lower bound of the signed distance that it proves.
 
 use super::difference::{Difference, Vertex};
 use crate::math::{Real, Vector};
@@ -16,7 +16,7 @@ pub(super) struct SupportCandidate<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> SupportCandidate<N, D> {
-    /// Computes the height of a unit vector.
+    /// Makes the candidate of a unit vector: computes its support point and its height.
     #[inline]
     pub(super) fn along<S>(difference: &S, normal: Vector<N, D>) -> Self
     where

@@ -109,8 +109,8 @@ fn from_extent<N: Real>(difference: &dyn Difference<N, 2>) -> Result<EpaRing<N>,
     if ring.len() > 2 {
         return Ok(ring_of(&ring));
     }
-    // The difference is a segment through the origin, or nearly: its depth perpendicular to it is
-    // zero.
+    // The difference is a segment through the origin, or nearly: its depth along the normal of the
+    // segment is zero.
     Err(locate(difference, &best_of(difference, &[left]), &ring))
 }
 

@@ -132,8 +132,8 @@ fn from_segment<N: Real>(difference: &dyn Difference<N, 3>, [a, b]: [Vertex<N, 3
     if found > rounding_error() {
         return from_triangle(difference, [a, b, c]);
     }
-    // The difference is a segment through the origin, or nearly: all directions perpendicular to it
-    // are equal.
+    // The difference is a segment through the origin, or nearly: all directions perpendicular to
+    // the segment have the height zero.
     Err(locate(difference, &best_of(difference, &[u, v]), &[a, b]))
 }
 

@@ -33,7 +33,7 @@ const ROUNDS: usize = 64;
 /// far larger than rounding errors.
 const CLEAR: f64 = 1.0 / 1024.0;
 
-/// How the search ended.
+/// How a search ended.
 enum Outcome {
     /// A plane separates the difference from the origin by more than the limit.
     Beyond,
@@ -60,7 +60,8 @@ struct GjkSearch<N: Real, const D: usize> {
     /// Whether the lower bound used is the height of `last`, whose points face each other, not the
     /// height of `best`.
     for_points: bool,
-    /// The search ends with [`Outcome::Near`] at a point nearer to the origin than this.
+    /// The search ends with [`Outcome::Near`] at a point whose distance from the origin is below
+    /// this value; zero for no such end.
     near: N,
 }
 

@@ -1,5 +1,4 @@
-//! The best normal of two overlapping cores, for kinds of cores whose possible normals are known in
-//! closed form.
+//! The best normal of two overlapping cores, for pairs whose possible normals are known.
 
 use smallvec::SmallVec;
 

@@ -1,11 +1,12 @@
-//! Finds the best normal among the ring of normals of a round side.
+//! Finds the best normal in the ring of normals of a round side.
 //!
 //! If the axes of two solids nearly coincide, or a small solid is near the axis of a large one, a
-//! whole ring of normals has about the same height. A growing polytope does not find the best of
-//! them before its cap, and a local search makes tiny steps. If two solids have exactly the same
-//! axis, the problem is one of two polygons in a half-plane through the axis: the best normal is
-//! that of an edge, and rotated about the axis it forms the ring of a round side. So the ring of
-//! each side is searched: the height is a function of one angle with few maxima.
+//! whole ring of normals has about the same height. A growing polytope does not find the best
+//! normal of the ring before its cap, and a local search makes tiny steps. If two solids have
+//! exactly the same axis, the problem is one of two polygons in a half-plane through the axis: the
+//! best normal is the normal of an edge of one polygon. Rotated about the axis, this normal forms
+//! the ring of a round side. So the ring of each side is searched: the height is a function of one
+//! angle with few maxima.
 
 use smallvec::SmallVec;
 
@@ -22,8 +23,8 @@ const SAMPLES: usize = 16;
 const PITCH: f64 = core::f64::consts::TAU / 16.0;
 /// Cap on the number of maxima that are searched.
 const TOPS: usize = 3;
-/// Largest difference between the components along the axis of a normal and of the side's normals
-/// at which the ring is searched.
+/// Largest difference between the component of a normal along the axis and that of the side's
+/// normals at which the ring is searched.
 const NEAR: f64 = 1.0 / 16.0;
 /// Largest difference between the heights of opposite normals of a ring at which the ring is
 /// searched, in units of the pair.
@@ -123,7 +124,7 @@ impl<N: Real> NormalRing<N> {
     }
 
     /// Returns the angles of the samples that are no lower than both neighbours; if there are more
-    /// than `TOPS`, those of the highest.
+    /// than `TOPS`, the angles of the highest samples.
     fn tops(&self, difference: &dyn Difference<N, 3>) -> SmallVec<[N; TOPS]> {
         let mut next = N::ZERO;
         let samples: [(N, N); SAMPLES] = filled(|_| {

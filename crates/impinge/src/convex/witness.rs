@@ -1,10 +1,11 @@
 //! Finds the points of the two cores that belong to a normal and its height.
 //!
 //! A mix (weighted mean) of points of the difference is the difference of the mixes of the core
-//! points that they come from. These lie in the cores, which are convex. No point of the difference
-//! is lower along the normal than `height`. If the mix is the point `height · normal`, each point
-//! that has a weight lies at exactly this height, so both core points lie on the supporting planes
-//! of the normal. The error of a mix is therefore its distance from `height · normal`.
+//! points that they come from. These mixes lie in the cores, because the cores are convex. No point
+//! of the difference is lower along the normal than `height`. If the mix is the point
+//! `height · normal`, each point that has a weight lies at exactly this height, so both core points
+//! lie on the supporting planes of the normal. The error of a mix is therefore its distance from
+//! `height · normal`.
 
 use super::Separation;
 use super::candidate::SupportCandidate;
@@ -85,9 +86,9 @@ impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
     }
 }
 
-/// Returns the separation, in units of the pair, with the points of `mix`. They are moved onto the
-/// supporting planes, and perpendicular to the normal until they face each other exactly: the first
-/// point by `share` of the offset, the second by the rest.
+/// Returns the separation, in units of the pair, with the points of `mix`. These points are moved
+/// onto the supporting planes, and perpendicular to the normal until they face each other exactly:
+/// the first point by `share` of the offset, the second by the rest.
 pub(super) fn placed<N: Simplicial<D>, const D: usize>(
     best: &SupportCandidate<N, D>,
     mix: &Mix<N, D>,

@@ -67,14 +67,15 @@ struct Rolling<'b, 'a, N: Real> {
     turn: Pose<N, 3>,
     /// Centre of the ball, in the frame of the surface.
     center: Point<N, 3>,
-    /// Reference point of the ball, which decides sides, in the frame of the surface.
+    /// Reference point of the ball, which decides on which side of a triangle the ball is, in the
+    /// frame of the surface.
     from: Point<N, 3>,
 }
 
 /// A triangle relative to the centre of the ball, in the axes of the surface.
 struct CenteredTriangle<N: Real> {
     part: u32,
-    /// Relative to the centre of the ball.
+    /// The triangle, with the centre of the ball as the origin.
     triangle: Triangle<N, 3>,
     /// Bound of the rounding errors of lengths computed for the triangle and the ball.
     tolerance: N,

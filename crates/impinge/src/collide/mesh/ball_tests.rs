@@ -131,7 +131,7 @@ fn follow<N: Space<3>>(
     position.y =
         height * N::lit([1.0, 0.9, -1.0][random.pick(3)]) + random.vector::<N>().y * N::lit(0.2);
     if random.pick(4) == 0 {
-        // Over a vertex or an edge of the grid.
+        // Moves the solid over a vertex or an edge of the grid.
         position.x = N::HALF;
     }
     let mut tilt = [Pose::identity(), random.turn::<N>()][random.pick(2)];

@@ -84,7 +84,8 @@ struct Chain<'b, 'a, N: Real> {
     origin: Point<N, 2>,
     /// Centre of the solid, in the frame of the chain.
     center: Point<N, 2>,
-    /// Reference point of the solid, which decides sides, in the frame of the chain.
+    /// Reference point of the solid, which decides on which side of a segment the solid is, in the
+    /// frame of the chain.
     from: Point<N, 2>,
     /// Bounding radius of the solid around its origin.
     size: N,
@@ -122,7 +123,7 @@ impl<N: Real> KnownSegments<N> for KeptLinks<'_, N> {
             while ending != 0 {
                 let index = block * LANES + ending.trailing_zeros() as usize;
                 ending &= ending - 1;
-                // Lanes after the last part hold copies of it.
+                // Lanes after the last part hold copies of that part.
                 if let Some(&part) = self.parts.get(index) {
                     visit(part, self.ends(index));
                 }

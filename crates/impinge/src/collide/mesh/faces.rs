@@ -77,7 +77,8 @@ struct FaceConfiguration<'a, N: Real> {
     turn: Matrix<N, 3>,
     /// Origin of the solid in the frame of the surface.
     origin: Vector<N, 3>,
-    /// Reference point of the solid, which decides sides, in the frame of the surface.
+    /// Reference point of the solid, which decides on which side of a triangle the solid is, in the
+    /// frame of the surface.
     from: Point<N, 3>,
     /// Bounding radius of the solid's core around its origin.
     reach: N,

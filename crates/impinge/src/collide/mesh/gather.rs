@@ -72,7 +72,7 @@ fn cull_kept<N: Space<D>, const D: usize>(
     for (kept, tiles) in around.parts().chunks(LANES).zip(around.tiles()) {
         let bounds = query.bounds(tiles);
         clearance = min(clearance, bounds.from_middle);
-        // Lanes beyond the last part hold copies of it.
+        // Lanes beyond the last part hold copies of that part.
         let bits = bounds.mask & (u8::MAX >> (LANES - kept.len()));
         masks.push(bits);
         parts.extend(Ones::<LANES>(bits.into()).map(|lane| [0, kept[lane]]));

@@ -65,7 +65,7 @@ pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contacts: &mut [PartContact<N, D>],
 ) {
-    // Two composites have no single centre that is on one side.
+    // If both shapes are composites, there is no single centre that decides the side.
     if !scene.first_is_convex() {
         return;
     }

@@ -79,7 +79,7 @@ use crate::shape::{Geometry, Kind, PartSolid, SupportMap};
 /// Points kept per pair of parts before merging; enough for two facets of common solids.
 const PART_POINTS: usize = 16;
 
-/// Parts farther than the nearest by up to this fraction of its distance are searched too.
+/// Parts farther than the nearest part by up to this fraction of its distance are searched, too.
 const NEARLY: f64 = 1.0 / 64.0;
 
 /// Largest limit, as a fraction of a solid's bounding radius, for which [`is_within_solid`] returns

@@ -1,7 +1,7 @@
 //! The parts around a solid, cached between updates.
 //!
-//! The cache is valid for one pair of shapes. If one of them changes, its user replaces the cache
-//! by the [`Default`] one.
+//! The cache is valid for one pair of shapes. If one of them changes, the cache must be replaced by
+//! the [`Default`] one.
 //!
 //! ```text
 //!  parts   p0 p1 p2 … p10                       ascending indices of parts
@@ -21,11 +21,11 @@ use crate::shape::{CompositeShape, FaceSeams, Part, PartSolid, Segment, SupportM
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) enum CacheMargin {
-    /// The initial margin, used until the box with it holds too many parts: more than `most` in
-    /// [`PartCache::covers_with`].
+    /// The initial margin, used until the box with this margin overlaps too many parts: more than
+    /// `most` in [`PartCache::covers_with`].
     #[default]
     Large,
-    /// The margin after the large one held too many parts.
+    /// The margin used after the box with the large margin overlapped too many parts.
     Small,
     /// No margin, for a single update.
     None,

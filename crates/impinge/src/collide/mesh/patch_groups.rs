@@ -1,7 +1,7 @@
 //! Groups the pieces that form one patch: the pieces with one normal in one plane.
 //!
 //! If all normals differ, as on rough terrain, each piece is a patch. Otherwise pieces are taken
-//! deepest first, and each is compared with the deepest pieces of those earlier patches that may
+//! deepest first, and each piece is compared with the deepest piece of each earlier patch that may
 //! have the same normal. If there are many pieces, cells of the normals' component along one axis
 //! limit the candidates:
 //!

@@ -68,9 +68,9 @@ enum WholeOrPart<'a, N: Real, const D: usize> {
 
 /// A part of the first shape and a part of the second, in the order of their kinds.
 ///
-/// Both are translated to an anchor close to them, as in [`Between::parts`]. The distance of the
-/// two parts is therefore equal, bit for bit, to the distance of the pair that [`Between::parts`]
-/// makes; only the order of the parts may differ.
+/// Both parts are translated to an anchor close to them, as in [`Between::parts`]. The distance of
+/// the two parts is therefore equal, bit for bit, to the distance of the pair that
+/// [`Between::parts`] makes; only the order of the parts may differ.
 pub(super) struct PlacedPair<'a, N: Real, const D: usize> {
     /// The two parts, in the order of their kinds.
     bodies: [PlacedPart<'a, N, D>; 2],
@@ -321,8 +321,8 @@ impl<N: Space<D>, const D: usize> RelativePose<N, D> {
     fn new([pose1, pose2]: [&Pose<N, D>; 2], turn: Pose<N, D>, is_swapped: bool) -> Self {
         let (frame1, frame2) = (*pose1, turn.compose(pose2));
         let pose12 = Pose::relative(&frame1, &frame2);
-        // If the order of kinds is the opposite one, the pose is inverted, as for a whole pair of
-        // shapes, so that the result agrees bit for bit with the separation.
+        // If the order of kinds is opposite to the order of shapes, the pose is inverted, as for a
+        // whole pair of shapes, so that the result agrees bit for bit with the separation.
         let (frame, pose12) =
             if is_swapped { (frame2, pose12.inverse()) } else { (frame1, pose12) };
         Self { pose12, is_swapped, frame, turn }

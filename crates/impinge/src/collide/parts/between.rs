@@ -55,8 +55,7 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
         Self { pair: ordered.pair(), pose21 }
     }
 
-    /// Makes a pair from the pose of the second shape in the frame of the first alone; `pose21` is
-    /// its inverse.
+    /// Makes a pair from the relative pose `pose12` alone; `pose21` is computed as its inverse.
     pub(crate) fn of_pair(pair: &Pair<'a, N, D>) -> Self {
         Self { pair: *pair, pose21: pair.pose12.inverse() }
     }

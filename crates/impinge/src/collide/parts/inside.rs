@@ -1,4 +1,4 @@
-//! Pieces of one shape that lie wholly inside a body of the other.
+//! Pieces of one shape that lie wholly inside a body of the other shape.
 //!
 //! A body is bounded by a closed surface; searches of parts find only this surface. A connected
 //! piece that touches no part of the surface is inside or outside as a whole, so one point of the
@@ -48,7 +48,7 @@ pub(crate) struct InsidePiece<N: Real, const D: usize> {
 /// Distance behind the boundary, relative to the separation, of the point that is tested to decide
 /// whether the body ends there. The rounding error is added to this distance.
 const BEYOND: f64 = 1.0 / 64.0;
-/// Rounding error of lengths, in units of epsilon times the coordinates.
+/// Rounding error of lengths, in units of epsilon times the largest coordinate.
 const ROUNDING: f64 = 64.0;
 
 /// Pieces of both shapes that are inside bodies of the other shape.

@@ -167,8 +167,8 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         self.visitor.limit()
     }
 
-    /// Returns a lower bound of the overlap of boxes: parts deeper than a negative limit have boxes
-    /// that overlap at least as deeply, up to rounding error.
+    /// Returns the depth by which boxes must overlap to be descended: parts deeper than a negative
+    /// limit have boxes that overlap at least as deeply, up to rounding error.
     fn depth(&self) -> N {
         max(-self.visitor.limit() - self.slack, N::ZERO)
     }
@@ -365,7 +365,7 @@ impl<N: Space<D>, const D: usize> NearestSearch<'_, '_, N, D> {
     }
 
     /// Visits the near pairs of two composites: each part of the composite with fewer parts
-    /// searches the other.
+    /// searches the larger composite.
     fn of_many(&mut self, parts1: &dyn CompositeShape<N, D>, parts2: &dyn CompositeShape<N, D>) {
         let (which, fewer, more) = by_number(parts1, parts2);
         let (sweep, bound) = (self.visitor.sweep(1 - which), self.visitor.bound());

@@ -1,4 +1,4 @@
-//! Motion of the parts of one shape in the frame of the other.
+//! Motion of the parts of one shape in the frame of the other shape.
 
 use crate::bounding_volume::Aabb;
 use crate::math::{Matrix, Point, Real, Vector, max, min};

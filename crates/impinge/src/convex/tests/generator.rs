@@ -1,4 +1,4 @@
-//! Random pairs, the same in every run.
+//! Pseudo-random pairs of solids, equal in every run.
 
 use serde_json::{Value, json};
 

@@ -1,4 +1,5 @@
-//! Tests random pairs by certificates, without a reference implementation.
+//! Tests results for random pairs by certificates: heights of normals, which are lower bounds of
+//! the signed distance.
 //!
 //! The signed distance is the largest height over all unit vectors. So a separation is right if the
 //! height of its own normal is its distance, if no other direction has a larger height, and if its
@@ -23,7 +24,8 @@ const KINDS: [&str; 9] = [
 ];
 /// Number of kinds with a flat-faced core: those before the last two.
 const FLAT: usize = 7;
-/// Target distances: far, near, touching from both sides, shallow, deep; relative to the size.
+/// Target distances in units of the solids' size: far, near, touching from both sides, shallow and
+/// deep.
 const TARGETS: [f64; 6] = [1.5, 1e-2, 1e-6, -1e-6, -1e-2, -0.4];
 /// Sizes of the solids, and the argument `thin` of [`Generator::shape`].
 const SIZES: [(f64, bool); 4] = [(1.0, false), (1e-3, false), (1e3, false), (1.0, true)];
