@@ -67,16 +67,16 @@ impl Recent {
 }
 
 impl Look {
-    /// Shrinks a list of temporary data if less than a quarter of its capacity was needed in the
-    /// period.
+    /// Shrinks a list of temporary data if its capacity exceeds [`KEPT`] and less than a quarter of
+    /// it was needed in the period.
     pub(crate) fn trim<T>(self, list: &mut Vec<T>) {
         if list.capacity() > KEPT && list.capacity() / 4 > self.longest {
             list.shrink_to((2 * self.longest).max(list.len()));
         }
     }
 
-    /// Shrinks a list that has stopped growing, if more than a quarter of its length is unused
-    /// capacity; leaves an eighth of its length unused.
+    /// If the number of objects has stopped growing, shrinks a list whose unused capacity exceeds a
+    /// quarter of its length and [`SPARE`] bytes; leaves an eighth of its length unused.
     pub(crate) fn fit<T>(self, list: &mut Vec<T>) {
         let spare = list.len() / 8;
         let surplus = list.capacity() - list.len();

@@ -283,7 +283,7 @@ pub struct HitColumns<'a, N: Real, const D: usize> {
     pub normal: &'a mut [[N; D]],
     /// The index of the composite's part that is hit; 0 for a convex solid.
     pub part: &'a mut [u32],
-    /// The feature of the part that is hit.
+    /// The feature that contains the hit, on the part that is hit.
     pub feature: &'a mut [FeatureId],
 }
 

@@ -27,8 +27,8 @@
 //!
 //! # No result
 //!
-//! An element has no result if the query finds none within its limit, or if a pose, point, ray or
-//! velocity of the element is not finite. Its distance and time are then `INFINITY`, its depth
+//! An element has no result if nothing lies within the limit of the query, or if a pose, point, ray
+//! or velocity of the element is not finite. Its distance and time are then `INFINITY`, its depth
 //! `-INFINITY`, its points and normals `NaN`, its part `u32::MAX`, and its feature [`NO_FEATURE`].
 //!
 //! # Errors

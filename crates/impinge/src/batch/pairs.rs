@@ -98,7 +98,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
     /// [`Self::witnesses`] computes points there too. A negative or NaN `max_distance` means zero.
     ///
     /// # Errors
-    /// [`BatchError::Length`] if a column is neither empty nor as long as the batch, [`BatchError::Cancelled`].
+    /// [`BatchError::Length`] if a column is neither empty nor as long as the batch,
+    /// [`BatchError::Cancelled`].
     pub fn closest_points(
         &self,
         max_distance: N,
@@ -113,7 +114,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
     /// [`witness`](crate::query::witness()).
     ///
     /// # Errors
-    /// [`BatchError::Length`] if a column is neither empty nor as long as the batch, [`BatchError::Cancelled`].
+    /// [`BatchError::Length`] if a column is neither empty nor as long as the batch,
+    /// [`BatchError::Cancelled`].
     pub fn witnesses(
         &self,
         max_distance: N,
@@ -142,7 +144,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
     /// apart: see [`contact`](crate::query::contact()).
     ///
     /// # Errors
-    /// [`BatchError::Length`] if a column is neither empty nor as long as the batch, [`BatchError::Cancelled`].
+    /// [`BatchError::Length`] if a column is neither empty nor as long as the batch,
+    /// [`BatchError::Cancelled`].
     pub fn contacts(
         &self,
         prediction: N,
@@ -211,7 +214,7 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         entries::nearest(self, max_distance, control)
     }
 
-    /// Prepares both sides. Written without `map`, which copies them several times.
+    /// Prepares both sides. Written without `map`, which would copy the sides several times.
     #[inline]
     pub(super) fn prepared(&self) -> [PreparedSide<'a, N, D>; 2] {
         [PreparedSide::new(&self.sides[0]), PreparedSide::new(&self.sides[1])]
@@ -443,8 +446,8 @@ pub(super) fn nearest<N: Space<D>, const D: usize>(
     Ok(best.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// Returns the nearest pair among `known` and the pairs in `range`; `None` if no pair is within
-/// `limit`.
+/// Returns the nearest pair among `known` and the pairs in `range`; `None` if `known` is `None` and
+/// no pair in `range` is within `limit`.
 fn nearest_of<N: Space<D>, const D: usize>(
     sides: &[PreparedSide<'_, N, D>; 2],
     range: Range<usize>,

@@ -1,5 +1,5 @@
-//! The pairs of a chunk that may be within a limit, with their placed shapes. Convex pairs are computed together in
-//! SIMD lanes.
+//! The pairs of a chunk that may be within a limit, with their placed shapes. Convex pairs are
+//! computed together in SIMD lanes.
 
 use crate::collide::separation::distance_in_world;
 use crate::tables::ByDimension;
@@ -31,8 +31,9 @@ pub(super) enum PairAnswer<'p, 'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Space<D>, const D: usize> PlacedPairs<'a, N, D> {
-    /// Collects the pairs of a range of elements. If `limit` is infinite, all poses are read in bulk. Otherwise only
-    /// translations are read first, and then the poses of the pairs that may be within the limit.
+    /// Collects the pairs of a range of elements. If `limit` is infinite, all poses are read in
+    /// bulk. Otherwise only translations are read first, and then the poses of the pairs that may
+    /// be within the limit.
     pub(super) fn new(sides: &[PreparedSide<'a, N, D>; 2], range: Range<usize>, limit: N) -> Self {
         if limit == N::INFINITY {
             let slots = (0..range.len()).collect();
@@ -53,9 +54,9 @@ impl<'a, N: Space<D>, const D: usize> PlacedPairs<'a, N, D> {
         Self { slots, sides: near, limit }
     }
 
-    /// Returns the pairs of convex solids; the `slot` of each is its index in `self.slots`, not its slot in the chunk.
-    /// Leaves out pairs whose relative pose is not finite. For each pair with a composite, calls `of_composites` with
-    /// its slot in the chunk and its shapes.
+    /// Returns the pairs of convex solids; the `slot` of each is its index in `self.slots`, not its
+    /// slot in the chunk. Leaves out pairs whose relative pose is not finite. For each pair with a
+    /// composite, calls `of_composites` with its slot in the chunk and its shapes.
     fn convex(
         &self,
         mut of_composites: impl FnMut(usize, [&Placed<'a, N, D>; 2]),
@@ -77,8 +78,8 @@ impl<'a, N: Space<D>, const D: usize> PlacedPairs<'a, N, D> {
         convex
     }
 
-    /// Calls `put` with the chunk slot and the distance of each pair that is at most `limit` apart. The distance is
-    /// zero or negative where the shapes touch or overlap.
+    /// Calls `put` with the chunk slot and the distance of each pair that is at most `limit` apart.
+    /// The distance is zero or negative where the shapes touch or overlap.
     pub(super) fn distances(&self, mut put: impl FnMut(usize, N)) {
         let mut convex = self.convex(|slot, [placed1, placed2]| {
             if let Some(found) = distance_in_world(placed1, placed2, self.limit) {
@@ -94,8 +95,8 @@ impl<'a, N: Space<D>, const D: usize> PlacedPairs<'a, N, D> {
         }
     }
 
-    /// Calls `put` for each pair that may be at most `limit` apart, with its slot in the chunk. A pair of convex solids
-    /// comes with its separation, a pair with a composite with its shapes.
+    /// Calls `put` for each pair that may be at most `limit` apart, with its slot in the chunk. A
+    /// pair of convex solids comes with its separation, a pair with a composite with its shapes.
     pub(super) fn separations(&self, mut put: impl FnMut(usize, PairAnswer<'_, 'a, N, D>)) {
         let mut convex = self.convex(|slot, placed| put(slot, PairAnswer::Alone(placed)));
         let mut found = vec![None; self.slots.len()];

@@ -69,7 +69,8 @@ impl<'a, N: Space<D>, const D: usize> PointBatch<'a, N, D> {
     /// See [`PointQuery::project_point_with_location`].
     ///
     /// # Errors
-    /// [`BatchError::Length`] if a column is neither empty nor as long as the batch, [`BatchError::Cancelled`].
+    /// [`BatchError::Length`] if a column is neither empty nor as long as the batch,
+    /// [`BatchError::Cancelled`].
     pub fn project(
         &self,
         solid: bool,
@@ -98,8 +99,8 @@ impl<'a, N: Space<D>, const D: usize> PointBatch<'a, N, D> {
     }
 
     /// Calls `answer` for each pair with its point and shape, the columns of the pair's chunk, and
-    /// the index of the pair's slot in these columns. Point and shape are `None` if the point or
-    /// the pose is not finite.
+    /// the index of the pair's slot in these columns. `answer` receives `None` instead of the point
+    /// and shape if the point or the pose is not finite.
     fn each<C: AnswerColumns>(
         &self,
         control: &Control<'_>,

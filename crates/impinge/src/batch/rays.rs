@@ -89,7 +89,8 @@ impl<'a, N: Space<D>, const D: usize> RayColumns<'a, N, D> {
     /// Computes the first hit of each ray.
     ///
     /// # Errors
-    /// [`BatchError::Length`] if a column is neither empty nor as long as the batch, [`BatchError::Cancelled`].
+    /// [`BatchError::Length`] if a column is neither empty nor as long as the batch,
+    /// [`BatchError::Cancelled`].
     pub fn cast(&self, control: &Control<'_>, out: HitColumns<'_, N, D>) -> Result<(), BatchError> {
         entries::cast(self, control, out)
     }

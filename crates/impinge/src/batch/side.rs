@@ -139,8 +139,9 @@ impl<N: Real, const D: usize> fmt::Debug for Side<'_, N, D> {
     }
 }
 
-/// Returns the longer of two lengths if they are equal or one of them is 1; else
-/// [`BatchError::Length`].
+/// Returns the number of elements of two lists that belong together: the length of the second list
+/// if the first has length 1 and vice versa, else their equal length. Returns
+/// [`BatchError::Length`] if the lengths differ and neither is 1.
 pub(super) fn common_length(
     needed: usize,
     (argument, given): (&'static str, usize),

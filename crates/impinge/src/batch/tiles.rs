@@ -1,4 +1,5 @@
-//! Pairs among more objects than one machine can hold: space is cut into tiles, whose pairs are computed separately.
+//! Pairs among more objects than one machine can hold: space is cut into tiles, whose pairs are
+//! computed separately.
 //!
 //! ```text
 //!   cut 0 ──── below ──── cut 1 ── tile 0       ┌────┬────────┐
@@ -8,15 +9,17 @@
 //!                                               └────┴────────┘    a pair belongs to exactly one tile
 //! ```
 //!
-//! The tiles are the leaves of a k-d tree (Bentley, "Multidimensional binary search trees used for associative
-//! searching", 1975) over the boxes of a sample. So all tiles have about the same number of objects, even if the
-//! density of the objects varies. The grown boxes of two near objects overlap, and the pair belongs to the tile that
-//! contains the lowest corner of this overlap: the reference point of Dittrich and Seeger ("Data redundancy and
-//! duplicate detection in spatial join processing", 2000). Both boxes contain that point, so both objects are assigned
-//! to that tile.
+//! The tiles are the leaves of a k-d tree (Bentley, "Multidimensional binary search trees used for
+//! associative searching", 1975) over the boxes of a sample. So all tiles have about the same
+//! number of objects, even if the density of the objects varies. The grown boxes of two near
+//! objects overlap, and the pair belongs to the tile that contains the lowest corner of this
+//! overlap: the reference point of Dittrich and Seeger ("Data redundancy and duplicate detection in
+//! spatial join processing", 2000). Both grown boxes contain that point, so both objects are
+//! assigned to that tile.
 //!
-//! A [`Tiles`] consists of the clearance and the cuts in preorder. A subtree of n tiles has n - 1 cuts: first its own
-//! cut, then the ⌊n/2⌋ - 1 cuts of the ⌊n/2⌋ tiles below it, then the cuts of the tiles above it.
+//! A [`Tiles`] consists of the clearance and the cuts in preorder. A subtree of n tiles has n - 1
+//! cuts: first its own cut, then the ⌊n/2⌋ - 1 cuts of the ⌊n/2⌋ tiles below it, then the cuts of
+//! the tiles above it.
 
 use super::entries;
 use super::within::{half_margin, is_distance};
@@ -37,15 +40,16 @@ pub struct TileCut<N> {
 
 /// A division of space into tiles, and the clearance up to which pairs are found.
 ///
-/// [`tiles()`] computes it. It is plain data: [`Tiles::try_from_cuts`] creates an equal value from [`Tiles::cuts`] and
-/// [`Tiles::clearance`], on another machine too.
+/// [`tiles()`] computes a division. A division is plain data: [`Tiles::try_from_cuts`] creates an equal value from
+/// [`Tiles::cuts`] and [`Tiles::clearance`], on another machine too.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tiles<N: Real, const D: usize> {
     clearance: N,
     cuts: Vec<TileCut<N>>,
 }
 
-/// The tiles of many objects: the tiles of object `i` are `tiles[starts[i]..starts[i + 1]]`, ascending.
+/// The tiles of many objects: the tiles of object `i` are `tiles[starts[i]..starts[i + 1]]`,
+/// ascending.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TileRows {
     /// The index in `tiles` of each object's first tile, followed by the length of `tiles`.
@@ -56,10 +60,11 @@ pub struct TileRows {
 
 /// Cuts space into `number` tiles with about the same number of objects each.
 ///
-/// `boxes` are the boxes of the objects or of a sample of them, as [`boxes()`](super::boxes) computes them; `None` is
-/// ignored. The tiles depend on the arguments alone. The objects that are later assigned to them may differ from the
-/// sample: any tiles lead to the same pairs, and only the balance of work differs. If there are more tiles than
-/// objects, or no boxes at all, some tiles are empty.
+/// `boxes` are the boxes of the objects or of a sample of them, as [`boxes()`](super::boxes)
+/// computes them; `None` is ignored. The tiles depend on the arguments alone. The objects that are
+/// later assigned to them may differ from the sample: any tiles lead to the same pairs, and only
+/// the balance of work differs. If there are more tiles than objects, or no boxes at all, some
+/// tiles are empty.
 ///
 /// Cost: O(n log n log t) for n boxes and t tiles.
 ///
@@ -82,7 +87,8 @@ pub struct TileRows {
 /// ```
 ///
 /// # Errors
-/// [`BatchError::NoTile`] if `number` is zero, [`BatchError::Distance`] if `clearance` is negative or NaN.
+/// [`BatchError::NoTile`] if `number` is zero, [`BatchError::Distance`] if `clearance` is negative
+/// or NaN.
 pub fn tiles<N: Real, const D: usize>(
     boxes: &[Option<Aabb<N, D>>],
     number: u32,
@@ -99,20 +105,22 @@ pub fn tiles<N: Real, const D: usize>(
     Ok(tiles)
 }
 
-/// Returns the pairs of objects that belong to tile `tile` and that touch, overlap, or are apart by at most the
-/// clearance of the tiles. Each result is a pair of ids, the lower id first; the list is in ascending order.
+/// Returns the pairs of objects that belong to tile `tile` and that touch, overlap, or are apart by
+/// at most the clearance of the tiles. Each result is a pair of ids, the lower id first; the list
+/// is in ascending order.
 ///
-/// `side` has the objects for which [`Tiles::meeting`] lists the tile, in any order; other objects cost time but do not
-/// change the result. `ids` has a distinct id for each element of `side`. For any tiles, the lists of all tiles
-/// together contain exactly once each pair that [`pairs_within_one`](super::pairs_within_one) finds among all objects.
+/// `side` has the objects for which [`Tiles::meeting`] lists the tile, in any order; other objects
+/// cost time but do not change the result. `ids` has a distinct id for each element of `side`. For
+/// any tiles, the lists of all tiles together contain exactly once each pair that
+/// [`pairs_within_one`](super::pairs_within_one) finds among all objects.
 ///
-/// The cost is at most that of `pairs_within_one` for the objects in `side`; pairs of other tiles are rejected before
-/// the exact test.
+/// The cost is at most that of `pairs_within_one` for the objects in `side`; pairs of other tiles
+/// are rejected before the exact test.
 ///
 /// # Errors
-/// [`BatchError::Length`] if `ids` is not as long as the side, [`BatchError::NoTile`] if `tile` is not less than
-/// [`Tiles::number`], [`BatchError::TooMany`] if the number of elements does not fit in 32 bits,
-/// [`BatchError::Cancelled`].
+/// [`BatchError::Length`] if `ids` is not as long as the side, [`BatchError::NoTile`] if `tile` is
+/// not less than [`Tiles::number`], [`BatchError::TooMany`] if the number of elements does not fit
+/// in 32 bits, [`BatchError::Cancelled`].
 pub fn pairs_in_tile<N: Space<D>, const D: usize>(
     side: &Side<'_, N, D>,
     ids: &[u64],
@@ -169,13 +177,13 @@ impl Subtree {
 }
 
 impl<N: Real, const D: usize> Tiles<N, D> {
-    /// Creates the tiles with this clearance and these cuts, which must be in the order of [`Tiles::cuts`]. Without
-    /// cuts there is a single tile.
+    /// Creates the tiles with this clearance and these cuts, which must be in the order of
+    /// [`Tiles::cuts`]. Without cuts there is a single tile.
     ///
     /// # Errors
-    /// [`BatchError::Distance`] if the clearance is negative or NaN, [`BatchError::TileCut`] for the first cut whose
-    /// axis does not exist or whose position is not finite or outside the region that it cuts, [`BatchError::TooMany`]
-    /// if the number of tiles does not fit in 32 bits.
+    /// [`BatchError::Distance`] if the clearance is negative or NaN, [`BatchError::TileCut`] for
+    /// the first cut whose axis does not exist or whose position is not finite or outside the
+    /// region that it cuts, [`BatchError::TooMany`] if the number of tiles does not fit in 32 bits.
     pub fn try_from_cuts(clearance: N, cuts: Vec<TileCut<N>>) -> Result<Self, BatchError> {
         is_distance(clearance)?;
         if u32::try_from(cuts.len() + 1).is_err() {
@@ -206,15 +214,15 @@ impl<N: Real, const D: usize> Tiles<N, D> {
         self.clearance
     }
 
-    /// Returns the cuts in preorder: a cut comes before the cuts of its subtree, and cuts below it come before cuts
-    /// above it. There is one cut less than there are tiles.
+    /// Returns the cuts in preorder: a cut comes before the cuts of its subtree, and cuts below it
+    /// come before cuts above it. There is one cut less than there are tiles.
     #[must_use]
     pub fn cuts(&self) -> &[TileCut<N>] {
         &self.cuts
     }
 
-    /// Returns the region of each tile, by index; outer faces are infinite. A point on a cut lies in the tile above the
-    /// cut.
+    /// Returns the region of each tile, by index; outer faces are infinite. A point on a cut lies
+    /// in the tile above the cut.
     #[must_use]
     pub fn bounds(&self) -> Vec<Aabb<N, D>> {
         let mut all = Vec::with_capacity(self.cuts.len() + 1);
@@ -234,11 +242,12 @@ impl<N: Real, const D: usize> Tiles<N, D> {
         subtree.tile
     }
 
-    /// Returns the tiles to which each object must be assigned: all tiles that overlap its box grown by half the
-    /// clearance.
+    /// Returns the tiles to which each object must be assigned: all tiles that overlap the object's
+    /// box, grown by half the clearance.
     ///
-    /// `boxes` are the boxes of all objects or of some of them, as [`boxes()`](super::boxes) computes them. An object
-    /// without a box has no tile. An unbounded or huge box may overlap all tiles.
+    /// `boxes` are the boxes of all objects or of some of them, as [`boxes()`](super::boxes)
+    /// computes them. An object without a box has no tile. An unbounded or huge box may overlap all
+    /// tiles.
     ///
     /// The cost for each object is O(r log t), for t tiles of which r overlap the grown box.
     #[must_use]
@@ -259,7 +268,8 @@ impl<N: Real, const D: usize> Tiles<N, D> {
         self.owner(&Point::from(low1.coords.zip_map(&low2.coords, max)))
     }
 
-    /// Returns the box grown by half the clearance, so that the grown boxes of two near objects overlap.
+    /// Returns the box grown by half the clearance, so that the grown boxes of two near objects
+    /// overlap.
     fn grown(&self, aabb: &Aabb<N, D>) -> Aabb<N, D> {
         aabb.loosened(half_margin(self.clearance))
     }
@@ -269,8 +279,8 @@ impl<N: Real, const D: usize> Tiles<N, D> {
         Subtree { cut: 0, tile: 0, tiles: cuts + 1 }
     }
 
-    /// Cuts the region `bounds` into `tiles` tiles and appends the cuts; `boxes` are the boxes that overlap the region.
-    /// The recursion depth is logarithmic in `tiles`.
+    /// Cuts the region `bounds` into `tiles` tiles and appends the cuts; `boxes` are the boxes that
+    /// overlap the region. The recursion depth is logarithmic in `tiles`.
     fn divide(&mut self, boxes: Vec<Aabb<N, D>>, bounds: &Aabb<N, D>, tiles: u32) {
         if tiles == 1 {
             return;
@@ -312,7 +322,8 @@ impl<N: Real, const D: usize> Tiles<N, D> {
         }
     }
 
-    /// Returns the index of the first cut that lies outside the region that it divides; `None` if all cuts lie inside.
+    /// Returns the index of the first cut that lies outside the region that it divides; `None` if
+    /// all cuts lie inside.
     fn first_outside(&self, subtree: Subtree, bounds: &Aabb<N, D>) -> Option<usize> {
         if subtree.tiles == 1 {
             return None;
@@ -335,13 +346,14 @@ fn halves<N: Real, const D: usize>(bounds: &Aabb<N, D>, cut: &TileCut<N>) -> [Aa
     [Aabb::new(*bounds.mins(), below), Aabb::new(above, *bounds.maxs())]
 }
 
-/// Cost of a cut, compared lexicographically: first the greater number of objects per tile of the two sides, times a
-/// factor common to all cuts; then the number of objects below plus the number above, which counts an object on both
-/// sides twice.
+/// Cost of a cut, compared lexicographically: first the greater number of objects per tile of the
+/// two sides, times a factor common to all cuts; then the number of objects below plus the number
+/// above, which counts an object on both sides twice.
 type CutLoad = (u64, usize);
 
-/// Returns the cut with the least cost. If no box and no bound has a usable finite lower face, returns any finite cut
-/// inside the bounds.
+/// Returns the cut with the least cost. If [`Faces::even_cuts`] yields no candidate on any axis,
+/// returns a cut perpendicular to the first axis: at the upper bound if that is finite, else at
+/// zero.
 fn best_cut<N: Real, const D: usize>(
     boxes: &[Aabb<N, D>],
     bounds: &Aabb<N, D>,
@@ -380,9 +392,9 @@ impl<N: Real> Faces<N> {
         Self { lows: sorted(lows.collect()), highs: sorted(highs.collect()) }
     }
 
-    /// Returns up to four candidate positions: the lower bound of the region, the first lower face inside the region,
-    /// and the two lower faces next to the balanced position. A cut at the lower bound makes the region below it empty,
-    /// which is best if all boxes overlap.
+    /// Returns up to four candidate positions: the lower bound of the region, the first lower face
+    /// inside the region, and the two lower faces next to the balanced position. A cut at the lower
+    /// bound makes the region below it empty, which is best if all boxes overlap.
     fn even_cuts(&self, [low, high]: [N; 2], tiles: u32) -> impl Iterator<Item = N> {
         let begin = self.lows.partition_point(|&face| face <= low);
         let inside = &self.lows[begin..];
@@ -398,8 +410,8 @@ impl<N: Real> Faces<N> {
         cuts.into_iter().flatten()
     }
 
-    /// Returns the number of boxes that extend below the position `at`, and the number of boxes that extend to it or
-    /// above it.
+    /// Returns the number of boxes that extend below the position `at`, and the number of boxes
+    /// that extend to it or above it.
     fn counts(&self, at: N) -> [usize; 2] {
         let before = |faces: &[N]| faces.partition_point(|&face| face < at);
         [before(&self.lows), self.highs.len() - before(&self.highs)]

@@ -1,7 +1,7 @@
 //! All near pairs of two sets of placed shapes.
 //!
-//! A tree is built over the boxes of one set. Each element of the other set searches it with its
-//! own box, grown by the distance. For each pair whose boxes overlap,
+//! A tree is built over the boxes of one set. For each element of the other set, the tree is
+//! searched with the element's box, grown by the distance. For each pair whose boxes overlap,
 //! [`proximity`](crate::query::proximity()) of the two shapes then decides.
 //!
 //! ```text
@@ -197,9 +197,9 @@ fn margin<N: Real>(distance: N) -> N {
     distance + distance * N::lit(ROUNDING_ERRORS) * N::EPSILON
 }
 
-/// Returns half of [`margin`], rounded up: if both boxes of a pair grow by it, they overlap
-/// whenever their solids are within `distance`. Rounding up matters where half of the smallest
-/// positive number rounds to zero.
+/// Returns half of [`margin`], rounded up: if both boxes of a pair grow by this margin, the boxes
+/// overlap whenever their solids are within `distance`. Rounding up matters where half of the
+/// smallest positive number rounds to zero.
 pub(super) fn half_margin<N: Real>(distance: N) -> N {
     let whole = margin(distance);
     let half = whole * N::HALF;
@@ -225,8 +225,8 @@ impl<'a, N: Space<D>, const D: usize> BoxedSide<'a, N, D> {
 
     /// Searches the tree of `other` with the box of each element of this side, and returns the
     /// pairs within `distance` in no particular order. `pair_of` receives the index of the element
-    /// of this side and the index of the element of `other`. It returns the pair to report, or
-    /// `None` to leave it out.
+    /// of this side and the index of the element of `other`. `pair_of` returns the pair to report,
+    /// or `None` to leave the pair out.
     fn pairs_with(
         &self,
         other: &Self,

@@ -215,7 +215,7 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     }
 
     /// Returns the times at which the box `moving`, with `velocity`, begins and ceases to touch
-    /// this box, clamped to `t ≥ 0`; `None` if it never touches.
+    /// this box, clamped to `t ≥ 0`; `None` if the boxes do not touch at any `t ≥ 0`.
     ///
     /// This is the slab test with the extents of both boxes added. If `moving` is a single point,
     /// the result equals [`Self::ray_interval`] of a ray. With a zero velocity the interval is from

@@ -1,9 +1,9 @@
 //! Boxes around placed solids, rounded outwards.
 //!
-//! A coordinate of a placed point is `t + Σ Rᵢⱼ·pⱼ`. The sum is rounded, so boxes are grown by an upper bound of its
-//! error ([`slack_of`]). The addition of `t` is rounded outwards to a neighbouring number ([`sum_below`],
-//! [`sum_above`]), so that the boxes of solids far from the origin are tight too. If a pose maps axes to axes, only
-//! this addition is rounded.
+//! A coordinate of a placed point is `t + Σ Rᵢⱼ·pⱼ`. The sum is rounded, so boxes are grown by an
+//! upper bound of its error ([`slack_of`]). The addition of `t` is rounded outwards to a
+//! neighbouring number ([`sum_below`], [`sum_above`]), so that the boxes of solids far from the
+//! origin are tight too. If a pose maps axes to axes, only this addition is rounded.
 
 use super::Aabb;
 use crate::math::outward::{slack_of, sum_above, sum_below};
@@ -48,8 +48,8 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     /// [`Pose::vector`]. `size` is an upper bound of the distance of the points from the local
     /// origin. The result is unbounded if the coordinates overflow.
     ///
-    /// A coordinate of a rotated point is a sum of D products with an error of at most D·ε·size/2 (Higham, "Accuracy
-    /// and Stability of Numerical Algorithms", 2002, section 3.1).
+    /// A coordinate of a rotated point is a sum of D products with an error of at most D·ε·size/2
+    /// (Higham, "Accuracy and Stability of Numerical Algorithms", 2002, section 3.1).
     #[inline]
     pub(crate) fn of_rotated(
         mut low: Vector<N, D>,
@@ -67,8 +67,8 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         Self::try_new(mins, maxs).unwrap_or_else(|_| Self::unbounded())
     }
 
-    /// Returns the smallest box, in the outer frame, around this box placed at `pose`; rounded outwards, and exact if
-    /// the pose maps axes to axes and the corners are representable.
+    /// Returns the smallest box, in the outer frame, around this box placed at `pose`; rounded
+    /// outwards, and exact if the pose maps axes to axes and the corners are representable.
     ///
     /// If the box is unbounded on a local axis, the result is unbounded on every outer axis to
     /// which that axis contributes.

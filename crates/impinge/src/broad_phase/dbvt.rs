@@ -45,12 +45,14 @@ impl<N: Space<D>, const D: usize> TreeVolume<N> for Aabb<N, D> {
     }
 }
 
-/// A dynamic tree over bounding volumes loosened by a margin.
+/// Two dynamic trees over bounding volumes loosened by a margin: one of moving and one of still
+/// objects.
 ///
-/// The tree changes only when an object's exact volume leaves its loosened volume, so objects that
-/// move slowly or jitter cost almost nothing. The first update of a new object loosens its volume
-/// too. Two objects are a pair if their loosened volumes overlap; the searches
-/// (`interferences_with_*`, `visit_*`) test exact volumes.
+/// An object changes a tree only when its exact volume leaves its loosened volume, or when it comes
+/// to rest. So objects that move slowly or jitter cost almost nothing. The first update of a new
+/// object loosens its volume too. Two objects are a pair if their loosened volumes overlap. The
+/// searches `interferences_with_*`, `visit_ray`, `visit_nearest` and `visit_cast` test exact
+/// volumes; `visit_*_roughly` test loosened volumes only.
 ///
 /// Loosened volumes are stored as `f32`, rounded outwards, even for `f64`, so no pair is missed. An
 /// object is treated as unbounded if a face of its loosened volume is beyond the range of `f32`.
@@ -100,8 +102,8 @@ impl<N: Space<D>, const D: usize, T> Debug for DBVTBroadPhase<N, Aabb<N, D>, T> 
 }
 
 impl<N: Real, BV: TreeVolume<N>, T> DBVTBroadPhase<N, BV, T> {
-    /// Creates a broad phase without objects that loosens volumes by `margin` (zero or more; 0.02
-    /// suits objects of size 1).
+    /// Creates an empty broad phase, which loosens volumes by `margin` (zero or more; 0.02 suits
+    /// objects of size 1).
     ///
     /// # Panics
     /// If the margin is negative, infinite or NaN; [`Self::try_new`] returns an error instead.
@@ -111,7 +113,7 @@ impl<N: Real, BV: TreeVolume<N>, T> DBVTBroadPhase<N, BV, T> {
         or_panic(Self::try_new(margin))
     }
 
-    /// Creates a broad phase without objects that loosens volumes by `margin`.
+    /// Creates an empty broad phase, which loosens volumes by `margin`.
     ///
     /// # Errors
     /// If the margin is negative, infinite or NaN.
@@ -134,8 +136,8 @@ fn id_of(handle: ProxyHandle) -> u32 {
 }
 
 impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
-    /// Creates a broad phase without objects that uses SIMD vectors of this width. The width does
-    /// not affect results. For tests.
+    /// Creates an empty broad phase, which uses SIMD vectors of this width. The width does not
+    /// affect results. For tests.
     ///
     /// # Errors
     /// If the margin is negative, infinite or NaN.

@@ -109,8 +109,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     fn changes_of_unbounded(&self, u: u32, found: &mut Changes) {
         let is_changed = self.marks[u as usize] & CHANGED != 0;
         let mut test = |other: u32| {
-            // A pair of two unbounded objects is reported once: by the one that changed, or by the
-            // smaller id if both did.
+            // A pair of two unbounded objects is reported once: by the object that changed, or by
+            // the object with the smaller id if both changed.
             let is_reported_by_other = self.containers[other as usize] == Container::Unbounded
                 && self.marks[other as usize] & CHANGED != 0
                 && (!is_changed || other < u);

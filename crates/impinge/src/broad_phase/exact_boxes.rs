@@ -41,8 +41,8 @@ impl<N: Real, const D: usize> ExactBoxes<'_, N, D> {
     }
 
     /// Implements [`Self::write`] on one thread. Whether an object leaves its loosened box is
-    /// unpredictable, so the loop does not branch on it: each index is written, and the next index
-    /// overwrites it if the object stays.
+    /// unpredictable, so the loop does not branch on it: the index of each object is written, and
+    /// the next index overwrites the index of an object that stays.
     fn write_serial(
         self,
         bounds: &LooseBounds<'_, D>,

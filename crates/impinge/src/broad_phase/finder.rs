@@ -43,14 +43,14 @@ pub(super) struct Waiting<N: Real, const D: usize> {
     pub(super) aabb: Aabb<N, D>,
 }
 
-/// The pairs of objects whose loosened boxes overlap, kept up to date. An object is identified by a
-/// small index, its id.
+/// The pairs of objects whose loosened boxes overlap and that the filter allows, kept up to date.
+/// An object is identified by a small index, its id.
 ///
 /// The loosened box of an object is its exact box grown by the margin and rounded outwards to
 /// `f32`. It is replaced only when the exact box leaves it, or when an unbounded object becomes
 /// bounded, so objects that move little cost almost nothing. An object is unbounded if a face of
-/// its loosened box is beyond the range of `f32`. Unbounded objects are in a list, and are tested
-/// against every object that changed.
+/// its loosened box is beyond the range of `f32`. Unbounded objects are in a list, and each of them
+/// is tested against every object that changed.
 ///
 /// Arrays with one entry for each object are indexed by id. Objects that have not changed for a
 /// while move to a second tree, the tree of still objects. It is searched for changed objects only.
@@ -67,7 +67,8 @@ pub struct PairFinder<N: Real, const D: usize> {
     /// By id: the value of `clock` in the update in which the loosened box last changed.
     pub(super) last_change: Vec<u32>,
     pub(super) waiting: Vec<Waiting<N, D>>,
-    /// Scratch: indices in `waiting` of the boxes that leave their loosened boxes.
+    /// Scratch: indices in `waiting` of the boxes that leave their loosened boxes, or whose objects
+    /// are in no tree.
     outside: Vec<u32>,
     /// By id: the object's index in `waiting`, or [`NONE`].
     pub(super) waiting_at: Vec<u32>,
@@ -112,7 +113,7 @@ impl<N: Real, const D: usize> fmt::Debug for PairFinder<N, D> {
 }
 
 impl<N: Real, const D: usize> PairFinder<N, D> {
-    /// Creates a finder without objects that loosens boxes by `margin`.
+    /// Creates a finder without objects, which loosens boxes by `margin`.
     ///
     /// # Errors
     /// If the margin is negative, infinite or NaN.
@@ -296,7 +297,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     }
 
     /// Computes a new loosened box for an object whose exact box left the old one, or that is in no
-    /// tree. An unbounded object keeps its loosened box while that still contains the exact box.
+    /// tree. An unbounded object keeps its loosened box while a face of its exact box is beyond the
+    /// range of `f32` and the loosened box contains the exact box.
     #[inline]
     fn update_loose(&mut self, id: u32, aabb: &Aabb<N, D>) {
         let index = id as usize;
@@ -371,7 +373,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         *marks |= CHANGED | mark;
     }
 
-    /// Resets the old box of each object in `to_refilter`, so that all its pairs begin anew.
+    /// Resets the old box of each object in `to_refilter`, or of all objects if `refilters_all`, so
+    /// that all pairs of these objects begin anew.
     pub(super) fn apply_refilters(&mut self) {
         let mut to_refilter = core::mem::take(&mut self.to_refilter);
         if core::mem::take(&mut self.refilters_all) {
@@ -391,7 +394,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.to_refilter = to_refilter;
     }
 
-    /// Returns the number of boxes that the next update applies.
+    /// Returns the length of `waiting`, which includes entries of removed objects.
     pub(super) fn num_waiting(&self) -> usize {
         self.waiting.len()
     }

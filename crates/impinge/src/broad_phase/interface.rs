@@ -19,8 +19,8 @@ pub type VisitProposals<'a, N, T> = dyn FnMut(&[Proposal<'_, N, T>]) -> N + 'a;
 ///   [`Self::update`]. Removal is immediate.
 /// * **Complete**: after an update, every two objects whose volumes overlap are a pair, unless the
 ///   filter refused them. Objects whose exact volumes do not overlap may be a pair too.
-/// * **Incremental**: an unchanged pair is not reported again. Each pair that started stops once:
-///   in an update or in a removal.
+/// * **Incremental**: an unchanged pair is not reported again. Each pair that started stops at most
+///   once before it starts again: in an update or in a removal.
 /// * **The filter must not change over time**: it is called once, when the volumes of a pair begin
 ///   to overlap. If it changes, call [`Self::deferred_recompute_all_proximities`].
 /// * **Canonical order**: the data of the object with the smaller [`ProxyHandle::uid`] come first.
@@ -115,8 +115,7 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
     fn num_interferences(&self) -> usize;
 
     /// Returns the exact volume of an object as of its last update, and its data; `None` for a
-    /// stale handle. Before the first update of the object, the volume is the one that it was
-    /// created with.
+    /// stale handle. Before the first update of the object, the volume is that of its creation.
     fn proxy(&self, handle: ProxyHandle) -> Option<(&BV, &T)>;
 
     /// Adds an object. It has pairs from the next update on.

@@ -18,9 +18,9 @@ const CHANGED_PER_SLOT: usize = 16;
 /// objects can come to rest.
 const MAX_RESTING: usize = 64;
 /// The trees are swapped only if there are at most `MAX_STILL_TO_SWAP` still objects, because these
-/// become moving objects ...
+/// become moving objects.
 const MAX_STILL_TO_SWAP: usize = 64;
-/// ... and at least `MIN_MOVING_TO_SWAP` moving objects.
+/// The trees are swapped only if there are at least `MIN_MOVING_TO_SWAP` moving objects.
 const MIN_MOVING_TO_SWAP: usize = 1024;
 
 /// A pass over the slots of the tree of moving objects, from the last slot to the first. It is

@@ -1,4 +1,5 @@
-//! Searches with boxes, points and rays among the exact boxes of the last update.
+//! Searches with boxes, moving boxes, points and rays, as of the last update: among the exact boxes
+//! or, in the functions named `*_roughly`, among the loosened boxes.
 
 use super::PairFinder;
 use crate::bounding_volume::{Aabb, Ray};

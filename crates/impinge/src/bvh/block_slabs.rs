@@ -10,18 +10,19 @@
 //!  +------------+               / /
 //! ```
 //!
-//! The box of a patch is as thick as the patch is wide, unless the surface lies along an axis. A
-//! slab is thin: its thickness is of the order of the squared width where the surface is smooth.
-//! Slab and box together are almost as tight as oriented boxes along any direction (Gottschalk, Lin
-//! and Manocha, "`OBBTree`", 1996).
+//! The box of a patch is about as thick as the patch is wide, unless the surface is perpendicular
+//! to an axis. A slab is thin: its thickness is of the order of the squared width where the surface
+//! is smooth. Slab and box together are almost as tight as oriented boxes along any direction
+//! (Gottschalk, Lin and Manocha, "`OBBTree`", 1996).
 
 use super::tree::small;
 use super::{Bounds, LANES, NONE, Tree};
 use crate::math::{Point, Real, Vector, filled, max, min, unit};
 
-/// A slab is used if it is at least `THINNER` times thinner than the box along its normal.
+/// A slab is used only if the box is at least `THINNER` times as thick along the slab's normal.
 const THINNER: f64 = 4.0;
-/// Error bound of heights, in rounding units of the coordinates.
+/// Error bound of a dot product of the slab's normal and a corner, in rounding units of the tree's
+/// largest coordinate.
 const ROUNDING: f64 = 32.0;
 
 /// The space between two planes, in the frame of a tree.
@@ -46,8 +47,9 @@ impl<const D: usize> BlockSlab<D> {
         Vector::from_fn(|axis, _| N::lit(self.across[axis].into()))
     }
 
-    /// Returns the slab perpendicular to a sum of normals. `extent` is the extent of the contents
-    /// along a direction. `None` if the slab is not thin compared with the box.
+    /// Returns the slab perpendicular to a sum of normals. `extent` returns the extent of the
+    /// contents along a direction. `None` if the sum has no direction, or if the slab is not thin
+    /// compared with `bounds` (see [`THINNER`]).
     fn around<N: Real>(
         sum: &Vector<N, D>,
         bounds: &Bounds<D>,
@@ -130,7 +132,8 @@ impl<const D: usize> Tree<D> {
         SlabBox { bounds: &self.layers[layer].bounds[block as usize], slab }
     }
 
-    /// Iterates over the children of block `above`, which are in the layer `layer` below it.
+    /// Iterates over the children of block `above`. The children are blocks of `layer`, the layer
+    /// just below that block's.
     fn children(&self, layer: usize, above: u32) -> impl Iterator<Item = SlabBox<'_, D>> {
         let first = above * small(LANES);
         let blocks = (first..small(self.layers[layer].blocks.len())).take(LANES);

@@ -105,8 +105,8 @@ impl<const D: usize> Bounds<D> {
         if self.is_finite() { most } else { 0.0 }
     }
 
-    /// Returns the box with infinite faces replaced by `±f32::MAX`. As a query it is equivalent,
-    /// since boxes in a tree are finite.
+    /// Returns the box with infinite faces replaced by `±f32::MAX`. As a query the result is
+    /// equivalent to this box, since boxes in a tree are finite.
     ///
     /// A NaN or inverted box becomes empty.
     #[must_use]
@@ -120,7 +120,8 @@ impl<const D: usize> Bounds<D> {
     }
 
     /// Returns half the surface (in 2D half the perimeter): the cost of a node in searches, up to a
-    /// factor (Goldsmith and Salmon 1987). Unlike the volume, it is not zero for flat boxes.
+    /// factor (Goldsmith and Salmon 1987). Unlike the volume, the surface is not zero for flat
+    /// boxes.
     ///
     /// The result is an `f64`, which no box with finite faces overflows; 0 for an empty box.
     #[must_use]

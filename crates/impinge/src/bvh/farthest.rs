@@ -6,7 +6,7 @@ use crate::math::{Real, Vector, filled, max};
 /// A search for the largest extent, with the best extent found so far.
 struct ExtentSearch<'a, N: Real, const D: usize> {
     direction: Vector<N, D>,
-    /// Skips nodes that extend less than `tolerance` beyond the best extent found so far.
+    /// Nodes that extend at most `tolerance` beyond the best extent found so far are skipped.
     tolerance: N,
     best: N,
     extent_of: &'a mut dyn FnMut(u32) -> N,
@@ -28,7 +28,8 @@ impl<const D: usize> Tree<D> {
         let top = self.layers.len() - 1;
         let farthest = self.layers[top].bounds.iter().filter(|bounds| bounds.is_finite());
         let size = farthest.map(|bounds| size_along(bounds, &direction)).fold(N::ZERO, max);
-        // Without the tolerance a flat floor would open all boxes, since all have the same extent.
+        // Without the tolerance, a search above a flat floor would open all boxes: rounding
+        // outwards makes each box extend slightly beyond the best object.
         let tolerance = N::lit(4.0 * f64::from(f32::EPSILON)) * size;
         let mut search = ExtentSearch { direction, tolerance, best: -N::INFINITY, extent_of };
         for block in 0..self.layers[top].blocks.len() {
@@ -48,7 +49,7 @@ impl<const D: usize> Tree<D> {
         });
         farthest.sort_by(|a, b| b.0.partial_cmp(&a.0).unwrap_or(core::cmp::Ordering::Equal));
         for (far, lane) in farthest {
-            // False for a NaN extent. Once an infinite extent is the best, no extent exceeds it.
+            // False if a term is NaN. Once the best extent is infinite, no extent exceeds it.
             let is_farther = far > search.best + search.tolerance;
             if !is_farther {
                 break;

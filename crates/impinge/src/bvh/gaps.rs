@@ -1,5 +1,5 @@
-//! A box at rest for distance tests against blocks: squared distances in `f32` that never exceed
-//! the exact ones.
+//! A box at rest for distance tests against blocks. Squared distances are in `f32`; limits and
+//! results are widened by their error bound, so that no box within a limit is missed.
 
 use super::kernel::{Scalar, WideBlock, low_half};
 use super::{Block, Bounds, LANES};
@@ -7,14 +7,14 @@ use crate::bounding_volume::Aabb;
 use crate::math::{Mapped, Real, f32_above, f32_below};
 use fearless_simd::{Select, Simd, SimdBase, SimdMask, f32x16, mask32x16};
 
-/// The magnitude, 2¹²⁵, from which on differences of coordinates may overflow `f32`.
+/// The magnitude of coordinates, 2¹²⁵, from which on differences may overflow `f32`.
 const LARGEST: f32 = f32::from_bits((125 + 127) << 23);
 
 /// Least value used for the largest coordinate, 2⁻¹²⁰, so that the unit has a finite reciprocal.
 const SMALLEST: f32 = f32::from_bits((127 - 120) << 23);
 
-/// Error bound of a squared distance in `f32` rounding units, for the test here and for the exact
-/// test.
+/// Relative error bound of a squared distance, in `f32` rounding units. It covers the test here and
+/// the caller's test in its own scalar type.
 const SQUARE: f32 = 16.0;
 
 /// A box for tests of its squared distances to the boxes of a block.

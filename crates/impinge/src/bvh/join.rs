@@ -3,8 +3,8 @@
 //! Two algorithms with the same result, chosen by the number of changes:
 //! * many changes: a join of a tree with itself, or of two trees, layer by layer. The tasks of a
 //!   layer are pairs of blocks in a flat list; each becomes tasks of the layer below, and pairs of
-//!   unchanged blocks are dropped on the way. There is no recursion, and no unpredictable branch
-//!   but the ends of loops;
+//!   unchanged blocks are dropped on the way. There is no recursion, and masks replace most
+//!   unpredictable branches;
 //! * few changes: the changed boxes descend the tree together, layer by layer (see `query.rs`).
 //!
 //! Lists are cut into chunks of constant size whose outputs are concatenated in order, so that any
@@ -143,14 +143,15 @@ impl<const D: usize> Joiner<D> {
         }
     }
 
-    /// Finds the pairs of the changed objects of the first tree by queries, and appends them to
-    /// `changes`.
+    /// Finds, by queries, the pairs that began or ended with a changed object of the first tree,
+    /// and appends them to `changes`.
     fn search_and_report(&mut self, sides: JoinSides<'_, D>, changes: &mut Changes) {
         self.search_changed(sides);
         self.report(sides, changes);
     }
 
-    /// Converts the found pairs of slots to pairs of ids, and sorts them into began and ended.
+    /// Converts the found pairs of slots to pairs of ids, and appends each to the list of `changes`
+    /// for its kind.
     fn report(&mut self, sides: JoinSides<'_, D>, changes: &mut Changes) {
         let [first, second] = self.found.parts();
         for (&a, &b) in first.iter().zip(second) {
@@ -302,8 +303,8 @@ fn expand<K: Kernel, const D: usize>(
             lanes &= lanes - 1;
             let child = a * small(LANES) + lane;
             let mask = kernel.overlaps(block_b, &children[child as usize]);
-            // On the diagonal only lanes from `lane` on: each pair of children once, and each child
-            // with itself.
+            // On the diagonal (a block paired with itself) only lanes from `lane` on: each pair of
+            // children once, and each child with itself.
             let upper = u32::MAX << lane | u32::from(is_diagonal).wrapping_sub(1);
             // All lanes of `b` if child `lane` of `a` changed, else the changed lanes of `b`.
             let changed = changed_b | 0_u32.wrapping_sub(changed_a >> lane & 1);
@@ -342,8 +343,8 @@ fn join_leaves<K: Kernel, const D: usize>(
     }
     let [blocks, slots] = lanes.parts();
     for (&b, &slot) in blocks.iter().zip(slots) {
-        // On the diagonal, only lanes above the slot's own: each pair once. Bit arithmetic replaces
-        // an unpredictable branch.
+        // On the diagonal (a block paired with itself), only lanes above the slot's own lane: each
+        // pair once. Bit arithmetic replaces an unpredictable branch.
         let is_diagonal = sides.is_self & (slot / small(LANES) == b);
         let upper = 0xfffe << (slot % small(LANES)) | u32::from(is_diagonal).wrapping_sub(1);
         let masks = boxes.differing(kernel, slot, b);

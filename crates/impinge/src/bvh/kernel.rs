@@ -1,8 +1,9 @@
 //! The elementary operations on blocks, scalar and with SIMD vectors.
 //!
-//! [`Scalar`] defines the results; [`WideBlock`] computes the same bits with SIMD vectors of the machine. The join uses
-//! comparisons, minima and maxima alone, so equality is exact. `with_kernel!` selects the kernel once for a batch, and
-//! compiles its body for every instruction set.
+//! [`Scalar`] defines the results; [`WideBlock`] computes the same bits with SIMD vectors of the
+//! machine. The join uses comparisons, minima and maxima alone, so equality is exact.
+//! `with_kernel!` selects the kernel once for a batch, and compiles its body for every instruction
+//! set.
 
 use crate::math::filled;
 use fearless_simd::{Simd, SimdBase, SimdMask, f32x16, mask32x16, u32x16};
@@ -24,7 +25,8 @@ impl Lanes {
         Self(Level::new())
     }
 
-    /// Returns the AVX-512 token if AVX-512 is the widest instruction set of the machine; else `None`.
+    /// Returns the AVX-512 token if AVX-512 is the widest instruction set of the machine; else
+    /// `None`.
     #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
     pub(super) fn avx512(self) -> Option<fearless_simd::Avx512> {
         let is_best = matches!(self.0, Level::Wide(_));
@@ -74,8 +76,8 @@ macro_rules! with_kernel {
         }
     };
 }
-/// Runs `$body` as `with_kernel!` does, but with AVX-512 where the machine has it. Worthwhile for code that gains from
-/// mask registers and 512-bit vectors.
+/// Runs `$body` as `with_kernel!` does, but with AVX-512 where the machine has it. Worthwhile for
+/// code that gains from mask registers and 512-bit vectors.
 macro_rules! with_widest_kernel {
     ($lanes:expr, $kernel:ident => $body:expr) => {{
         #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
@@ -110,8 +112,8 @@ impl TaskList {
         self.len = 0;
     }
 
-    /// Clears the list. Shrinks the arrays if they are more than four times as long as the longest list since the last
-    /// call.
+    /// Clears the list. Shrinks the arrays if they have more than 2048 elements and are more than
+    /// four times as long as the longest list since the last call.
     pub(super) fn give_back(&mut self) {
         self.clear();
         let needed = (2 * self.longest).max(64 * LANES);
@@ -179,8 +181,8 @@ pub(super) trait Kernel: Copy {
     /// Returns the smallest box around all lanes.
     fn bounds<const D: usize>(self, block: &Block<D>) -> Bounds<D>;
 
-    /// Returns the lanes that the moving box may enter between time 0 and `limit`, and writes lower bounds of the entry
-    /// times to `keys`. The mask contains every lane that the box does enter.
+    /// Returns the lanes that the moving box may enter between time 0 and `limit`, and writes lower
+    /// bounds of the entry times to `keys`. The mask contains every lane that the box does enter.
     fn enter<const D: usize>(
         self,
         block: &Block<D>,
@@ -189,8 +191,9 @@ pub(super) trait Kernel: Copy {
         keys: &mut [f32; LANES],
     ) -> u32;
 
-    /// Returns the mask of [`Self::enter`] and the least key. The lowest four bits of a key are the lane index, and the
-    /// other bits are those of the time, rounded down. The key of a lane that is not entered is `u32::MAX`.
+    /// Returns the mask of [`Self::enter`] and the least key, and writes all keys to `keys`. The
+    /// lowest four bits of a key are the lane index, and the other bits are those of the time,
+    /// rounded down. The key of a lane that is not entered is `u32::MAX`.
     fn enter_nearest<const D: usize>(
         self,
         block: &Block<D>,
@@ -202,9 +205,10 @@ pub(super) trait Kernel: Copy {
     /// Returns the least of sixteen keys of [`Self::enter_nearest`].
     fn least_lane_key(self, keys: &[u32; LANES]) -> u32;
 
-    /// Returns the lanes whose squared distance may be at most `limit`, and writes lower bounds of the squares to
-    /// `keys`, in squared units of the gaps. The mask contains every lane within the limit; a finite limit excludes
-    /// empty lanes.
+    /// Returns the lanes whose squared distance may be at most `limit`, and writes the squares to
+    /// `keys`, in squared units of the gaps. Keys have rounding errors ([`Gaps::distance`] allows
+    /// for them). The mask contains every lane within a limit of [`Gaps::limit`]; a finite limit
+    /// excludes empty lanes.
     fn apart<const D: usize>(
         self,
         block: &Block<D>,
@@ -213,12 +217,12 @@ pub(super) trait Kernel: Copy {
         keys: &mut [f32; LANES],
     ) -> u32;
 
-    /// Returns the lane in `mask` with the least key; the lowest lane if several keys are equal. The mask must not be
-    /// empty, and the keys of its lanes must be finite.
+    /// Returns the lane in `mask` with the least key; the lowest lane if several keys are equal.
+    /// The mask must not be empty, and the keys of its lanes must be finite.
     fn least(self, keys: &[f32; LANES], mask: u32) -> usize;
 
-    /// Returns the triangles that the line may cross between times zero and `limit`. The mask contains every triangle
-    /// that an exact test may accept.
+    /// Returns the triangles that the line may cross between times zero and `limit`. The mask
+    /// contains every triangle that an exact test may accept.
     fn crossed(self, triangles: &Triangles, line: &ShearedLine, limit: f32) -> u32;
 
     /// Appends `(first, base + lane)` for every lane of the mask, in ascending order.

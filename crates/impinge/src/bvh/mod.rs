@@ -81,6 +81,6 @@ pub(crate) use tree::{NONE, Tree};
 pub(crate) use triangles::{ShearedLine, TriangleAt, Triangles};
 pub(crate) use two::{TouchQuery, Toward, TreePair, visit_pairs, visit_touching};
 
-/// Number of objects below which nothing runs in parallel: waking a thread costs more than it
-/// saves.
+/// Number of tasks (pairs of blocks, changed slots or objects) below which a loop over them does
+/// not run in parallel: waking a thread costs more than it saves.
 pub(crate) const PARALLEL_FROM: usize = 2000;

@@ -1,10 +1,12 @@
-//! Depth-first searches that visit near boxes first: along a moving box or ray, or around a box at rest.
+//! Depth-first searches that visit near boxes first: along a moving box or ray, or around a box at
+//! rest.
 //!
-//! In each block the nearest child comes next (as in most ray tracers; Roussopoulos, Kelley and Vincent, "Nearest
-//! neighbor queries", 1995), as long as it is within the limit, which shrinks with each result. One block for each
-//! layer is open, with the keys of its children; the next child is selected only when its turn comes, since most are
-//! never visited. The order is rough: objects of a later block may be nearer than some of an earlier one. This avoids
-//! the queue of [`Frontier`](super::Frontier), which costs more than the boxes that it saves.
+//! In each block the nearest child comes next (as in most ray tracers; Roussopoulos, Kelley and
+//! Vincent, "Nearest neighbor queries", 1995), as long as it is within the limit, which shrinks
+//! with each result. One block for each layer is open, with the keys of its children; the next
+//! child is selected only when its turn comes, since most are never visited. The order is rough:
+//! objects of a later block may be nearer than some of an earlier one. This avoids the queue of
+//! [`Frontier`](super::Frontier), whose upkeep costs more than the tests of boxes that it saves.
 
 use super::gaps::Gaps;
 use super::kernel::{Kernel, with_kernel};
@@ -16,14 +18,15 @@ use super::{Block, Bounds, LANES, Lanes, NONE, Tree};
 /// Greatest number of layers: 2^32 objects need 8.
 pub(super) const LAYERS: usize = 8;
 
-/// Greatest number of objects passed to `found` at once. Their data are scattered in memory, so loads for several
-/// objects should overlap.
+/// Greatest number of objects passed to `found` at once. Their data are scattered in memory, so
+/// loads for several objects should overlap.
 pub(crate) const GROUP: usize = 4;
 
 /// A query that computes keys for the lanes of a block, and rejects lanes beyond a limit.
 pub(super) trait Probe<const D: usize> {
-    /// Returns the lanes whose key may be at most `limit`, and writes lower bounds of the keys, which are zero or more.
-    /// The mask contains every lane whose exact key is at most `limit`.
+    /// Returns the lanes whose key may be at most `limit`, and writes the keys, which are zero or
+    /// more and may have rounding errors. The mask contains every lane whose exact key is within
+    /// the time or distance from which `limit` was converted.
     fn test<K: Kernel>(
         &self,
         kernel: K,
@@ -76,8 +79,8 @@ impl Open {
     /// A block without unvisited children.
     const NOTHING: Self = Self { keys: [0.0; LANES], mask: 0, first: 0 };
 
-    /// Removes the unvisited child with the least key and returns its index; `None` if there is none, or if the key
-    /// exceeds `limit` (the child is removed nevertheless).
+    /// Removes the unvisited child with the least key and returns its index; `None` if all children
+    /// are visited, or if the least key exceeds `limit` (the child is removed nevertheless).
     #[inline(always)]
     fn next<K: Kernel>(&mut self, kernel: K, limit: f32) -> Option<u32> {
         if self.mask == 0 {
@@ -91,9 +94,9 @@ impl Open {
 }
 
 impl Lanes {
-    /// Calls `found` with the objects that the moving box may touch by `limit`, and their keys: in groups of at most
-    /// [`GROUP`], roughly by ascending key. `found` returns the new limit, which must not increase. Limits are in the
-    /// units of the slabs. A negative limit ends the search.
+    /// Calls `found` with the objects that the moving box may touch by `limit`, and their keys: in
+    /// groups of at most [`GROUP`], roughly by ascending key. `found` returns the new limit, which
+    /// must not increase. Limits are in the units of the slabs. A negative limit ends the search.
     pub(crate) fn visit_along<const D: usize>(
         self,
         trees: &[&Tree<D>],
@@ -104,9 +107,9 @@ impl Lanes {
         self.visit_near_first(trees, slabs, limit, found);
     }
 
-    /// Calls `found` with the objects whose squared distance may be at most `limit`, in squared units of the gaps, and
-    /// their keys: in groups of at most [`GROUP`], roughly by ascending key. `found` returns the new limit, which must
-    /// not increase.
+    /// Calls `found` with the objects whose squared distance may be at most `limit`, in squared
+    /// units of the gaps, and their keys: in groups of at most [`GROUP`], roughly by ascending key.
+    /// `found` returns the new limit, which must not increase.
     pub(crate) fn visit_around<const D: usize>(
         self,
         trees: &[&Tree<D>],
@@ -117,7 +120,8 @@ impl Lanes {
         self.visit_near_first(trees, gaps, limit, found);
     }
 
-    /// Searches the trees one after another. The limit after one search is the first limit of the next.
+    /// Searches the trees one after another. The limit after one search is the first limit of the
+    /// next.
     #[inline(always)]
     fn visit_near_first<const D: usize>(
         self,
@@ -160,9 +164,9 @@ impl<const D: usize> Tree<D> {
         )
     }
 
-    /// Calls `leaf` with each leaf block in which a key may be at most the limit; `leaf` returns the new limit. Opens
-    /// each block at most once. Calls `touch`, which prefetches, with leaf blocks that may be visited soon. Returns the
-    /// last limit.
+    /// Calls `leaf` with each leaf block in which a key may be at most the limit; `leaf` returns
+    /// the new limit. Opens each block at most once. Calls `touch`, which prefetches, with leaf
+    /// blocks that may be visited soon. Returns the last limit.
     #[inline(always)]
     fn descend<K: Kernel>(
         &self,
@@ -185,7 +189,8 @@ impl<const D: usize> Tree<D> {
                 None if layer == top => return limit,
                 None => layer += 1,
                 Some(block) if layer == 1 => {
-                    // Prefetches one of the remaining leaf blocks, though another block may be visited first.
+                    // Prefetches one of the remaining leaf blocks, though another block may be
+                    // visited first.
                     if path[1].mask != 0 {
                         touch(path[1].first + path[1].mask.trailing_zeros());
                     }
@@ -199,8 +204,8 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Opens the block with index `number` in a layer: computes the keys of its lanes, and sets the mask of lanes that
-    /// have a child and whose key may be at most `limit`.
+    /// Opens the block with index `number` in a layer: computes the keys of its lanes, and sets the
+    /// mask of lanes that have a child and whose key may be at most `limit`.
     #[inline(always)]
     fn opened<K: Kernel>(
         &self,
@@ -217,7 +222,8 @@ impl<const D: usize> Tree<D> {
         Open { keys, mask, first }
     }
 
-    /// Opens a block for the children whose squared distance may be at most `limit`, in squared units of the gaps.
+    /// Opens a block for the children whose squared distance may be at most `limit`, in squared
+    /// units of the gaps.
     pub(super) fn opened_around(
         &self,
         gaps: &Gaps<D>,
@@ -248,7 +254,8 @@ impl<const D: usize> Tree<D> {
         if left < LANES { mask & ((1 << left) - 1) } else { mask }
     }
 
-    /// Returns the largest magnitude of a coordinate of the boxes. Exact after a refit, until a box changes.
+    /// Returns the largest magnitude of a coordinate of the boxes. Exact after a refit, until a box
+    /// changes.
     pub(crate) fn size(&self) -> f32 {
         let top = &self.layers[self.layers.len() - 1].bounds;
         top.iter().map(Bounds::size).fold(0.0, |most, x| if x > most { x } else { most })
@@ -260,7 +267,8 @@ impl<const D: usize> Tree<D> {
     }
 }
 
-/// Passes the objects of a leaf block to `found`, in groups by ascending key; returns the new limit.
+/// Passes the objects of a leaf block to `found`, in groups by ascending key; returns the new
+/// limit.
 #[inline(always)]
 fn hand_out<K: Kernel>(
     kernel: K,
@@ -297,8 +305,9 @@ pub(crate) struct RayProbe {
 }
 
 impl Tree<3> {
-    /// Calls `found` with each object whose triangle the ray may cross by `limit`, near leaf blocks roughly first.
-    /// `found` returns the new limit, which must not increase. `triangles[i]` has the triangles of leaf block `i`.
+    /// Calls `found` with each object whose triangle the ray may cross by `limit`, near leaf blocks
+    /// roughly first. `found` returns the new limit, which must not increase. `triangles[i]` has
+    /// the triangles of leaf block `i`.
     pub(crate) fn visit_triangles(
         &self,
         triangles: &[Triangles],
@@ -313,8 +322,8 @@ impl Tree<3> {
         }
     }
 
-    /// Searches a tree that is not empty. In a leaf block the triangles themselves are tested, not their boxes, and
-    /// reported by ascending lane.
+    /// Searches a tree that is not empty. In a leaf block the triangles themselves are tested, not
+    /// their boxes, and reported by ascending lane.
     #[inline(always)]
     fn near_triangles<K: Kernel>(
         &self,

@@ -2,9 +2,9 @@
 //! nearest objects.
 //!
 //! Blocks and objects wait in one queue, sorted by key (Hjaltason and Samet, "Distance browsing in
-//! spatial databases", 1999). The key of a block is not above those of its contents, so objects
-//! leave the queue in the order of their keys. A search that stops at an object has opened only the
-//! blocks that it needed.
+//! spatial databases", 1999). The key of a block is not above the keys of its contents, so objects
+//! leave the queue in the order of their keys. A search that stops at an object has opened only
+//! blocks whose lower bound is at most the object's key.
 
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -18,9 +18,9 @@ use crate::math::{Real, Vector, max, min};
 /// Initial capacity of the queue: enough for most searches.
 const EXPECTED: usize = 64;
 
-/// Entries of the queue: blocks and candidates by a lower bound, objects by their own key. A
-/// candidate is an object whose own key is computed only when it reaches the front. At equal keys
-/// objects come last, by ascending id.
+/// Entries of the queue. A block or a candidate has a lower bound as its key, an object its exact
+/// key. A candidate is an object whose exact key is computed only when the candidate reaches the
+/// front. At equal keys objects come last, by ascending id.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Entry {
     Block { tree: u8, layer: u8, block: u32 },
@@ -86,8 +86,8 @@ impl Frontier {
             }
             match entry {
                 Entry::Object { id } => {
-                    // The queued key equals this key exactly, since the same expression computed
-                    // it.
+                    // The key in the queue equals this key exactly, since [`Keys::object`] computed
+                    // both.
                     let Some(key) = (keys.object)(id) else { continue };
                     limit = found(id, key);
                 }

@@ -1,9 +1,11 @@
 //! Best-first search with lower bounds computed by the caller.
 //!
-//! Objects leave the queue by ascending bound (Hjaltason and Samet, "Distance browsing in spatial databases", 1999).
-//! Bounds may be negative, which ranks overlaps by depth. A bound is expensive, so it is computed only when its entry
-//! reaches the front of the queue; most entries never do. Until then the rank is the larger of two rough bounds: the
-//! distance of the boxes and the gap along one direction. Both are computed for all children of a block at once.
+//! Objects leave the queue by ascending bound (Hjaltason and Samet, "Distance browsing in spatial
+//! databases", 1999). Bounds may be negative, which ranks overlaps by depth. A bound is expensive,
+//! so it is computed only when its entry reaches the front of the queue; most entries never do.
+//! Until then the rank is the larger of two rough bounds: the distance of the boxes and the gap
+//! along the direction of [`BoxRanking::toward`]. Both are computed for all children of a block at
+//! once.
 
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -18,25 +20,28 @@ use crate::math::{Mapped, Point, Real, Vector, filled, max};
 /// Initial capacity of the queue: enough for most searches.
 const EXPECTED: usize = 128;
 
-/// Error bound of heights, in `f32` rounding units of the coordinates.
+/// Error bound of a dot product of a direction and a corner, in `f32` rounding units of the largest
+/// coordinate.
 const ROUNDING: f32 = 16.0;
 
-/// The caller's part of a search. Each object has a rank: its distance from the query's solid, or a negative number for
-/// an overlap.
+/// The caller's part of a search. Each object has a rank: its distance from the query's solid, or a
+/// negative number for an overlap.
 pub(crate) trait BoxRanking<N: Real, const D: usize> {
-    /// Returns a unit vector along which the contents of `aabb` are probably separated from the query's solid, and an
-    /// upper bound of that solid's extent along the vector. The gap along it must be a lower bound of the ranks in the
-    /// box. `None` if no such direction is known.
+    /// Returns a unit vector along which the contents of `aabb` are probably separated from the
+    /// query's solid, and an upper bound of that solid's extent along the vector. The gap along the
+    /// vector must be a lower bound of the ranks in the box. `None` if no such direction is known.
     fn toward(&self, aabb: &Aabb<N, D>) -> Option<(Vector<N, D>, N)>;
 
     /// Returns a lower bound of the rank of the object.
     fn of_object(&self, id: u32) -> N;
 
-    /// Returns the largest rank of interest, which must not increase during the search. `None` ends the search.
+    /// Returns the largest rank of interest, which must not increase during the search. `None` ends
+    /// the search.
     fn limit(&self) -> Option<N>;
 
-    /// Returns a point near which a single object may end the search early. The object nearest to it is visited first,
-    /// and may be visited again. `None` to skip this.
+    /// Returns a point whose nearest object may end the search early. The search first visits an
+    /// object near the point, if the object's box is within the limit; it may visit the object
+    /// again. `None` if no such point is known.
     fn guess_near(&self) -> Option<Point<N, D>> {
         None
     }
@@ -45,7 +50,8 @@ pub(crate) trait BoxRanking<N: Real, const D: usize> {
     fn visit(&mut self, id: u32);
 }
 
-/// A block or an object in the queue, with a lower bound of its rank. At equal bounds objects come first.
+/// A block or an object in the queue, with a lower bound of its rank. At equal bounds objects come
+/// first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct RankedNode {
     /// The bound as an integer; see [`rank_of`].
@@ -66,9 +72,9 @@ struct RankedSearch<'a, 'q, N: Real, const D: usize> {
     question: &'q mut dyn BoxRanking<N, D>,
 }
 
-/// Visits the objects of a tree whose ranks may be within the limit of `question`, by ascending bound. `around` is a
-/// box around the query's solid: a positive rank must not be below the distance between an object's box and `around`.
-/// Visits nothing if `around` has no finite point.
+/// Visits the objects of a tree whose ranks may be within the limit of `question`, by ascending
+/// bound. `around` is a box around the query's solid: a positive rank must not be below the
+/// distance between an object's box and `around`. Visits nothing if `around` has no finite point.
 pub(crate) fn visit_ranked<N: Real, const D: usize>(
     tree: &Tree<D>,
     around: &Aabb<N, D>,
@@ -86,7 +92,8 @@ pub(crate) fn visit_ranked<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
-    /// Runs the search. It ends, since each block is opened at most once and each entry is refined at most once.
+    /// Runs the search. It ends, since each block and each object is queued at most twice: with a
+    /// rough bound and with a refined bound.
     fn run(&mut self) {
         while let Some(Reverse(entry)) = self.queue.pop() {
             let Some(limit) = self.question.limit() else { return };
@@ -101,8 +108,8 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
         }
     }
 
-    /// Visits the object near [`BoxRanking::guess_near`] if the square of its box's distance, in squared units of the
-    /// gaps, is at most `within`.
+    /// Visits the object near [`BoxRanking::guess_near`] if the square of its box's distance, in
+    /// squared units of the gaps, is at most `within`.
     fn guess(&mut self, within: f32) {
         let likely = self
             .question
@@ -133,8 +140,8 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
         }
     }
 
-    /// Opens a block: queues its children. If other entries come before the block's refined bound, queues the block
-    /// again instead.
+    /// Opens a block: queues its children. If other entries come before the block's refined bound,
+    /// queues the block again instead.
     fn open(&mut self, mut entry: RankedNode, limit: N) {
         let (layer, block) = (usize::from(entry.height - 1), entry.at);
         let within = self.gaps.limit(max(limit, N::ZERO));
@@ -159,8 +166,8 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
         self.push_all(&entry, open, &gaps, limit);
     }
 
-    /// Refines the bound of a block and returns it if it comes first. `None` if the bound exceeds `limit`, or if
-    /// another entry comes first: then the block is queued again.
+    /// Refines the bound of a block and returns it if it comes first. `None` if the bound exceeds
+    /// `limit`, or if another entry comes first; in the latter case the block is queued again.
     fn first(&mut self, entry: RankedNode, bound: N, limit: N) -> Option<RankedNode> {
         let (entry, is_beyond) = (entry.refined(bound), bound > limit);
         let is_first = self.queue.peek().is_none_or(|Reverse(other)| entry <= *other);
@@ -170,8 +177,8 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
         (!is_beyond && is_first).then_some(entry)
     }
 
-    /// Returns, by lane, a lower bound of the gap along `along` between the query's solid and the child. `extent` is an
-    /// upper bound of the solid's extent.
+    /// Returns, by lane, a lower bound of the gap along `along` between the query's solid and the
+    /// child. `extent` is an upper bound of the solid's extent.
     fn gaps_along(&self, layer: usize, block: u32, along: &Vector<N, D>, extent: N) -> [N; LANES] {
         let along = filled(|axis| along[axis].as_f32());
         let extent = extent + N::lit(f64::from(self.tree.size() * f32::EPSILON * ROUNDING));
@@ -182,14 +189,16 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
         })
     }
 
-    /// Queues those children of an open block whose rough bound, from distance and gap, is at most `limit`.
+    /// Queues those children of an open block whose rough bound, from distance and gap, is at most
+    /// `limit`.
     fn push_all(&mut self, above: &RankedNode, open: Open, gaps: &[N; LANES], limit: N) {
         let Open { keys, mut mask, first } = open;
         while mask != 0 {
             let lane = mask.trailing_zeros();
             mask &= mask - 1;
             let (gap, distance) = (gaps[lane as usize], self.gaps.distance(keys[lane as usize]));
-            // Overlapping boxes have distance zero, whatever the depth.
+            // Overlapping boxes have distance zero at any depth, so for these only the gap bounds
+            // the rank.
             let bound = if distance > N::ZERO { max(gap, distance) } else { gap };
             let is_beyond = bound > limit;
             if !is_beyond {
@@ -201,7 +210,7 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
 }
 
 impl RankedNode {
-    /// Returns the entry with the larger of `bound` and its own bound, marked as not rough.
+    /// Returns the entry with the larger of `bound` and its previous bound, marked as not rough.
     fn refined<N: Real>(self, bound: N) -> Self {
         Self { rank: rank_of(bound).max(self.rank), is_rough: false, ..self }
     }
@@ -209,8 +218,8 @@ impl RankedNode {
 
 /// Returns an integer with the order of the values; the greatest for a positive NaN.
 fn rank_of<N: Real>(value: N) -> i64 {
-    // Adding zero removes the sign of a negative zero. The bits of negative numbers are in descending order, so all but
-    // the sign are inverted.
+    // Adding zero removes the sign of a negative zero. The bits of negative numbers are in
+    // descending order, so all but the sign are inverted.
     let bits = (value.as_f64() + 0.0).to_bits().cast_signed();
     if bits < 0 { bits ^ i64::MAX } else { bits }
 }
@@ -221,7 +230,8 @@ mod tests {
     use crate::bvh::{Bounds, Lanes};
     use crate::math::xorshift::Xorshift;
 
-    /// A ranking in which an object near `target` has the rank of its least x coordinate, any other its distance.
+    /// A ranking in which the rank of an object whose box overlaps `target` is the box's least x
+    /// coordinate minus 100; the rank of any other object is its distance from `target`.
     struct ByFirst<'a> {
         boxes: &'a [Aabb<f64, 3>],
         target: Aabb<f64, 3>,

@@ -1,7 +1,7 @@
 //! The refit of the upper layers, and the end of a step.
 //!
-//! A leaf block with an object that moved far is listed as escaped. The join may miss its ended
-//! pairs; the owner finds them in the table of pairs.
+//! A leaf block with an object that moved far is listed as escaped. The join may miss ended pairs
+//! of the objects in such a block; the owner of the tree finds these pairs in its table of pairs.
 
 use super::kernel::{Kernel, with_kernel};
 use super::tree::{Layer, small};
@@ -25,7 +25,7 @@ impl<const D: usize> Tree<D> {
     /// `by_id`, which is indexed by id. `by_id` is empty if the tree already has the boxes.
     ///
     /// Ids have no spatial order. Reading the boxes in slot order gives independent loads, which
-    /// overlap; writing them in the order of ids would not.
+    /// overlap; writing the boxes to their slots in the order of ids would not overlap.
     pub(crate) fn refit_from(&mut self, mut by_id: &[Bounds<D>]) {
         if self.has_new() {
             self.fetch_boxes(by_id);
@@ -36,7 +36,7 @@ impl<const D: usize> Tree<D> {
     }
 
     /// Refits the touched leaf blocks and the layers above them, and lists the escaped blocks.
-    /// Reads changed boxes from `by_id`, unless it is empty or no box is stale.
+    /// Reads changed boxes from `by_id`, unless `by_id` is empty or no box is stale.
     pub(super) fn refit_layers(&mut self, by_id: &[Bounds<D>]) {
         self.escaped.clear();
         if !self.touched.is_empty() || self.is_restructured {
@@ -74,8 +74,8 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Reads the changed boxes of the touched blocks from `by_id`, unless it is empty or no box is
-    /// stale.
+    /// Reads the changed boxes of the touched blocks from `by_id`, unless `by_id` is empty or no
+    /// box is stale.
     fn fetch_boxes(&mut self, by_id: &[Bounds<D>]) {
         if by_id.is_empty() || !self.is_stale {
             return;

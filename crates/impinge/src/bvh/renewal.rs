@@ -1,8 +1,9 @@
-//! Renewal of a sparing tree: its boxes are copied, in a new spatial order, to another tree, a bounded number in each
-//! step.
+//! Renewal of a sparing tree: its boxes are copied, in a new spatial order, to another tree, a
+//! bounded number in each step.
 //!
-//! Objects inserted since the last renewal are at the end, or in lanes of removed objects, so the order degrades. A
-//! renewal fills another tree with these objects, and the other tree then replaces this one:
+//! Objects inserted since the last renewal are at the end, or in lanes of removed objects, so the
+//! order degrades. A renewal fills another tree with all objects of the sparing tree, and then
+//! replaces the sparing tree by the other tree:
 //!
 //! ```text
 //!   this tree        | all slots, in any order                       |
@@ -14,9 +15,9 @@
 //!   the other tree   | sorted                              | late    |  3. Follow: objects that came in the meantime
 //! ```
 //!
-//! The regions are the leaves of a k-d tree over a sample (a sample sort), so the new order is close to that of
-//! [`sort`]. Removals and changed boxes are applied to both trees at once. The result depends only on the calls, never
-//! on measured time.
+//! The regions are the leaves of a k-d tree over a sample (a sample sort), so the new order is
+//! close to the order of [`sort`]. Removals and changed boxes are applied to both trees at once.
+//! The result depends only on the calls, never on measured time.
 
 use super::order::{Cut, Item, cut_in_half, sort};
 use super::tree::{Layer, small};
@@ -25,12 +26,13 @@ use super::{Bounds, LANES, NONE, Tree};
 /// Slots routed in one step, and objects sorted and copied in one step.
 const ROUTED: usize = 1024;
 const COPIED: usize = 512;
-/// Late objects added in one step: at least [`FOLLOWED`], and at least the fraction 1 / [`FOLLOWED_OF`] of those left,
-/// so that this stage ends however many objects are inserted.
+/// Late objects added in one step: the larger of [`FOLLOWED`] and the fraction 1 / [`FOLLOWED_OF`]
+/// of those left. Inserted objects also add work units, hence steps, so this stage ends however
+/// many objects are inserted.
 const FOLLOWED: usize = 128;
 const FOLLOWED_OF: usize = 16;
-/// Work units that a new object and a changed object add; each [`OF_STEP`] units make one additional step in the next
-/// call.
+/// Work units that a new object and a changed object add; each [`OF_STEP`] units make one
+/// additional step in the next call.
 const OF_INSERT: usize = 64;
 const OF_SET: usize = 1;
 const OF_STEP: usize = 4096;
@@ -42,11 +44,11 @@ const SAMPLES: usize = 4;
 #[derive(Clone, Debug)]
 pub(super) struct Renewal<const D: usize> {
     stage: Stage,
-    /// A binary tree of cuts: the children of cut `n` have indices `2 n + 1` and `2 n + 2`. An index `i ≥ cuts.len()`
-    /// is region `i - cuts.len()`.
+    /// A binary tree of cuts: the children of cut `n` have indices `2 n + 1` and `2 n + 2`. An
+    /// index `i ≥ cuts.len()` is region `i - cuts.len()`.
     cuts: Vec<Cut>,
-    /// Linked lists, with entries as indices in `ids`: `last_of` has the last entry of each region, and `before` the
-    /// previous entry of each entry.
+    /// Linked lists, with entries as indices in `ids`: `last_of` has the last entry of each region,
+    /// and `before` the previous entry of each entry.
     last_of: Vec<u32>,
     before: Vec<u32>,
     ids: Vec<u32>,
@@ -63,8 +65,8 @@ pub(super) struct Renewal<const D: usize> {
 enum Stage {
     /// Route the slots from the first value up to the second, exclusive.
     Route(usize, usize),
-    /// Copy the rest of a region's list, which ends with this entry ([`NONE`]: empty), then the regions from this index
-    /// on.
+    /// Copy the rest of a region's list, which ends with this entry ([`NONE`]: empty), then the
+    /// regions from this index on.
     Copy(u32, usize),
     /// Add the objects inserted since the renewal began.
     Follow,
@@ -92,13 +94,15 @@ impl<const D: usize> Renewal<D> {
         }
     }
 
-    /// Records that an object was inserted in the old tree; it is added in the last stage.
+    /// Records that an object was inserted in the old tree; the last stage adds the object to the
+    /// other tree.
     pub(super) fn insert(&mut self, id: u32) {
         self.late.push(id);
         self.owed_units += OF_INSERT;
     }
 
-    /// Records that a box of the old tree has changed; also sets it in the other tree.
+    /// Records that a box of the old tree has changed; also sets the box in the other tree if the
+    /// object is there already.
     pub(super) fn set(&mut self, id: u32, bounds: &Bounds<D>) {
         if self.other.contains(id) {
             self.other.set_still(id, bounds);
@@ -113,14 +117,15 @@ impl<const D: usize> Renewal<D> {
         }
     }
 
-    /// Performs the next step, and additional steps if many objects were inserted or changed. Returns `true` if the
-    /// other tree is complete.
+    /// Performs the next step, and additional steps if many objects were inserted or changed.
+    /// Returns `true` if the other tree is complete.
     pub(super) fn proceed(&mut self, tree: &Tree<D>) -> bool {
         let steps = 1 + core::mem::take(&mut self.owed_units) / OF_STEP;
         (0..steps).any(|_| self.step(tree))
     }
 
-    /// Performs one step of the current stage, then commits the other tree. Returns `true` if it is complete.
+    /// Performs one step of the current stage, then commits the other tree. Returns `true` if the
+    /// other tree is complete.
     fn step(&mut self, tree: &Tree<D>) -> bool {
         match self.stage {
             Stage::Route(slot, end) => self.route(tree, slot, end),
@@ -132,7 +137,8 @@ impl<const D: usize> Renewal<D> {
         false
     }
 
-    /// Returns the other tree, which is refitted and committed. Call it once [`Self::proceed`] has returned `true`.
+    /// Returns the other tree, which is refitted and committed. Call it once [`Self::proceed`] has
+    /// returned `true`.
     pub(super) fn into_tree(self) -> Tree<D> {
         self.other
     }
@@ -153,7 +159,8 @@ impl<const D: usize> Renewal<D> {
         self.stage = if next < end { Stage::Route(next, end) } else { Stage::Copy(NONE, 0) };
     }
 
-    /// Copies the next objects of a region, up to [`COPIED`] and sorted, to the end of the other tree.
+    /// Copies the next objects of a region, up to [`COPIED`] and sorted, to the end of the other
+    /// tree.
     fn copy(&mut self, tree: &Tree<D>, mut object: u32, mut region: usize) {
         if object == NONE {
             object = self.last_of[region];
@@ -188,8 +195,9 @@ impl<const D: usize> Renewal<D> {
         rest == 0
     }
 
-    /// Adds an object to the other tree: at the end if `at_end`, else in the best slot. Skips an object that was
-    /// removed or that the other tree already contains.
+    /// Adds an object to the other tree: at the end if `at_end`, else in the slot that
+    /// [`Tree::find_slot`] returns. Skips an object that was removed or that the other tree already
+    /// contains.
     fn add(&mut self, tree: &Tree<D>, id: u32, at_end: bool) {
         let bounds = tree.bounds(id).filter(|_| !self.other.contains(id));
         if let Some(bounds) = bounds {
@@ -202,8 +210,8 @@ impl<const D: usize> Renewal<D> {
     }
 }
 
-/// Cuts a sample in half, and both halves recursively. The recursion ends, since each call goes one level deeper in
-/// `cuts`.
+/// Cuts a sample in half, and both halves recursively. The recursion ends, since each call goes one
+/// level deeper in `cuts`.
 fn fill<const D: usize>(cuts: &mut [Cut], at: usize, sample: &mut [Item<D>]) {
     if at >= cuts.len() {
         return;
@@ -271,8 +279,8 @@ mod tests {
             let came = if step < 900 { 16 } else { 0 };
             play(&mut state, &mut tree, &mut list, came);
             let placed = take_placed();
-            // The bound: 16 newcomers, a run of up to 1024 sorted with them, and a copied chunk or a small tree of up
-            // to 1024.
+            // The bound: 16 newcomers, a run of up to 1024 sorted with them, and a copied chunk or
+            // a small tree of up to 1024.
             assert!(placed <= 16 + 2 * 1024, "{placed} objects in step {step}");
             renewed += usize::from(was_renewing && tree.renewal.is_none());
             was_renewing = tree.renewal.is_some();

@@ -3,8 +3,8 @@
 //!
 //! Moving objects spoil the order: the leaf blocks grow. A renewal starts when the leaf surface per
 //! object is a fifth above its value after the last renewal, or when many objects were inserted or
-//! removed. Then a snapshot of all centres is sorted over several steps and applied: work
-//! proportional to the number of objects. A sparing tree is instead renewed in a copy
+//! removed. Then a snapshot of all centres is sorted over several steps and applied; the work of
+//! one step is proportional to the number of objects. A sparing tree is instead renewed in a copy
 //! ([`super::renewal`]), with a bounded amount of work in each step. No step depends on measured
 //! time, so results are equal on every machine.
 
@@ -18,7 +18,8 @@ const WORN: f64 = 1.2;
 const LOOK_EVERY: u32 = 4;
 /// Greatest number of items of the snapshot that are sorted at once.
 const SORTED_AT_ONCE: usize = 1024;
-/// Least number of items that one step handles, so that small trees are renewed in few steps.
+/// Least budget of one step for sorting the snapshot, in items times levels of the sort, so that
+/// small trees are renewed in few steps.
 const MIN_BUDGET: usize = 2048;
 /// If more than one object in `LATE` was inserted or moved far while the snapshot was being sorted,
 /// the snapshot is discarded and all objects are sorted at once.
@@ -41,7 +42,7 @@ pub(super) struct Schedule<const D: usize> {
     /// First slot whose object has not been sorted yet.
     fresh: usize,
     /// First slots of the runs sorted since the last renewal, ascending. Each run is more than
-    /// twice as long as the next, except where the limit for a sparing tree kept them apart.
+    /// twice as long as the next, except where the limit for a sparing tree kept two runs apart.
     runs: Vec<usize>,
     /// The centres being sorted, and the parts not yet sorted.
     snapshot: Vec<Item<D>>,
@@ -88,14 +89,14 @@ impl<const D: usize> Tree<D> {
     /// Sorts the objects inserted since the last sort among themselves, or all objects if more than
     /// a third are new. Earlier runs are merged in while they are short, so that there are few runs
     /// and each object is sorted again only a few times (the logarithmic method of Bentley and Saxe
-    /// 1980). In a sparing tree up to 16 new objects wait for more.
+    /// 1980). Up to 16 new objects are not sorted; in a sparing tree they wait for more.
     pub(super) fn sort_new(&mut self) {
         let new = self.end - self.schedule.fresh.min(self.end);
         if new * 3 > self.live {
             self.rebuild();
         } else if self.is_sparing && (new <= LANES || self.renewal.is_some()) {
-            // In a sparing tree few new objects wait: for more of them, since a few are not
-            // neighbours, or for the renewal, which sorts them.
+            // A sparing tree leaves new objects unsorted while there are at most 16, which are
+            // hardly neighbours, or while a renewal, which sorts them, is in progress.
             return;
         } else if new > LANES {
             let most = if self.is_sparing { SMALL } else { usize::MAX };
@@ -187,8 +188,9 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Continues the renewal of a sparing tree. Begins one if [`Self::wants_order`]; a small tree
-    /// is sorted at once.
+    /// Continues the renewal of a sparing tree. If no renewal is in progress and
+    /// [`Self::wants_order`] returns `true`, begins one, or sorts a tree of at most [`SMALL`]
+    /// objects at once.
     fn renew_aside(&mut self) {
         if let Some(mut renewal) = self.renewal.take() {
             if renewal.proceed(self) {
@@ -212,7 +214,8 @@ impl<const D: usize> Tree<D> {
         self.commit_boxes();
     }
 
-    /// Takes a snapshot of all objects, to be sorted over several steps, if [`Self::wants_order`].
+    /// If [`Self::wants_order`] returns `true`, takes a snapshot of all objects, to be sorted over
+    /// several steps.
     fn start_if_worn(&mut self) {
         if self.wants_order() {
             let mut snapshot = core::mem::take(&mut self.schedule.snapshot);
@@ -292,7 +295,7 @@ impl<const D: usize> Tree<D> {
 
 impl<const D: usize> Schedule<D> {
     /// Resets the schedule after the order was renewed; keeps the memory. Slots before `ordered`
-    /// are sorted as a whole, and slots from there to `fresh` as a run.
+    /// are sorted as a whole, and slots from `ordered` to `fresh` as a run.
     fn begin(&mut self, ordered: usize, fresh: usize) {
         (self.base, self.ordered, self.fresh) = (None, ordered, fresh);
         self.runs.clear();
@@ -324,8 +327,8 @@ impl<const D: usize> Schedule<D> {
         start
     }
 
-    /// Sorts parts of the snapshot until `budget` items have been handled. Handles at least one
-    /// part.
+    /// Sorts parts of the snapshot until the items sorted, each counted once for each level of the
+    /// sort, reach `budget`. Sorts or splits at least one part.
     fn sort_some(&mut self, budget: usize) {
         let mut done = 0;
         while done < budget {

@@ -7,7 +7,7 @@ use crate::math::{Mapped, Real, Vector, filled, max_component};
 use fearless_simd::{Bytes, Select, Simd, SimdBase, SimdMask, f32x16, u32x16};
 
 /// Least speed on an axis, as a fraction of the fastest component's power of two. Raising a slower
-/// component to it displaces the box, while it passes a tree, by less than the padding.
+/// component to this speed displaces the box, while it passes a tree, by less than the padding.
 const SLOWEST: f32 = f32::from_bits(27 << 23);
 
 /// Padding of the moving box, in `f32` rounding units of the largest coordinate.
@@ -172,9 +172,9 @@ impl<S: Simd> WideBlock<S> {
         (low_half(is_entered.to_bitmask()), all.reduce_min())
     }
 
-    /// Returns, by lane, the times at which the moving box enters and leaves the lane's box,
-    /// clamped to zero below and to `limit` above. A lane is missed if it is entered after it is
-    /// left.
+    /// Returns, by lane, the time at which the moving box enters the lane's box, at least zero, and
+    /// the time at which it leaves, at most `limit`. A lane is missed if its entry time is above
+    /// its exit time.
     #[inline(always)]
     fn times<const D: usize>(
         self,

@@ -1,10 +1,10 @@
-//! Trees of static boxes: built at once, in an order that costs more to compute and less to search, and then changed
-//! one box at a time.
+//! Trees of static boxes: built at once, in an order that costs more to compute and less to search
+//! than the k-d order of [`super::order`], and then changed one box at a time.
 //!
-//! Ranges of slots are cut by the surface area heuristic (Goldsmith and Salmon 1987; binned as by Wald, "On fast
-//! construction of SAH-based bounding volume hierarchies", 2007), but only between whole blocks of the layer: so all
-//! blocks but the last are full, and child and parent are computed from the index. Ranges of more than [`SAMPLE`] boxes
-//! are cut by a sample.
+//! Ranges of slots are cut by the surface area heuristic (Goldsmith and Salmon 1987; binned as by
+//! Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007), but only between
+//! whole blocks of the layer: so all blocks but the last are full, and child and parent are
+//! computed from the index. Ranges of more than [`SAMPLE`] boxes are cut by a sample.
 
 use super::order::key;
 use super::tree::small;
@@ -27,13 +27,15 @@ struct StillItem<const D: usize> {
 }
 
 impl<const D: usize> StillItem<D> {
-    /// Returns the centre on an axis. Coordinates are halved before they are added, so the sum does not overflow.
+    /// Returns the centre on an axis. Coordinates are halved before they are added, so the sum does
+    /// not overflow.
     #[inline]
     fn middle(&self, axis: usize) -> f32 {
         self.bounds.lo[axis] * 0.5 + self.bounds.hi[axis] * 0.5
     }
 
-    /// Returns the sort key on an axis: the centre, ties by id. A total order, so that the result is unique.
+    /// Returns the sort key on an axis: the centre, ties by id. Keys of two boxes differ, so the
+    /// sorted order is unique.
     #[inline]
     fn key(&self, axis: usize) -> u64 {
         key(self.middle(axis), self.id)
@@ -41,7 +43,7 @@ impl<const D: usize> StillItem<D> {
 }
 
 impl<const D: usize> Tree<D> {
-    /// Builds a tree from boxes with distinct ids. It is refitted and committed.
+    /// Builds a tree from boxes with distinct ids. The tree is refitted and committed.
     pub(crate) fn of_still(lanes: Lanes, boxes: impl Iterator<Item = (u32, Bounds<D>)>) -> Self {
         let mut items: Vec<_> = boxes.map(|(id, bounds)| StillItem { bounds, id }).collect();
         arrange(&mut items);
@@ -64,8 +66,8 @@ impl<const D: usize> Tree<D> {
         tree
     }
 
-    /// Sets the box of an object, which is inserted if it is new. No pairs begin. The path from its block to the top is
-    /// refitted, so searches are valid at once.
+    /// Sets the box of an object, and inserts the object if it is new. No pairs begin. The path
+    /// from its block to the top is refitted, so searches are valid at once.
     ///
     /// An object that would enlarge its block much moves to another slot.
     pub(crate) fn put(&mut self, id: u32, bounds: &Bounds<D>) {
@@ -83,7 +85,8 @@ impl<const D: usize> Tree<D> {
     }
 }
 
-/// Sorts items whose first slot is the first of a whole subtree. The recursion ends, since both parts are smaller.
+/// Sorts items whose first slot is the first of a whole subtree. The recursion ends, since both
+/// parts are smaller.
 fn arrange<const D: usize>(items: &mut [StillItem<D>]) {
     // The boxes in one child: the least power of 16 such that at most 16 children hold all items.
     let mut child = LANES;
@@ -107,8 +110,9 @@ fn arrange<const D: usize>(items: &mut [StillItem<D>]) {
     arrange(second);
 }
 
-/// Returns the axis to cut and the number of whole children on the left. If no cut has a finite cost, halves the
-/// children along the axis with the largest spread of centres, the first of equals.
+/// Returns the axis to cut and the number of whole children on the left. If no cut has a finite
+/// cost, halves the children along the axis with the largest spread of centres, the first of
+/// equals.
 fn best_cut<const D: usize>(
     items: &[StillItem<D>],
     child: usize,
@@ -146,7 +150,8 @@ struct Bins<const D: usize> {
 }
 
 impl<const D: usize> Bins<D> {
-    /// Sorts boxes into bins of equal width on an axis; `middles` are the bounds of the boxes' centres.
+    /// Sorts boxes into bins of equal width on an axis; `middles` are the bounds of the boxes'
+    /// centres.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -168,8 +173,8 @@ impl<const D: usize> Bins<D> {
         bins
     }
 
-    /// Calls `visit` with the number of children on the left and the cost of each cut. For a cut within a bin, the bin
-    /// is counted on both sides.
+    /// Calls `visit` with the number of children on the left and the cost of each cut. For a cut
+    /// within a bin, the bin is counted on both sides.
     #[expect(clippy::cast_precision_loss, reason = "counts that weigh a heuristic")]
     fn each_cut(
         &self,
@@ -178,7 +183,8 @@ impl<const D: usize> Bins<D> {
         children: usize,
         mut visit: impl FnMut(usize, f64),
     ) {
-        // `right[bin]` becomes the half surface of the union of the boxes in `bin` and all later bins.
+        // `right[bin]` becomes the half surface of the union of the boxes in `bin` and all later
+        // bins.
         let mut right = [0.0; BINS];
         let mut all = Bounds::EMPTY;
         for bin in (0..BINS).rev() {
@@ -195,7 +201,8 @@ impl<const D: usize> Bins<D> {
             }
             let left = all.half_surface();
             while next < children && next * child <= count {
-                // A cut at the end of this bin excludes it from the right side; a cut within it does not.
+                // A cut at the end of this bin excludes it from the right side; a cut within it
+                // does not.
                 let is_even = next * child == count && bin + 1 < BINS;
                 let rest = right[if is_even { bin + 1 } else { bin }];
                 // The heuristic: surface times number of children, summed over both sides.

@@ -2,9 +2,9 @@
 //!
 //! The next step of a single ray waits for loads and depends on unpredictable branches. So all rays
 //! that open a block do so one after another, then all rays at leaf blocks test triangles, then all
-//! other rays return to an open block. Within such a phase no ray depends on the ray before it, no
-//! branch is unpredictable, and loads of several blocks overlap. Each single ray visits blocks in
-//! the order of [`near_first`](super::near_first).
+//! other rays return to an open block. Within such a phase no ray depends on the ray before it,
+//! most branches are predictable, and loads of several blocks overlap. Each single ray visits
+//! blocks in the order of [`near_first`](super::near_first).
 //!
 //! ```text
 //! to_open   ── open_blocks ────> to_open | at_leaf | to_return
@@ -26,8 +26,8 @@ pub(crate) trait RayVisitor {
     /// Prefetches an object that [`Self::visit`] may read soon.
     fn touch(&self, id: u32);
 
-    /// Tests a triangle that the ray with index `ray` may cross by its limit. Returns the new limit, in the units of
-    /// the slabs, which must not increase.
+    /// Tests a triangle that the ray with index `ray` may cross by its limit. Returns the new
+    /// limit, in the units of the slabs, which must not increase.
     fn visit(&mut self, ray: usize, slabs: &Slabs<3>, at: TriangleAt<'_>) -> f32;
 }
 
@@ -38,7 +38,7 @@ pub(crate) struct Walk {
     limit: f32,
     /// Bit mask of the layers with an open block that has unvisited children.
     open: u32,
-    /// Next block and its layer.
+    /// The block that the ray opens or tests next, and the layer of this block.
     layer: usize,
     block: u32,
     /// Lanes of the leaf block whose triangles the ray may cross.
@@ -66,7 +66,7 @@ impl List {
     /// A list without rays.
     const EMPTY: Self = Self { rays: [0; 2 * RAYS], len: 0 };
 
-    /// Appends a ray if `is_in`. Writes it in any case, which needs no branch.
+    /// Appends a ray if `is_in`. Writes the ray past the end in either case, which needs no branch.
     #[inline(always)]
     fn push_if(&mut self, ray: u8, is_in: bool) {
         self.rays[self.len % (2 * RAYS)] = ray;
@@ -79,8 +79,8 @@ impl List {
     }
 }
 
-/// Keys of the children of a block, with the lane in the lowest four bits; `u32::MAX` for a child that is visited or
-/// missed.
+/// Keys of the children of a block, with the lane in the lowest four bits; `u32::MAX` for a child
+/// that is visited or missed.
 type LaneKeys = [u32; LANES];
 
 /// The rays of one search. The lists hold the next action of each ray; a ray is in at most one
@@ -96,8 +96,9 @@ struct Stream<'a> {
 }
 
 impl Tree<3> {
-    /// Reports to `visitor` each object whose triangle a ray may cross by its limit, for at most [`RAYS`] rays.
-    /// `triangles[i]` has the triangles of leaf block `i`. The tree must not be empty.
+    /// Reports to `visitor` each object whose triangle a ray may cross by its limit, for at most
+    /// [`RAYS`] rays. `triangles[i]` has the triangles of leaf block `i`. The tree must not be
+    /// empty.
     pub(crate) fn visit_triangles_of_many(
         &self,
         triangles: &[Triangles],
@@ -137,8 +138,8 @@ impl Tree<3> {
         }
     }
 
-    /// Opens the next block of each ray in `to_open`, repeatedly, until every ray is at a leaf or has no child to
-    /// visit.
+    /// Opens the next block of each ray in `to_open`, repeatedly, until every ray is at a leaf or
+    /// has no child to visit.
     #[inline(always)]
     fn open_blocks<K: Kernel>(&self, kernel: K, stream: &mut Stream<'_>) {
         while stream.to_open.len > 0 {
@@ -207,8 +208,9 @@ impl Tree<3> {
 }
 
 impl Stream<'_> {
-    /// Moves each ray to the next child of its lowest open block, if that child is within the ray's limit. Otherwise
-    /// closes the block, and the ray looks for another open block in the next round.
+    /// Moves each ray to the next child of its lowest open block, if that child is within the ray's
+    /// limit. Otherwise closes the block, and the ray looks for another open block in the next
+    /// round.
     #[inline(always)]
     fn go_back<K: Kernel>(&mut self, kernel: K) {
         let rays = core::mem::replace(&mut self.to_return, List::EMPTY);

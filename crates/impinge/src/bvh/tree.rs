@@ -235,8 +235,8 @@ impl<const D: usize> Tree<D> {
         if self.remembers { &self.before } else { &self.layers[0].blocks }
     }
 
-    /// Copies the present leaf boxes to `before`, if it is not stored, because the present ones are
-    /// about to change.
+    /// Copies the present leaf boxes to `before`, unless `before` is stored already. Must be called
+    /// before a box is marked as changed.
     #[inline]
     fn remember(&mut self) {
         if !self.remembers {
@@ -262,7 +262,7 @@ impl<const D: usize> Tree<D> {
         self.slot(id).expect("the object is in the tree")
     }
 
-    /// Inserts an object. `before` is its box at the last [`Self::commit_boxes`]: pairs that
+    /// Inserts an object. `before` is its box at the last [`Self::commit_boxes`]: pairs whose boxes
     /// overlapped then do not begin now. Pass [`Bounds::NOWHERE`] for a new object.
     ///
     /// # Panics
@@ -275,8 +275,8 @@ impl<const D: usize> Tree<D> {
     }
 
     /// Inserts an object whose box counts as unchanged since the last [`Self::commit_boxes`], such
-    /// as one from another tree: none of its pairs begin. Returns its slot. Panics if the object is
-    /// in the tree already.
+    /// as an object from another tree: none of its pairs begin. Returns its slot. Panics if the
+    /// object is in the tree already.
     pub(crate) fn insert_still(&mut self, id: u32, bounds: &Bounds<D>) -> usize {
         assert!(!self.contains(id), "object {id} is in the tree already");
         debug_assert!(bounds.is_finite(), "trees hold bounded boxes: {bounds:?}");
@@ -285,7 +285,8 @@ impl<const D: usize> Tree<D> {
         slot
     }
 
-    /// Inserts an object after all others. Its box counts as unchanged: no pairs begin.
+    /// Inserts an object in the slot after the last one in use. Its box counts as unchanged: no
+    /// pairs begin.
     pub(super) fn append(&mut self, id: u32, bounds: &Bounds<D>) {
         let slot = self.append_slot();
         self.put_at(slot, id, bounds);
@@ -389,7 +390,7 @@ impl<const D: usize> Tree<D> {
     }
 
     #[inline]
-    /// Sets the change bit of a slot, and counts it if it is new.
+    /// Sets the change bit of a slot, and increments `changed` if the bit was not set.
     pub(super) fn mark_changed(&mut self, slot: usize) {
         let mask = &mut self.layers[0].changed[slot / LANES];
         let bit = 1 << (slot % LANES);
@@ -474,7 +475,7 @@ impl<const D: usize> Tree<D> {
     }
 
     /// Iterates over the changed objects in escaped blocks, as of the last refit. The
-    /// [`super::Joiner`] may not have reported ended pairs of these.
+    /// [`super::Joiner`] may not have reported all ended pairs of these objects.
     pub(crate) fn escaped(&self) -> impl Iterator<Item = u32> + '_ {
         let changed = move |&block: &u32| {
             let mask = self.layers[0].changed[block as usize];

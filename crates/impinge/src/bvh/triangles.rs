@@ -60,9 +60,10 @@ pub(crate) struct TriangleAt<'a> {
 /// Error bound of a corner's position relative to the line, in `f32` rounding units of the corner's
 /// distance from the line's origin along and across the line.
 ///
-/// In half units: 12 here and 16 in the exact test, for differences, shears and sums. Together they
-/// make 112 in the area of two such positions. The exact test also accepts the sides of a triangle
-/// seen edge on within a distance of 83, which raises the bound to 235. The rest is a margin.
+/// In half units: 12 here and 16 in the exact test, for differences, shears and sums. These 28 for
+/// each position make 112 in an area, the difference of two products of two positions. The exact
+/// test also accepts the sides of a triangle seen edge on within a distance of 83, which raises the
+/// bound to 235. The rest is a margin.
 const NEAR: f32 = 256.0;
 
 /// Error bound in `f32` rounding units of the largest coordinate: 8 for the conversion from `f64`,

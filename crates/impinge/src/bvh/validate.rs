@@ -3,9 +3,9 @@
 use super::{Block, Bounds, LANES, NONE, Tree};
 
 impl<const D: usize> Tree<D> {
-    /// Checks every invariant. Bounds are exact after a refit. After a removal they may be too
-    /// large until the next refit; after an insertion or a move they are not checked until the next
-    /// refit.
+    /// Checks every invariant. Bounds are exact after a refit. After a removal the bounds may be
+    /// too large until the next refit; after an insertion or a move the bounds are not checked
+    /// until the next refit.
     ///
     /// # Errors
     /// Returns a sentence that names the violated invariant.

@@ -1,4 +1,4 @@
-//! Searches without an order, by a test of boxes.
+//! Searches for all objects whose boxes pass a test, in no particular order.
 
 use super::kernel::{Kernel, with_kernel};
 use super::tree::small;

@@ -130,7 +130,8 @@ mod tests {
         Placed { pose: Pose::from_translation(position.into()), shape: shape.geometry() }
     }
 
-    /// Returns the result of the last of enough calls for the hulls to be computed.
+    /// Calls [`BodyHulls::are_beyond`] often enough for the hulls to be computed, and returns the
+    /// result of the last call.
     fn last_of<const D: usize>(
         hulls: &BodyHulls<f64, D>,
         solids: [(&Placed<'_, f64, D>, Option<u32>); 2],

@@ -25,7 +25,8 @@ impl PairOdds {
         self.0.get(&pair).map_or(0, |[searches, _]| *searches)
     }
 
-    /// Returns whether more than half of the part searches of a pair found nothing.
+    /// Returns whether more than half of the part searches of a pair did not find the pair within
+    /// the clearance.
     pub(super) fn are_poor(&self, pair: (u32, Other)) -> bool {
         self.0.get(&pair).is_some_and(|[searches, hits]| 2 * hits < *searches)
     }

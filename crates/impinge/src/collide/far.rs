@@ -11,16 +11,17 @@
 //! balls cost little to read. Together with the difference of the positions they reject most pairs
 //! before a rotation, the canonical order or a feature is computed.
 //!
-//! A pair is rejected only if the algorithms would reject it. Their errors are some hundred epsilon
-//! of the lengths of the pair, and all of these are at most twice the distance of the origins if
-//! the balls do not overlap. Squares are compared with a factor of 1 + 2⁻⁶: the balls of rejected
-//! solids are farther apart than the limit by 2⁻⁸ of that distance, which is 2¹⁵ epsilon of `f32`.
+//! A pair is rejected only if the algorithms for its shapes would also find it beyond `limit`. The
+//! errors of these algorithms are some hundred epsilons of the lengths of the pair. If the balls do
+//! not overlap, each of these lengths is at most twice the distance of the origins. Squares are
+//! compared with a factor of 1 + 2⁻⁶. So the balls of a rejected pair are farther apart than
+//! `limit` by 2⁻⁸ of the distance of the origins, which is 2¹⁵ epsilons of `f32`.
 
 use crate::math::{Mapped, Pose, Real, Vector, max, max_component, min};
 use crate::shape::{Geometry, Kind, Shape};
 
-/// Factor by which a squared distance must exceed the square of the summed lengths to reject a
-/// pair.
+/// Factor by which the squared distance of the origins must exceed the square of
+/// `extent1 + extent2 + limit` for a pair to be rejected.
 const ROOM: f64 = 1.0 + 1.0 / 64.0;
 
 /// Two shapes and the vector from the origin of the first to the origin of the second, in any
@@ -32,7 +33,7 @@ pub(crate) struct Apart<'a, N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Apart<'_, N, D> {
-    /// Returns whether both shapes have a known bounding ball around the origins of their frames.
+    /// Returns whether each shape has a known bounding ball around the origin of its frame.
     #[inline]
     pub(crate) fn has_balls(&self) -> bool {
         let is_without = |shape: &Geometry<'_, N, D>| {
@@ -41,9 +42,9 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
         !self.shapes.iter().any(is_without)
     }
 
-    /// Returns the result of [`Self::is_beyond`] for pairs that cost less to decide than the call:
-    /// two balls, and pairs with a shape without a known ball, which are never beyond. `None` for
-    /// other pairs.
+    /// Returns the result of [`Self::is_beyond`] for pairs that cost less to decide here than by a
+    /// call: two balls, and pairs that [`Self::has_balls`] excludes, for which the result is
+    /// `false`. `None` for other pairs.
     #[inline]
     pub(crate) fn is_known_beyond(&self, limit: N) -> Option<bool> {
         if let [Kind::Ball(one), Kind::Ball(other)] = self.shapes.mapped(|shape| shape.0) {
@@ -53,7 +54,8 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
         (!self.has_balls()).then_some(false)
     }
 
-    /// Returns [`Self::is_known_beyond`] if it is `Some`, else [`Self::is_beyond`].
+    /// Returns the result of [`Self::is_known_beyond`] if that is `Some`, else of
+    /// [`Self::is_beyond`].
     #[inline]
     pub(crate) fn is_certainly_beyond(&self, limit: N) -> bool {
         self.is_known_beyond(limit).unwrap_or_else(|| are_beyond(self, limit))
@@ -68,7 +70,7 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
         exceeds(self.between.norm_squared(), max_distance(self.extents(), limit))
     }
 
-    /// Returns the sum of the radii of the balls.
+    /// Returns the sum of the radii of both bounding balls; infinite if one of them is unknown.
     fn extents(&self) -> N {
         self.shapes[0].extent() + self.shapes[1].extent()
     }
@@ -96,8 +98,8 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
 /// Bounds of a shape in its own frame: a ball around the origin and a box.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ReachBounds<N: Real, const D: usize> {
-    /// Radius of the ball; infinite if no ball is known, in which case the box proves nothing
-    /// either.
+    /// Radius of the ball; infinite if no ball is known. Then [`Self::has_box_clear_of`] returns
+    /// `false`.
     extent: N,
     middle: Vector<N, D>,
     half: Vector<N, D>,
@@ -130,16 +132,17 @@ impl<N: Real, const D: usize> ReachBounds<N, D> {
         if corner < self.extent { corner } else { self.extent }
     }
 
-    /// Returns [`Apart::is_beyond`] for shapes with the bounds `self` and `other`; `between` is the
-    /// vector between the origins of their frames.
+    /// Returns the result of [`Apart::is_beyond`] for shapes with the bounds `self` and `other`;
+    /// `between` is the vector between the origins of their frames.
     #[inline]
     pub(crate) fn is_clear_of(&self, other: &Self, between: &Vector<N, D>, limit: N) -> bool {
         exceeds(between.norm_squared(), max_distance(self.extent + other.extent, limit))
     }
 
-    /// Returns whether the boxes are farther apart than `limit` along an axis of one of them, by at
-    /// least 2⁻⁸ of all lengths of the pair: 2¹⁵ epsilons of `f32`. `pose12` is the pose of the
-    /// other shape in the frame of this one.
+    /// Returns whether the boxes are farther apart than `limit` along an axis of one of them, by
+    /// more than 2⁻⁸ of the lengths of the pair: 2¹⁵ epsilons of `f32`. These lengths are the radii
+    /// of both balls and the largest component of the translation. A negative `limit` counts as
+    /// zero. `pose12` is the pose of the other shape in the frame of this shape.
     ///
     /// `false` proves nothing. It is also the result for NaN, and if the sum of the lengths is not
     /// finite.
@@ -206,8 +209,8 @@ mod tests {
         assert_eq!(ReachBounds::of(&plane).reach(), f64::INFINITY, "it has no end");
     }
 
-    /// Draws a random solid of the kind with the given number, with sizes from zero to one. All of
-    /// these kinds have a known bounding ball.
+    /// Function that returns a random solid of the kind with the given number. Its radii, half
+    /// extents and coordinates are at most about 1. All of these kinds have a known bounding ball.
     type Draw<N, const D: usize> = fn(&mut Random, usize) -> Box<dyn Shape<N, D>>;
 
     fn solid_2d<N: Real>(random: &mut Random, kind: usize) -> Box<dyn Shape<N, 2>> {
@@ -252,8 +255,9 @@ mod tests {
         }
     }
 
-    /// Asserts that the algorithms find no separation within the limit for any rejected pair. The
-    /// distance of the origins is 0.97 to 1.03 times the distance at which the balls are rejected.
+    /// Asserts that [`separation`] returns `None` for each pair that the balls, the boxes or a test
+    /// over time reject. The distance of the origins is 0.97 to 1.03 times the sum of the ball
+    /// radii and the limit; for the boxes it is then multiplied by 0.4 to 1.
     fn rejects_no_more<N: Space<D>, const D: usize>(
         (draw, kinds): (Draw<N, D>, usize),
         turn: fn(&mut Random) -> Pose<N, D>,
@@ -271,8 +275,8 @@ mod tests {
             let share =
                 N::lit(0.97 + 0.0005 * f64::from(u32::try_from(round % 120).expect("small")));
             let away = pose12.translation.normalize() * (max_distance * share);
-            // In odd rounds, rounds the difference as for positions 10⁶ away from the world's
-            // origin.
+            // In odd rounds, rounds the difference of the positions as for positions 10⁶ away from
+            // the world's origin.
             let far = Vector::<N, D>::repeat(N::lit([0.0, 1e6][round % 2]));
             let between = (far + away) - far;
             let pair = Pair {

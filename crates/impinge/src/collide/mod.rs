@@ -3,14 +3,18 @@
 //! This layer lies between the algorithms on convex sets, which do not depend on shape types
 //! ([`crate::convex`]), and the public queries ([`crate::query`]). From bottom to top:
 //!
-//! - [`pair`] puts two shapes in canonical order and computes their relative pose;
+//! - [`pair`] puts two shapes in canonical order and computes their relative pose; [`far`] rejects
+//!   pairs that are certainly too far apart;
 //! - [`separation`] computes the signed distance, normal and nearest points of two solids;
 //! - [`manifold`] computes contact points of two solids: supporting features, clipping, reduction,
 //!   ids;
 //! - [`batch`] computes separations and contact points of the most frequent pairs, 8 at a time;
-//! - [`parts`] finds the near pairs of parts of two composites, and their separation;
-//! - [`mesh`] builds manifolds of a composite: parts are gathered, culled in packets ([`packet`]),
-//!   separated, their normals filtered by the surface, and their points merged into patches.
+//! - [`parts`] finds the near pairs of parts of two shapes, at least one of them a composite, and
+//!   the separation of the nearest pair;
+//! - [`mesh`] builds the manifolds of a composite and another shape. It finds the near parts, culls
+//!   them in packets of 8 ([`packet`]), and computes the contact of each remaining part. It then
+//!   drops or corrects normals that the surface does not admit, and merges the contact points into
+//!   patches.
 
 pub(crate) mod batch;
 pub(crate) mod far;

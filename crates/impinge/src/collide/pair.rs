@@ -7,7 +7,8 @@
 //! ```
 //!
 //! `pose12` is computed from the difference of the positions, so the relative pose of close solids
-//! has no large rounding error far from the world's origin. The rotation of a ball is ignored.
+//! has no large rounding error far from the world's origin. If the first solid is a ball, its
+//! rotation is ignored.
 
 use core::cmp::Ordering;
 
@@ -27,8 +28,8 @@ pub(crate) struct Pair<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Real, const D: usize> Pair<'a, N, D> {
-    /// Makes a pair of two solids in canonical order, with poses in the world; the rotation of a
-    /// ball is ignored.
+    /// Makes a pair from two solids that are already in canonical order, and their world poses. If
+    /// the first is a ball, its rotation is ignored.
     #[inline]
     pub(crate) fn new(
         [first, second]: [Geometry<'a, N, D>; 2],
@@ -52,7 +53,7 @@ pub(crate) fn pose_between<N: Real, const D: usize>(
     Pose { rotation: pose2.rotation, translation: pose2.translation - pose1.translation }
 }
 
-/// A solid and its pose in the world. The rotation of a ball is ignored.
+/// A solid and its pose in the world. [`Geometry::pose_at`] places a ball without its rotation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placed<'a, N: Real, const D: usize> {
     pub(crate) pose: Pose<N, D>,
@@ -93,10 +94,10 @@ impl<'a, N: Real, const D: usize> Placing<'a, N, D> for Placed<'a, N, D> {
 /// Every result for two solids is computed in this order and flipped at the end, so that swapping
 /// the arguments flips the result bit for bit. Kinds come in the order of
 /// [`crate::shape::ShapeKind`]. Solids of one kind are ordered by their world translations along an
-/// [`askew`] direction, then by all coordinates, then by rotation (a ball has none), then by the
-/// numbers that define them. Solids that agree in all of these are identical, so their order does
-/// not change the result. A user's support map is compared by its rounding radius and its support
-/// points along the axes and the diagonals. Composites are compared part by part.
+/// [`askew`] direction, then by all coordinates, then by rotation (balls are placed without one),
+/// then by the numbers that define them. Solids that agree in all of these are identical, so their
+/// order does not change the result. A user's support map is compared by its rounding radius and
+/// its support points along the axes and the diagonals. Composites are compared part by part.
 #[inline]
 pub(crate) fn canonical<'a, N: Real, const D: usize>(
     pose1: &Pose<N, D>,
@@ -139,8 +140,8 @@ impl<'p, 'a, N: Real, const D: usize> Ordered<'p, 'a, N, D> {
         Pair::new([first.shape, second.shape], [&first.pose, &second.pose])
     }
 
-    /// Returns whether one of the two is a composite, for which [`Between`](super::parts::Between)
-    /// computes the results.
+    /// Returns whether one of the two solids is a composite. The algorithms for such a pair use
+    /// [`Between`](super::parts::Between).
     #[inline]
     pub(crate) fn has_composite(&self) -> bool {
         let is_composite = |placed: &Placed<'a, N, D>| placed.shape.as_composite().is_some();
@@ -221,7 +222,7 @@ fn compare_at_length<N: Real, const D: usize>(
     compare_poses(pose1, pose2).then_with(|| compare_solids(&shape1.0, &shape2.0))
 }
 
-/// Compares by translation, then by rotation.
+/// Compares two poses by translation, then by rotation.
 fn compare_poses<N: Real, const D: usize>(pose1: &Pose<N, D>, pose2: &Pose<N, D>) -> Ordering {
     compare_numbers(pose1.translation.as_slice(), pose2.translation.as_slice())
         .then_with(|| compare_numbers(pose1.rotation.as_slice(), pose2.rotation.as_slice()))
@@ -238,7 +239,7 @@ fn compare_solids<N: Real, const D: usize>(
     }
 }
 
-/// Compares the number of parts, then part by part up to the first difference.
+/// Compares two composites by their numbers of parts, then part by part up to the first difference.
 fn compare_parts<N: Real, const D: usize>(
     parts1: &dyn CompositeShape<N, D>,
     parts2: &dyn CompositeShape<N, D>,
@@ -252,7 +253,8 @@ fn compare_parts<N: Real, const D: usize>(
     counts.then_with(|| orders.find(|order| order.is_ne()).unwrap_or(Ordering::Equal))
 }
 
-/// Compares lexicographically; NaN, and zeros of different sign, are ordered by their bits.
+/// Compares two lists lexicographically. A pair with NaN, and zeros of different sign, are ordered
+/// by their bits.
 fn compare_numbers<N: Real>(numbers1: &[N], numbers2: &[N]) -> Ordering {
     for (number1, number2) in numbers1.iter().zip(numbers2) {
         let by_value = number1.partial_cmp(number2).unwrap_or(Ordering::Equal);
@@ -264,7 +266,8 @@ fn compare_numbers<N: Real>(numbers1: &[N], numbers2: &[N]) -> Ordering {
     numbers1.len().cmp(&numbers2.len())
 }
 
-/// Returns the defining numbers of a solid; needed only if kinds and poses are equal.
+/// Returns the numbers that define a solid of its kind; empty for a composite. They decide the
+/// order only if kinds and poses are equal.
 fn numbers<N: Real, const D: usize>(kind: &Kind<'_, N, D>) -> Vec<N> {
     match kind {
         Kind::Ball(ball) => vec![ball.radius()],

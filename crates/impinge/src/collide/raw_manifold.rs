@@ -60,7 +60,7 @@ pub(crate) struct RawPoint<N: Real, const D: usize> {
     pub(crate) code: u32,
 }
 
-/// Points of many manifolds, one after the other.
+/// Points of many manifolds in one list; each manifold has a range of indices.
 pub(crate) type RawPoints<N, const D: usize> = SmallVec<[RawPoint<N, D>; 32]>;
 
 impl<N: Real, const D: usize> RawPoint<N, D> {
@@ -93,7 +93,7 @@ pub(crate) struct RawManifold<N: Real, const D: usize> {
     pub(crate) points: SmallVec<[RawPoint<N, D>; 4]>,
     /// Pose of the second solid in the frame of the first when the points were computed, which
     /// places old points on the second. `None` for pairs of balls, boxes, segments and capsules,
-    /// whose kernels store no pose.
+    /// whose kernels store no pose, and for a manifold that has only the nearest points.
     pub(crate) pose12: Option<Pose<N, D>>,
 }
 
@@ -112,8 +112,8 @@ impl<N: Real, const D: usize> Clone for RawManifold<N, D> {
 
 /// Counter that assigns the ids of the contacts of one pair.
 ///
-/// It outlives the contacts: a contact that ended and comes back gets a new id. A pair with several
-/// manifolds passes one counter through all of them.
+/// The counter outlives the contacts: a contact that ended and comes back gets a new id. A pair
+/// with several manifolds passes one counter through all of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct PairIds {

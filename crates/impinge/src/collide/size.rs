@@ -1,12 +1,14 @@
-//! Size of a pair of solids: the unit of lengths that are proportional to the pair.
+//! Size of a pair of solids, to which tolerances for its contact points are proportional.
 //!
 //! The tolerances in `manifold/ids.rs` (`SHARE`, `REACH`) and in `manifold/mod.rs` (`SLACK`) are
-//! fractions of this size; `batch` computes it for several pairs at a time.
+//! fractions of this size; `batch` has versions that compute it for several pairs at a time.
 
 use crate::math::{Point, Real, Vector, min};
 use crate::shape::{Geometry, Kind, SupportMap};
 
-/// Returns half the diagonal of the local box of the smaller solid; infinite if both are unbounded.
+/// Returns the size of the smaller solid: half the diagonal of its local box or, for a ball, its
+/// radius and, for a capsule, half the length of its axis plus its radius. Infinite if both solids
+/// are half-spaces.
 ///
 /// The box is used, not the bounding radius around the local origin, because a part's vertices may
 /// lie far from its origin.

@@ -1,22 +1,22 @@
-//! A normal and a lower bound of the signed distance along it.
+//! A normal, and the lower bound of the signed distance that it proves.
 
 use super::difference::{Difference, Vertex};
 use crate::math::{Real, Vector};
 
-/// A unit vector from the first core to the second, and its height, which proves by how much it
-/// separates them.
+/// A unit vector from the first core to the second, and its height, which is a lower bound of the
+/// signed distance of the cores.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SupportCandidate<N: Real, const D: usize> {
     pub(super) normal: Vector<N, D>,
     /// `min n·b − max n·a` for this normal `n`: a lower bound of the signed distance, for any
     /// normal.
     pub(super) height: N,
-    /// Point of the difference with that height along the normal.
+    /// Point of the difference that is lowest along `normal`, at this height.
     pub(super) vertex: Vertex<N, D>,
 }
 
 impl<N: Real, const D: usize> SupportCandidate<N, D> {
-    /// Computes the height of a unit vector.
+    /// Makes the candidate of a unit vector: computes its support point and its height.
     #[inline]
     pub(super) fn along<S>(difference: &S, normal: Vector<N, D>) -> Self
     where
@@ -26,7 +26,8 @@ impl<N: Real, const D: usize> SupportCandidate<N, D> {
         Self { normal, height: normal.dot(&vertex.point), vertex }
     }
 
-    /// Replaces this candidate by `other` if that has a larger height; returns whether it did.
+    /// Replaces this candidate by `other` if the height of `other` is larger; returns whether it
+    /// was replaced.
     #[inline]
     pub(super) fn improve(&mut self, other: &Self) -> bool {
         let better = other.height > self.height;

@@ -13,14 +13,14 @@ const DOUBLINGS: usize = 16;
 
 /// Raises the height of `best` to a local maximum, up to the cap on the steps.
 ///
-/// The difference is moved along the normal `n` by a distance `s`, so that it is free of the
-/// origin. The normal `m` of its nearest point then maximises `h(m) + s m·n`. As `m·n` is largest
-/// at `n`, the height of `m` is at least that of `n`. This is the proximal point method (R. T.
-/// Rockafellar, "Monotone Operators and the Proximal Point Algorithm", 1976), which also works at
-/// the kinks of `h`, the normals of flat faces. If heights hardly differ nearby, its steps are
-/// short, so each step is doubled while the height grows. If doubling does not raise the height,
-/// the ascent may follow a curved ridge: then each trial is first moved back to the ridge by a step
-/// of the method.
+/// The difference is moved along the normal `n` by a distance `s`, so that it no longer contains
+/// the origin. The normal `m` of its nearest point then maximises `h(m) + s m·n`. As `m·n` is
+/// largest at `n`, the height of `m` is at least that of `n`. This is the proximal point method (R.
+/// T. Rockafellar, "Monotone Operators and the Proximal Point Algorithm", 1976), which also works
+/// at the kinks of `h`, the normals of flat faces. If heights hardly differ nearby, the steps of
+/// the method are short, so each step is doubled while the height grows. If doubling does not raise
+/// the height, the ascent may follow a curved ridge: then each trial is first moved back to the
+/// ridge by a step of the method.
 pub(super) fn climb<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &mut SupportCandidate<N, D>,
@@ -41,8 +41,8 @@ pub(super) fn climb<N: Simplicial<D>, const D: usize>(
     }
 }
 
-/// Continues in the direction of a step, twice as far each time, while the height grows; returns
-/// whether it did. `trial` makes a candidate from a normal.
+/// Tries the normal of `best` plus `step` times 1, 2, 4 and so on, while the height grows. Returns
+/// whether the height grew at least once. `trial` makes a candidate from a normal.
 fn stride<N: Simplicial<D>, const D: usize>(
     best: &mut SupportCandidate<N, D>,
     step: &Vector<N, D>,

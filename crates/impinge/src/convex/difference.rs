@@ -10,11 +10,11 @@ pub(super) fn rounding_error<N: Real>() -> N {
     N::lit(8.0) * N::EPSILON
 }
 
-/// Returns the gap between the lower and upper bound of the distance at which iterations stop, in
-/// units of the pair.
+/// Returns the gap between the lower and the upper bound of the distance at which a normal is good
+/// enough to be refined by Newton's method, in units of the pair: 2⁻²⁰ in `f32`, 2⁻⁴⁰ in `f64`.
 ///
-/// Flat-faced cores are solved exactly after finitely many steps; iterations on curved ones stop at
-/// this gap: 2⁻²⁰ in `f32`, 2⁻⁴⁰ in `f64`.
+/// Only curved cores leave such a gap: searches of flat-faced cores end after finitely many steps,
+/// with a gap of rounding error.
 pub(super) fn tolerance<N: Real>() -> N {
     max(rounding_error(), N::lit(1.0 / 1_099_511_627_776.0))
 }
@@ -36,13 +36,14 @@ impl<N: Real, const D: usize> Vertex<N, D> {
     }
 }
 
-/// A point of one core, extreme along a normal, and how it moves as the normal turns.
+/// A point of one core that is extreme along a normal, and the derivative of this point with
+/// respect to the normal.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Branch<N: Real, const D: usize> {
     pub(super) is_second: bool,
     pub(super) on: Vector<N, D>,
-    /// Derivative of the point with respect to the outward normal of its own core; `None` for a
-    /// corner, which stays.
+    /// Derivative of `on` with respect to the outward normal of the core, in units of the pair;
+    /// `None` for a corner, which does not move.
     pub(super) bend: Option<Matrix<N, D>>,
 }
 
@@ -61,13 +62,13 @@ pub(crate) trait Difference<N: Real, const D: usize> {
         false
     }
 
-    /// Returns the normals of the flat round faces of each core that are close to `normal`, as
-    /// directions from the first core to the second; `None` for a core without one.
+    /// Returns, for each core, the normal of its flat round face that may be close to `normal`, as
+    /// a direction from the first core to the second; `None` for a core without such a face.
     fn round_faces(&self, normal: &Vector<N, D>) -> [Option<Vector<N, D>>; 2];
 
-    /// Returns the axis of the round side of each core, and the component of the side's normals
-    /// along the axis, as directions from the first core to the second; `None` for a core without
-    /// one.
+    /// Returns, for each core, the axis of its round side and the component of the side's normals
+    /// along the axis, as directions from the first core to the second; `None` for a core without a
+    /// round side.
     fn round_sides(&self) -> [Option<(Vector<N, D>, N)>; 2] {
         [None, None]
     }
@@ -76,8 +77,8 @@ pub(crate) trait Difference<N: Real, const D: usize> {
     /// along the unit vector `normal` for the first core, the lowest for the second.
     fn branch(&self, is_second: bool, on: &Vector<N, D>, normal: &Vector<N, D>) -> Branch<N, D>;
 
-    /// Returns the best normal of a difference that contains the origin, if the caller of the
-    /// search can compute it.
+    /// Returns the best normal of a difference that contains the origin; `None` if no [`Peaks`] are
+    /// known, or if they leave the choice to a search.
     fn peak(&self) -> Option<Peak<N, D>> {
         None
     }
@@ -97,8 +98,8 @@ pub(super) struct CorePair<'a, N: Real, A: ?Sized, B: ?Sized, const D: usize> {
     peaks: Option<&'a dyn Peaks<N, D>>,
 }
 
-/// Returns a solid's bounding radius, computed without squares if these would overflow or
-/// underflow.
+/// Returns a solid's bounding radius around its origin. If its square overflows or underflows,
+/// returns the largest absolute coordinate of the support points along the axes instead.
 pub(crate) fn safe_reach<N: Real, S: SupportMap<N, D> + ?Sized, const D: usize>(solid: &S) -> N {
     let reach = solid.reach();
     if reach.is_finite_number() && reach * reach > N::MIN_POSITIVE {
@@ -160,8 +161,8 @@ where
         self.scale
     }
 
-    /// Returns a first guess of the normal: from the centre of the first core to that of the
-    /// second.
+    /// Returns a first guess of the normal: from the centre of the first core to the centre of the
+    /// second, or the first axis if both coincide.
     pub(super) fn start(&self) -> Vector<N, D> {
         let middle2 = self.rotation * (self.solid2.center().coords * self.shrink);
         let away = middle2 + self.translation - self.solid1.center().coords * self.shrink;

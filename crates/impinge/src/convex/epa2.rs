@@ -34,10 +34,10 @@ const ROUNDS: usize = 96;
 #[derive(Clone, Copy)]
 struct PolygonEdge<N: Real> {
     start: Vertex<N, 2>,
-    /// Outward unit normal of the polygon.
+    /// Outward unit normal of the side; zero if the side is too short.
     outward: Vector<N, 2>,
-    /// Signed distance of the side from the origin, negative if the origin is in front; infinite if
-    /// the side is too short to have a normal.
+    /// Signed distance of the side's line from the origin along `outward`, negative if the origin
+    /// is in front of the side; infinite if the side is too short to have a normal.
     offset: N,
 }
 
@@ -73,8 +73,8 @@ fn ring_of<N: Real>(corners: &[Vertex<N, 2>]) -> EpaRing<N> {
     corners.iter().zip(next).map(|(&start, end)| PolygonEdge::new(start, end)).collect()
 }
 
-/// Returns the triangle that contains the origin; `None` if the simplex is not a triangle or is a
-/// sliver.
+/// Returns the simplex as a polygon, counter-clockwise; `None` if the simplex is not a triangle or
+/// is a sliver.
 fn from_simplex<N: Real>(simplex: &Simplex<N, 2>) -> Option<EpaRing<N>> {
     let &[a, b, c] = simplex.vertices() else { return None };
     let (e, f, g) = (b.point - a.point, c.point - a.point, c.point - b.point);
@@ -89,8 +89,8 @@ fn from_simplex<N: Real>(simplex: &Simplex<N, 2>) -> Option<EpaRing<N>> {
     }
 }
 
-/// Returns a polygon of extreme points; or, as the error, the separation if the difference is a
-/// segment or a point.
+/// Returns a polygon of extreme points of the difference; or, as the error, the separation if the
+/// difference is a segment or a point.
 fn from_extent<N: Real>(difference: &dyn Difference<N, 2>) -> Result<EpaRing<N>, Separation<N, 2>> {
     let [a, b] = widest_pair(difference);
     let edge = b.point - a.point;
@@ -109,8 +109,8 @@ fn from_extent<N: Real>(difference: &dyn Difference<N, 2>) -> Result<EpaRing<N>,
     if ring.len() > 2 {
         return Ok(ring_of(&ring));
     }
-    // The difference is a segment through the origin, or nearly: its depth perpendicular to it is
-    // zero.
+    // The difference is a segment through the origin, or nearly: its depth along the normal of the
+    // segment is zero.
     Err(locate(difference, &best_of(difference, &[left]), &ring))
 }
 
@@ -155,7 +155,7 @@ fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut EpaRing<N>) -> Se
     locate(difference, &best, &vertices(ring, &best))
 }
 
-/// Returns all known points of the difference.
+/// Returns the vertices of the polygon and the support point of `best`.
 fn vertices<N: Real>(
     ring: &EpaRing<N>,
     best: &SupportCandidate<N, 2>,

@@ -21,23 +21,27 @@ use super::simplex::Simplex;
 use super::witness::{Mix, finish, locate, placed};
 use crate::math::{Mapped, Real, Vector, cross, max, orthonormal_basis, unit};
 
-/// Cap on the number of local searches, if the hull ends without an answer.
+/// Cap on the number of local searches after the growth of the hull has ended without an answer.
 const CLIMBS: usize = 6;
-/// Cosine of the angle between two normals within which only one of them starts a local search.
+/// Cosine of an angle. If two normals differ by a smaller angle, only one of them starts a local
+/// search.
 const SAME_CLIMB: f64 = 0.95;
 /// Cap on the number of support points. Flat faces take about ten, smooth cores about twenty, rims
 /// up to a hundred. Only if a whole ring of normals has nearly the largest height, and no `peak` is
 /// known, does the growth end at the cap.
 const ROUNDS: usize = 128;
 
-/// Largest gap between a face and a smooth difference at which Newton's method is tried.
+/// Largest gap between a face and the boundary of a smooth difference at which Newton's method is
+/// tried; also the factor by which this gap shrinks after a failure.
 const COARSE: f64 = 1.0 / 1024.0;
-/// Cosine of the angle to the face's normal within which the normal found by Newton's method is the
-/// only local maximum.
+/// Smallest cosine of the angle between a face's normal and the normal that Newton's method finds
+/// from it. At larger angles, another local maximum may lie between them.
 const SAME_SUMMIT: f64 = 1.0 - 1.0 / 64.0;
-/// Largest gap at which Newton's method is not run again for a face near a known maximum.
+/// Largest gap of a face near a known maximum at which that maximum is used without another run of
+/// Newton's method.
 const FINE: f64 = 1.0 / 65536.0;
-/// Cosine of the angle between face and maximum within which Newton's method is not run again.
+/// Smallest cosine of the angle between the normals of a face and a known maximum at which that
+/// maximum is used without another run of Newton's method.
 const SAME_PLACE: f64 = 1.0 - 1.0 / 2048.0;
 
 /// Computes [`super::Simplicial::deepest`].
@@ -83,7 +87,7 @@ type Start<N> = Result<[Vertex<N, 3>; 4], Separation<N, 3>>;
 const THICK: f64 = 1.0 / 1024.0;
 
 /// Extends the simplex that contains the origin, or nearly does, to a tetrahedron by support
-/// points; a sliver is replaced by a new tetrahedron.
+/// points. A single point or a sliver is replaced by the widest pair of support points first.
 fn from_simplex<N: Real>(difference: &dyn Difference<N, 3>, simplex: &Simplex<N, 3>) -> Start<N> {
     match *simplex.vertices() {
         [a, b, c, d] if is_thick(&[a, b, c, d]) => Ok([a, b, c, d]),
@@ -93,8 +97,8 @@ fn from_simplex<N: Real>(difference: &dyn Difference<N, 3>, simplex: &Simplex<N,
     }
 }
 
-/// Returns whether the tetrahedron is no sliver: its volume is not small relative to its largest
-/// face and its longest edge at `a`.
+/// Returns whether the tetrahedron is no sliver: its volume is not small relative to the product of
+/// its largest face and its longest edge at `a`.
 fn is_thick<N: Real>([a, b, c, d]: &[Vertex<N, 3>; 4]) -> bool {
     let (e, f, g) = (b.point - a.point, c.point - a.point, d.point - a.point);
     let (ef, fg, ge) = (cross(&e, &f), cross(&f, &g), cross(&g, &e));
@@ -103,8 +107,8 @@ fn is_thick<N: Real>([a, b, c, d]: &[Vertex<N, 3>; 4]) -> bool {
     ef.dot(&g).abs() > N::lit(THICK) * area * length
 }
 
-/// Returns whether the area is not small relative to the longest edge, and that edge is not small
-/// relative to the pair, whose size is about 1.
+/// Returns whether the area of the triangle is not small relative to the square of its longest
+/// edge, and that edge is longer than `THICK`; the size of the pair is about 1.
 fn is_wide<N: Real>([a, b, c]: &[Vertex<N, 3>; 3]) -> bool {
     let (e, f, g) = (b.point - a.point, c.point - a.point, c.point - b.point);
     let length = max(max(e.norm(), f.norm()), g.norm());
@@ -128,8 +132,8 @@ fn from_segment<N: Real>(difference: &dyn Difference<N, 3>, [a, b]: [Vertex<N, 3
     if found > rounding_error() {
         return from_triangle(difference, [a, b, c]);
     }
-    // The difference is a segment through the origin, or nearly: all directions perpendicular to it
-    // are equal.
+    // The difference is a segment through the origin, or nearly: all directions perpendicular to
+    // the segment have the height zero.
     Err(locate(difference, &best_of(difference, &[u, v]), &[a, b]))
 }
 
@@ -151,7 +155,8 @@ fn from_triangle<N: Real>(
     Err(locate(difference, &best_of(difference, &[normal]), &[a, b, c]))
 }
 
-/// Returns the separation if the points found lie on a line; its normal is perpendicular to them.
+/// Returns, as the error, the separation of a difference whose known points lie on the line through
+/// `a` and `b`; its normal is perpendicular to that line.
 fn from_needle<N: Real>(difference: &dyn Difference<N, 3>, [a, b]: [Vertex<N, 3>; 2]) -> Start<N> {
     let along = unit(&(b.point - a.point)).map(|(along, _)| along);
     let axis = Vector::<N, 3>::new(N::ONE, N::ZERO, N::ZERO);
@@ -246,8 +251,9 @@ impl<N: Real> Summits<N> {
         is_answer.then(|| placed(top, mix, N::HALF))
     }
 
-    /// Returns the local maximum beyond a face, found by Newton's method from `candidate`; `None`
-    /// if the method is not tried or the maximum may not be the only one.
+    /// Returns the local maximum beyond a face: a known one close to the face, or the result of
+    /// Newton's method from `candidate`. `None` if the method is not tried or does not converge, or
+    /// if the maximum may not be the only one.
     fn beyond(
         &mut self,
         difference: &dyn Difference<N, 3>,
@@ -281,13 +287,15 @@ struct Summit<N: Real> {
 }
 
 impl<N: Real> Summit<N> {
-    /// Returns whether a face with this gap lies at this maximum.
+    /// Returns whether this maximum may be used for `face`, which is close to it; `gap` is the
+    /// distance from the face to its support point.
     fn stands_for(&self, face: &EpaFace<N>, gap: N) -> bool {
         gap <= N::lit(FINE) && -self.top.normal.dot(&face.outward) >= N::lit(SAME_PLACE)
     }
 
-    /// Returns the maximum that Newton's method finds from a face, if its normal is close to the
-    /// face's normal, so that no other maximum lies between them.
+    /// Returns the maximum that Newton's method finds from a face. `None` if the method does not
+    /// converge, or if the maximum's normal is so far from the face's normal that another maximum
+    /// may lie between them.
     fn beside(
         difference: &dyn Difference<N, 3>,
         hull: &Hull<N>,

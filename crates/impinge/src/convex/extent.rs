@@ -6,7 +6,8 @@ use crate::math::{Real, Vector};
 
 /// Returns the two extreme points of a difference along the coordinate axis of its largest extent.
 ///
-/// Their distance along this axis is at least the set's diameter over the square root of `D`.
+/// The distance of the two points along this axis is at least the diameter of the difference over
+/// the square root of `D`.
 pub(super) fn widest_pair<N: Real, const D: usize>(
     difference: &dyn Difference<N, D>,
 ) -> [Vertex<N, D>; 2] {
@@ -34,7 +35,7 @@ pub(super) fn farthest<N: Real, const D: usize>(
     (vertex, outward.dot(&(vertex.point - base)))
 }
 
-/// Returns the candidate with the largest height among some normals, each tried in both directions.
+/// Returns the candidate with the largest height among `normals` and their opposites.
 pub(super) fn best_of<N: Real, const D: usize>(
     difference: &dyn Difference<N, D>,
     normals: &[Vector<N, D>],

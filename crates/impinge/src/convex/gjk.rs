@@ -29,16 +29,18 @@ use crate::math::{Real, Vector, max, unit_or};
 /// A search that ends at the cap is refined from the best normal so far.
 const ROUNDS: usize = 64;
 
-/// A depth, in units of the pair, far larger than rounding errors: 2⁻¹⁰.
+/// Radius of the ball around the origin that proves a certain overlap, in units of the pair: 2⁻¹⁰,
+/// far larger than rounding errors.
 const CLEAR: f64 = 1.0 / 1024.0;
 
-/// How the search ended.
+/// How a search ended.
 enum Outcome {
-    /// The difference is beyond the limit for certain.
+    /// A plane separates the difference from the origin by more than the limit.
     Beyond,
-    /// The difference contains the origin, or its distance is below the rounding error.
+    /// The difference contains the origin, its distance is below the rounding error, or it is NaN.
     Overlap,
-    /// The nearest point is found, or rounding prevents a nearer one.
+    /// The nearest point is found, rounding prevents a nearer one, or the search has reached its
+    /// cap.
     Apart,
     /// A point of the difference is nearer to the origin than `near`.
     Near,
@@ -58,7 +60,8 @@ struct GjkSearch<N: Real, const D: usize> {
     /// Whether the lower bound used is the height of `last`, whose points face each other, not the
     /// height of `best`.
     for_points: bool,
-    /// The search ends with [`Outcome::Near`] at a point nearer to the origin than this.
+    /// The search ends with [`Outcome::Near`] at a point whose distance from the origin is below
+    /// this value; zero for no such end.
     near: N,
 }
 
@@ -70,7 +73,7 @@ pub(super) enum Answer<N: Real, const D: usize> {
 }
 
 /// Returns the separation of the difference from the origin, in units of the pair, searched from
-/// the unit vector `start`; `None` if the distance is above `limit`.
+/// the unit vector `start`; `None` if a plane proves that the distance is above `limit`.
 pub(super) fn solve<N, S, const D: usize>(
     difference: &S,
     start: &Vector<N, D>,
@@ -86,9 +89,9 @@ where
     }
 }
 
-/// Computes [`solve`]. With a `rounding`, the search ends at a certain overlap of the cores
-/// inflated by it (see [`overlaps`]). If the cores are apart, the result equals that of [`solve`]
-/// bit for bit.
+/// Computes [`solve`]. If `rounding`, the sum of both radii, is `Some`, the search ends at a
+/// certain overlap of the inflated cores (see [`overlaps`]). An [`Answer::Signed`] equals the
+/// result of [`solve`] bit for bit.
 pub(super) fn answer<N, S, const D: usize>(
     difference: &S,
     start: &Vector<N, D>,
@@ -134,9 +137,10 @@ fn near<N: Real>(rounding: N) -> N {
     rounding - N::lit(CLEAR)
 }
 
-/// Returns whether the difference inflated by `radius` certainly contains the origin, proved by a
-/// simplex that contains a ball around it, or by a point nearer than the radius. Returns `false`
-/// without a search if the depth along `start` is less than `min_depth`.
+/// Returns whether the difference inflated by `radius` certainly contains the origin. The proof is
+/// a simplex that contains a ball of radius [`CLEAR`] around the origin, or a point nearer to the
+/// origin than `radius − CLEAR`. Returns `false` without a search if the depth along `start` is
+/// less than `min_depth`.
 pub(super) fn overlaps<N, S, const D: usize>(
     difference: &S,
     start: &Vector<N, D>,
@@ -196,8 +200,9 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
     }
 
     /// Returns whether the inflated difference certainly contains a ball around the origin. For
-    /// solids that lie symmetrically, the search from their centres ends with the origin on a
-    /// corner, edge or face of the simplex; a second search from a skew axis avoids this case.
+    /// solids that lie symmetrically, the search along the line of their centres ends with the
+    /// origin on a corner, edge or face of the simplex. A second search from a skew axis avoids
+    /// this case.
     fn clears(&self, difference: &impl Difference<N, D>, radius: N) -> bool {
         self.is_clear() || overlaps(difference, &skew_axis(), radius, N::ZERO)
     }
@@ -302,8 +307,9 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         N::deepest(difference, &self.simplex)
     }
 
-    /// Returns the separation that Newton's method finds from the current normal; `None` unless it
-    /// ends at points whose distance equals the height of the normal.
+    /// Returns the separation that Newton's method finds from the current normal. `None` unless the
+    /// method ends at points whose distance equals the height of the normal, and this height is
+    /// above the rounding error.
     fn polished(&self, difference: &dyn Difference<N, D>) -> Option<Separation<N, D>> {
         let mut best = self.best;
         let mix = polish(difference, &mut best, self.simplex.vertices())?;
@@ -311,8 +317,9 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         is_apart.then(|| placed(&best, &mix, N::HALF))
     }
 
-    /// Returns the separation if the bounds agree. Of several valid normals, the one of the nearest
-    /// point (`last`) is taken only if no points were found that face each other along another.
+    /// Returns the separation if the bounds agree. Of several valid normals, `last`, which belongs
+    /// to the nearest point, is taken only if no points were found that face each other along
+    /// `best`.
     fn final_separation(&self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
         let (mix, mut best) = (Mix::of(&self.simplex), self.best);
         if let Some(polished) = polish(difference, &mut best, self.simplex.vertices()) {
@@ -340,14 +347,14 @@ fn skew_axis<N: Real, const D: usize>() -> Vector<N, D> {
     unit_or(&skew, skew)
 }
 
-/// Returns the gap at which Newton's method is first tried for curved cores; it mostly finds the
-/// answer from there.
+/// Returns the gap at which Newton's method is first tried for curved cores; the method mostly
+/// finds the answer from there.
 fn coarse_gap<N: Real>() -> N {
     max(rough_gap(), N::lit(1.0 / 128.0))
 }
 
-/// Returns the gap at which Newton's method is tried again, and succeeds: 2⁻⁹ in `f32`, 2⁻¹⁹ in
-/// `f64`.
+/// Returns the gap at which Newton's method is tried again, if it failed at [`coarse_gap`]: 2⁻⁹ in
+/// `f32`, 2⁻¹⁹ in `f64`.
 fn rough_gap<N: Real>() -> N {
     N::TWO * tolerance::<N>().sqrt()
 }

@@ -3,15 +3,15 @@
 //! ```text
 //!       a ----- b              a ----- b
 //!       | x  /  |              | \   / |      x: faces that the apex * lies beyond: removed
-//!       |  /  x |     --->     |   *   |      horizon: the sides ab, bc, cd, da of one removed face
-//!       d ----- c              | /   \ |      only; each becomes the face [start, end, apex]
+//!       |  /  x |     --->     |   *   |      horizon: the sides ab, bc, cd, da, each of only one
+//!       d ----- c              | /   \ |      removed face; each becomes [start, end, apex]
 //!                              d ----- c
 //! ```
 //!
-//! Faces have no links to their neighbours. The orientation of a new face follows from that of the
-//! removed ones, never from a sign that rounding could change, so the surface stays closed whatever
-//! faces rounding makes visible. Indices of vertices are `u16`, because the rounds of `epa3` are
-//! capped.
+//! Faces have no links to their neighbours. The orientation of a new face follows from the
+//! orientation of the removed faces, never from a sign that rounding could change. So the surface
+//! stays closed even if rounding makes wrong faces visible. Indices of vertices are `u16`, because
+//! the rounds of `epa3` are capped.
 
 use smallvec::SmallVec;
 
@@ -24,8 +24,8 @@ pub(super) struct EpaFace<N: Real> {
     pub(super) corners: [u16; 3],
     /// Outward unit normal.
     pub(super) outward: Vector<N, 3>,
-    /// Signed distance of the face from the origin, negative if the origin is in front; infinite if
-    /// the face is too thin to have a normal.
+    /// Signed distance of the face's plane from the origin along `outward`, negative if the origin
+    /// is in front of the face; infinite if the face is too thin to have a normal.
     pub(super) offset: N,
     /// Whether `offset` has been set from the height of the face's normal; the face then grows no
     /// more.
@@ -39,7 +39,7 @@ type Horizon = SmallVec<[[u16; 2]; 24]>;
 /// Indices of faces.
 type FaceIndices = SmallVec<[usize; 16]>;
 
-/// A closed polytope inside the difference.
+/// A closed polytope inside the difference, and vertices that belong to no face.
 pub(super) struct Hull<N: Real> {
     vertices: SmallVec<[Vertex<N, 3>; 32]>,
     faces: SmallVec<[EpaFace<N>; 48]>,
@@ -95,14 +95,15 @@ impl<N: Real> Hull<N> {
         faces.map(|face| face.outward)
     }
 
-    /// Sets the offset of a face to `offset`, where the difference is known to end, and marks the
-    /// face as final.
+    /// Sets the offset of a face to `offset`, minus the height of the best normal known for it, and
+    /// marks the face as final.
     pub(super) fn finalize(&mut self, index: usize, offset: N) {
         self.faces[index].offset = offset;
         self.faces[index].is_final = true;
     }
 
-    /// Adds points as vertices without faces; they are only used to mix the points of the answer.
+    /// Adds vertices without faces; these are used only for the points of the answer
+    /// ([`Self::vertices`]).
     pub(super) fn keep(&mut self, vertices: &[Vertex<N, 3>]) {
         self.vertices.extend_from_slice(vertices);
     }
@@ -135,8 +136,8 @@ impl<N: Real> Hull<N> {
         }
     }
 
-    /// Returns the faces other than `from` that a point lies beyond, including faces too thin to
-    /// decide.
+    /// Returns the indices of the faces other than `from` that a point lies beyond, and of those
+    /// too thin to have a normal.
     fn visible(&self, from: usize, vertex: &Vertex<N, 3>) -> FaceIndices {
         let mut visible = FaceIndices::new();
         for (index, face) in self.faces.iter().enumerate() {
@@ -148,13 +149,14 @@ impl<N: Real> Hull<N> {
         visible
     }
 
-    /// Returns whether a face shares a side with the hole's outline.
+    /// Returns whether a face has the reverse of a side of the hole's outline.
     fn adjoins(&self, face: usize, outline: &Horizon) -> bool {
         let [a, b, c] = self.faces[face].corners;
         outline.iter().any(|side| [[b, a], [c, b], [a, c]].contains(side))
     }
 
-    /// Removes a face from the surface: its sides are added to the outline, or cancel against it.
+    /// Removes a face from the surface. Each of its sides is added to the outline, unless the
+    /// outline has the reversed side, which is then removed.
     fn uncover(&self, face: usize, outline: &mut Horizon) {
         let [a, b, c] = self.faces[face].corners;
         for [start, end] in [[a, b], [b, c], [c, a]] {

@@ -21,10 +21,10 @@
 //! an exact power of two. So every tolerance is a plain multiple of the machine epsilon, and
 //! scaling both solids by a power of two scales the result exactly.
 //!
-//! [`gjk`] and `epa` find a normal without a guess. `refine` (support points), `climb` (proximal
-//! points), `newton` and `polish` (curvature) and `side` (the ring of a round side) improve a good
-//! normal; `witness` finds the points that belong to it. Every loop has a cap, and the result at
-//! the cap has a certificate like any other.
+//! [`gjk`], `epa2` and `epa3` find a normal without a good guess. `refine` (support points),
+//! `climb` (proximal points), `newton` and `polish` (curvature) and `side` (the ring of normals of
+//! a round side) improve a good normal; `witness` finds the points of both cores that belong to the
+//! normal. Every loop has a cap, and the result at the cap has a certificate like any other.
 
 mod candidate;
 mod climb;
@@ -67,16 +67,17 @@ use gjk::Answer;
 /// and finite input it is always `Some`. NaN or infinity in the pose gives `None`.
 ///
 /// `distance` is the height of `normal`. Let `s` be the sum of the bounding radii of the cores and
-/// of the distance of their origins. `distance` falls short of the exact value by a few `N::EPSILON
-/// · s` for flat-faced cores and for curved ones that provide their curvature
-/// ([`SupportMap::curved_support`]); for other curved ones by about the larger of that and `2⁻⁴⁰ ·
-/// s`. If a whole ring of normals is nearly as good, as for deep overlaps of nearly coaxial
+/// of the distance of their origins. `distance` falls short of the exact value by a few
+/// `N::EPSILON · s` for flat-faced cores and for curved ones that provide their curvature
+/// ([`SupportMap::curved_support`]); for other curved cores by about the larger of that and
+/// `2⁻⁴⁰ · s`. If a whole ring of normals is nearly as good, as for deep overlaps of nearly coaxial
 /// cylinders or cones, the ring of a round side is searched ([`SupportMap::round_side`]). If there
 /// is no round side, and all normals nearby are about as good, as in the middle of a ball, a local
 /// search gives the result; then `distance` may fall short by more. The points lie on the cores to
-/// the same accuracy; on curved cores without curvature to about its square root at worst. Among
-/// equally good normals, as for coincident centres, the choice is deterministic. Cores that are
-/// single coincident points have no direction: the first axis is taken.
+/// the same accuracy; on curved cores that do not provide their curvature, to about the square root
+/// of that accuracy at worst. Among equally good normals, as for coincident centres, the choice is
+/// deterministic. Two cores that are single coincident points define no direction; the normal is
+/// then the first axis.
 ///
 /// Cost: about ten support points of each solid if the cores are apart, a few dozen if they
 /// overlap, some hundreds at most.
@@ -156,8 +157,8 @@ where
 /// the radius of that ball. `false` proves nothing; it is also returned if the depth along the line
 /// of the centres is less than `min_depth`, in units of the pair.
 ///
-/// If the result is `true`, [`separation`] returns a negative distance. Cost: the support points
-/// until a separating plane or such a simplex is found, about four.
+/// If the result is `true`, [`separation`] returns a negative distance. Cost: about four support
+/// points of each solid, until a separating plane or such a simplex is found.
 pub(crate) fn overlap<N, A, B, const D: usize>(
     a: &A,
     b: &B,
@@ -174,8 +175,8 @@ where
     gjk::overlaps(&pair, &pair.start(), radius, min_depth)
 }
 
-/// Returns the distance of [`separation`], or zero if a certain overlap, as defined by [`overlap`],
-/// is found during the search.
+/// Returns the `distance` of [`separation`], `None` if that is `None`, or zero if a certain
+/// overlap, as defined by [`overlap`], is found during the search.
 pub(crate) fn distance<N, A, B, const D: usize>(
     a: &A,
     b: &B,
@@ -190,8 +191,8 @@ where
     distance_of_pair(&CorePair::new(a, b, pose12)?, [a.rounding(), b.rounding()], limit)
 }
 
-/// Returns the distance of [`flat_separation`], or zero if a certain overlap, as defined by
-/// [`overlap`], is found during the search.
+/// Returns the `distance` of [`flat_separation`] along the line of the centres, `None` if that is
+/// `None`, or zero if a certain overlap, as defined by [`overlap`], is found during the search.
 pub(crate) fn flat_distance<N, A, B, const D: usize>(
     a: &A,
     b: &B,
@@ -207,8 +208,8 @@ where
     distance_of_pair(&pair, [a.rounding(), b.rounding()], limit)
 }
 
-/// Returns the distance of [`separation_by`], or zero if a certain overlap, as defined by
-/// [`overlap`], is found during the search.
+/// Returns the `distance` of [`separation_by`], `None` if that is `None`, or zero if a certain
+/// overlap, as defined by [`overlap`], is found during the search.
 pub(crate) fn distance_by<N, A, B, const D: usize>(
     a: &A,
     b: &B,

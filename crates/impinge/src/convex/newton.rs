@@ -5,16 +5,17 @@ use super::difference::{Difference, rounding_error};
 use super::simplex::Simplicial;
 use crate::math::{Vector, unit};
 
-/// Cap on the number of steps; after the other iterations one or two are enough.
+/// Cap on the number of steps. From the normals that the other iterations find, one or two steps
+/// usually suffice.
 const STEPS: usize = 6;
 
-/// Runs Newton's method on the sphere of normals, raising `best`. Returns whether it ended at a
-/// normal along which the two support points face each other.
+/// Runs Newton's method on the sphere of normals, raising `best`. Returns whether the method ended
+/// at a normal along which the two support points face each other, up to 64 rounding errors.
 ///
 /// The height of a normal `n` is `n·w` for its lowest point `w`, so the slope of the height is the
-/// part of `w` perpendicular to `n`, which is zero at the maximum. A step is accepted only if the
-/// height does not fall beyond rounding and the slope at least halves: at kinks of the height (flat
-/// faces, sharp edges) steps are rejected, and `best` stays.
+/// part of `w` perpendicular to `n`. At the maximum, this slope is zero. A step is accepted only if
+/// the height does not fall beyond rounding and the slope at least halves: at kinks of the height
+/// (flat faces, sharp edges) steps are rejected, and `best` stays.
 pub(super) fn converges<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &mut SupportCandidate<N, D>,
@@ -45,7 +46,7 @@ fn across<N: Simplicial<D>, const D: usize>(v: &Vector<N, D>, n: &Vector<N, D>) 
 
 /// Returns the step that makes the slope zero, by conjugate gradients (M. Hestenes and E. Stiefel,
 /// 1952). There are `D − 1` directions perpendicular to a normal, so `D − 1` rounds give the exact
-/// step. `None` if the height is not concave.
+/// step, up to rounding. `None` if the height is not concave at `best`.
 fn step<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,

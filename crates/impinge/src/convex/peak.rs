@@ -1,4 +1,4 @@
-//! The best normal of an overlap, for callers that know the possible normals.
+//! The best normal of two overlapping cores, for pairs whose possible normals are known.
 
 use smallvec::SmallVec;
 
@@ -16,13 +16,14 @@ pub(crate) struct Peak<N: Real, const D: usize> {
     /// Unit vector from the first core to the second. No other normal has a height larger by more
     /// than the requested gap.
     pub(crate) normal: Vector<N, D>,
-    /// Whether it is the normal of a flat face, so that no normal near it is slightly better.
+    /// Whether `normal` is the normal of a flat face, so that no normal close to it is slightly
+    /// better.
     pub(crate) is_exact: bool,
-    /// Whether it belongs to the ring of normals of a round side, where another normal may be
+    /// Whether `normal` belongs to the ring of normals of a round side, where another normal may be
     /// slightly better.
     pub(crate) is_ring: bool,
-    /// Points of the first core. A weighted mean of them faces a weighted mean of `on2` along the
-    /// normal.
+    /// Points of the first core. Some weighted mean of these points faces some weighted mean of
+    /// `on2` along `normal`.
     pub(crate) on1: SmallVec<[Vector<N, D>; 8]>,
     /// Points of the second core.
     pub(crate) on2: SmallVec<[Vector<N, D>; 8]>,
@@ -35,7 +36,8 @@ pub(crate) trait Peaks<N: Real, const D: usize> {
     fn best(&self, shrink: N, gap: N) -> Option<Peak<N, D>>;
 }
 
-/// Returns the separation along the normal of `peak`, polished unless that is exact.
+/// Returns the separation along the normal of `peak`, which Newton's method refines unless it is
+/// exact.
 pub(super) fn at_peak<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     peak: &Peak<N, D>,

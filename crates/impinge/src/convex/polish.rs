@@ -9,8 +9,8 @@
 //! face each other along the normal: `Σ w b − Σ u a = λ n`, with weights that are not negative and
 //! sum to one. The derivatives with respect to `n`, the weights and `λ` give linear equations for a
 //! step. Combining active sets and curvature in this way is the VU-decomposition of C. Lemaréchal,
-//! F. Oustry and C. Sagastizábal, "The U-Lagrangian of a Convex Function" (2000). The normal after
-//! a step is accepted only by its height, as everywhere in this module.
+//! F. Oustry and C. Sagastizábal, "The U-Lagrangian of a Convex Function" (2000). Only the height
+//! of the normal after a step decides whether it is accepted, as everywhere in this module.
 
 use smallvec::SmallVec;
 
@@ -20,10 +20,10 @@ use super::simplex::Simplicial;
 use super::witness::Mix;
 use crate::math::{Mapped, Real, Vector, max, min, unit};
 
-/// Cap on the steps. A normal with an error of about the fourth root of epsilon takes two, and one
-/// for each point that becomes active or inactive. Along a ring of equally good normals, as for
-/// solids with almost the same axis, long steps leave the ring and the next ones return to it: up
-/// to twenty.
+/// Cap on the steps. A normal with an error of about the fourth root of epsilon takes two steps,
+/// and one more for each point that becomes active or inactive. Along a ring of equally good
+/// normals, as for solids with almost the same axis, long steps leave the ring and the next steps
+/// return to it: up to twenty.
 const STEPS: usize = 24;
 /// Largest distance by which an active point may be less extreme than the most extreme one, along a
 /// normal that is not yet polished: in units of the square root of the tolerance, which is the
@@ -31,8 +31,8 @@ const STEPS: usize = 24;
 const SLACK: f64 = 8.0;
 /// Length of the longest step; Newton's method does not converge from farther away.
 const LONGEST: f64 = 0.25;
-/// Largest number of equations, in 3D: those of the step, and one for the weight of each active
-/// point but the first of each core.
+/// Largest number of equations, in 3D: three for the step, and one for the weight of each active
+/// point except the first of each core.
 const ROWS: usize = 5;
 /// Number of columns: one for each unknown, and one for the right side.
 const COLUMNS: usize = ROWS + 1;
@@ -44,13 +44,13 @@ struct ActiveSet<N: Real, const D: usize> {
     weights: SmallVec<[N; 4]>,
 }
 
-/// Raises the height of `best`, given points of the difference that are lowest along it, or nearly
-/// so. Returns the points that face each other along the normal, if they were found; they are as
-/// accurate as the normal before the last step. `best` may be improved even if the result is
-/// `None`.
+/// Raises the height of `best` by Newton's method; `vertices` are points of the difference that are
+/// lowest along its normal, or nearly so. Returns the points that face each other along the normal,
+/// as accurate as the normal before the last step; `None` if they were not found. `best` may be
+/// improved even if the result is `None`.
 ///
-/// Does nothing for flat cores. A point that the next normal finds beyond the active points becomes
-/// active; a point with a negative weight becomes inactive.
+/// Returns `None` for flat cores. A support point of the next normal that lies beyond the active
+/// points becomes active; a point with a negative weight becomes inactive.
 pub(super) fn polish<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &mut SupportCandidate<N, D>,
@@ -87,8 +87,8 @@ pub(super) fn polish<N: Simplicial<D>, const D: usize>(
             if mix.meets(best) {
                 return Some(mix);
             }
-            // A rim point moves fast if the normal is close to the rim's axis, so it takes one more
-            // step.
+            // A rim point moves fast if the normal is close to the rim's axis. So further steps are
+            // made as long as they get shorter.
             if squared >= left {
                 return None;
             }
@@ -98,8 +98,8 @@ pub(super) fn polish<N: Simplicial<D>, const D: usize>(
     None
 }
 
-/// Replaces `best` by the exact normal of a round face close to it if that is better. At such a
-/// normal the height has a maximum without a derivative.
+/// Replaces `best` by the exact normal of a round face close to it if that normal has a larger
+/// height. At such a normal the height has a maximum without a derivative.
 fn try_round_faces<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &mut SupportCandidate<N, D>,
@@ -123,7 +123,8 @@ pub(super) fn lowest<N: Simplicial<D>, const D: usize>(
     vertices.iter().filter(|vertex| height(vertex) <= least + slack).copied().collect()
 }
 
-/// Finds the active points of both cores; `None` if all are corners, or if an extent is not finite.
+/// Finds the active points of both cores; `None` if all are corners, or if a core has none because
+/// coordinates are NaN.
 fn activate<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,
@@ -183,7 +184,7 @@ impl<N: Simplicial<D>, const D: usize> ActiveSet<N, D> {
         Self { branches: SmallVec::new(), weights: SmallVec::new() }
     }
 
-    /// Adds a point unless it is already active.
+    /// Adds an active point unless there already is one at the same position.
     fn insert(&mut self, branch: Branch<N, D>) {
         if !self.branches.iter().any(|known| known.on == branch.on) {
             self.branches.push(branch);
@@ -196,7 +197,7 @@ impl<N: Simplicial<D>, const D: usize> ActiveSet<N, D> {
         self.weights.resize(self.branches.len(), share);
     }
 
-    /// Moves the points to where they are extreme along another normal.
+    /// Moves the active points to where they are extreme along `normal`.
     fn turn(&mut self, difference: &dyn Difference<N, D>, normal: &Vector<N, D>) {
         for branch in &mut self.branches {
             *branch = difference.branch(branch.is_second, &branch.on, normal);
@@ -220,7 +221,7 @@ impl<N: Simplicial<D>, const D: usize> ActiveSet<N, D> {
         }
     }
 
-    /// Returns the vectors from the first point to each of the others.
+    /// Returns the vectors from the first active point to each further active point.
     fn directions(&self) -> impl Iterator<Item = Vector<N, D>> {
         self.branches[1..].iter().map(|branch| branch.on - self.branches[0].on)
     }

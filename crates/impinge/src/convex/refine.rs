@@ -12,17 +12,19 @@ pub(super) type Bundle<N, const D: usize> = SmallVec<[Vertex<N, D>; 16]>;
 
 /// Cap on the number of support points computed.
 const ROUNDS: usize = 40;
-/// Largest number of points in the bundle; if there are more, the highest along the best normal are
-/// dropped.
+/// Largest number of points in the bundle; if there are more, the points that are highest along the
+/// best normal are dropped.
 const KEPT: usize = 8;
 
-/// Raises the height of `best` to the maximum, for a difference that does not contain the origin.
+/// Raises the height of `best` to the maximum, or until [`ROUNDS`] support points are computed, for
+/// a difference that does not contain the origin.
 ///
 /// The height of a normal over a few support points is at least its height over the whole set. So
-/// the best normal over the bundle is computed, among the normals of its points, edges and facets,
-/// and its support point is added, until both heights agree. This is the cutting-plane method of J.
-/// Kelley (1960) on the sphere of normals. It finds the global maximum only if the set does not
-/// contain the origin. All points found are added to `support_points`.
+/// the normal with the largest height over the bundle is computed, among the normals of its points,
+/// edges and facets. The support point of this normal is added to the bundle, until its heights
+/// over the bundle and over the set agree. This is the cutting-plane method of J. Kelley (1960) on
+/// the sphere of normals. The method finds the global maximum only if the set does not contain the
+/// origin. All points found are added to `support_points`.
 pub(super) fn refine<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     support_points: &mut Bundle<N, D>,
@@ -46,7 +48,8 @@ pub(super) fn refine<N: Simplicial<D>, const D: usize>(
     }
 }
 
-/// Returns the unit vector with the largest height over the bundle, and that height.
+/// Returns the unit vector with the largest height over the bundle, and that height; `around` and
+/// `-N::MAX` if no point, edge or facet of the bundle has a normal.
 fn most_promising<N: Simplicial<D>, const D: usize>(
     bundle: &Bundle<N, D>,
     around: &Vector<N, D>,

@@ -1,4 +1,4 @@
-//! The separation of a pair, from which all other results about it follow.
+//! The separation of a pair of solids, from which all other results for the pair are computed.
 
 use crate::math::{Point, Pose, Real, Vector};
 

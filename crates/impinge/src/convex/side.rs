@@ -1,11 +1,12 @@
-//! Finds the best normal among the ring of normals of a round side.
+//! Finds the best normal in the ring of normals of a round side.
 //!
 //! If the axes of two solids nearly coincide, or a small solid is near the axis of a large one, a
-//! whole ring of normals has about the same height. A growing polytope does not find the best of
-//! them before its cap, and a local search makes tiny steps. If two solids have exactly the same
-//! axis, the problem is one of two polygons in a half-plane through the axis: the best normal is
-//! that of an edge, and rotated about the axis it forms the ring of a round side. So the ring of
-//! each side is searched: the height is a function of one angle with few maxima.
+//! whole ring of normals has about the same height. A growing polytope does not find the best
+//! normal of the ring before its cap, and a local search makes tiny steps. If two solids have
+//! exactly the same axis, the problem is one of two polygons in a half-plane through the axis: the
+//! best normal is the normal of an edge of one polygon. Rotated about the axis, this normal forms
+//! the ring of a round side. So the ring of each side is searched: the height is a function of one
+//! angle with few maxima.
 
 use smallvec::SmallVec;
 
@@ -22,8 +23,8 @@ const SAMPLES: usize = 16;
 const PITCH: f64 = core::f64::consts::TAU / 16.0;
 /// Cap on the number of maxima that are searched.
 const TOPS: usize = 3;
-/// Largest difference between the components along the axis of a normal and of the side's normals
-/// at which the ring is searched.
+/// Largest difference between the component of a normal along the axis and that of the side's
+/// normals at which the ring is searched.
 const NEAR: f64 = 1.0 / 16.0;
 /// Largest difference between the heights of opposite normals of a ring at which the ring is
 /// searched, in units of the pair.
@@ -33,8 +34,8 @@ const GOLDEN: f64 = 0.618_033_988_749_894_8;
 /// Cap on the steps of the golden section: 43 steps shrink an interval to 1e-9 of its length.
 const STEPS: usize = 43;
 
-/// A polished normal of a ring with a larger height than the known one, and the points that are
-/// lowest along it, or nearly so.
+/// A refined normal of a ring whose height is larger than the height of the known normal, and
+/// points that are lowest along it, or nearly so.
 pub(super) struct Better<N: Real> {
     pub(super) best: SupportCandidate<N, 3>,
     pub(super) mix: Option<Mix<N, 3>>,
@@ -66,7 +67,7 @@ struct NormalRing<N: Real> {
     axis: Vector<N, 3>,
     /// Component of the normals along the axis.
     rise: N,
-    /// Unit vectors perpendicular to the axis and to each other.
+    /// Unit vectors perpendicular to the axis and to each other; `from` is at angle zero.
     from: Vector<N, 3>,
     aside: Vector<N, 3>,
 }
@@ -97,7 +98,7 @@ impl<N: Real> NormalRing<N> {
     }
 
     /// Returns whether the height of the opposite normal is close to `height`, the height at angle
-    /// zero. If it is not, the heights vary enough to find the best normal without the ring.
+    /// zero. If the heights differ more, they vary enough to find the best normal without the ring.
     fn is_even(&self, difference: &dyn Difference<N, 3>, height: N) -> bool {
         height - self.height(difference, N::lit(core::f64::consts::PI)) <= N::lit(MAX_UNEVENNESS)
     }
@@ -123,7 +124,7 @@ impl<N: Real> NormalRing<N> {
     }
 
     /// Returns the angles of the samples that are no lower than both neighbours; if there are more
-    /// than `TOPS`, those of the highest.
+    /// than `TOPS`, the angles of the highest samples.
     fn tops(&self, difference: &dyn Difference<N, 3>) -> SmallVec<[N; TOPS]> {
         let mut next = N::ZERO;
         let samples: [(N, N); SAMPLES] = filled(|_| {
@@ -145,8 +146,8 @@ impl<N: Real> NormalRing<N> {
         highest
     }
 
-    /// Returns the ring with angles measured from its highest normal between the two neighbouring
-    /// samples, found by golden section.
+    /// Returns the ring with angles measured from its highest normal within `PITCH` of angle zero,
+    /// found by golden section.
     fn risen(&self, difference: &dyn Difference<N, 3>) -> Option<Self> {
         let (mut low, mut high) = (-N::lit(PITCH), N::lit(PITCH));
         let inner = |low: N, high: N| {
@@ -169,8 +170,9 @@ impl<N: Real> NormalRing<N> {
         self.rotated(if heights[0] >= heights[1] { left } else { right })
     }
 
-    /// Polishes the normal at angle zero by Newton's method, over the points that are lowest along
-    /// normals on all sides of it.
+    /// Refines the normal at angle zero by Newton's method, with the points that are lowest along
+    /// four normals around it. If the method does not converge, uses [`climb`] instead, and `mix`
+    /// is `None`.
     fn polished(
         &self,
         difference: &dyn Difference<N, 3>,

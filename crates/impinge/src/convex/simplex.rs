@@ -27,17 +27,17 @@ pub(crate) trait Simplicial<const D: usize>: Real {
     /// Returns the point of the hull of one to `D + 1` points that is nearest to the origin.
     fn nearest(points: &[Vector<Self, D>]) -> NearestOfSimplex<Self, D>;
 
-    /// Returns whether all facets of `D + 1` points are farther from the origin than `radius`. If
-    /// the points enclose the origin, they then contain a ball of that radius around it. `false`
-    /// for fewer points.
+    /// Returns whether the planes (lines in 2D) of all facets of `D + 1` points are farther from
+    /// the origin than `radius`. If the hull of the points contains the origin, it then contains a
+    /// ball of that radius around the origin. `false` for fewer points.
     fn clears(points: &[Vector<Self, D>], radius: Self) -> bool;
 
-    /// Calls `visit` with a normal of the facet through each choice of `D` of the points; it need
-    /// not have unit length.
+    /// Calls `visit` with a normal of the facet through each choice of `D` of the points. The
+    /// normal may have any length; it is zero for a facet without extent.
     fn visit_facets(points: &[Vector<Self, D>], visit: &mut dyn FnMut(&Vector<Self, D>));
 
     /// Returns the separation of a difference that contains the origin, or misses it only by
-    /// rounding. `simplex` is the last simplex of the search.
+    /// rounding. `simplex` is the last simplex of GJK.
     fn deepest(
         difference: &dyn Difference<Self, D>,
         simplex: &Simplex<Self, D>,
@@ -53,9 +53,9 @@ pub(crate) struct NearestOfSimplex<N: Real, const D: usize> {
     /// Squared length of `point`.
     pub(super) squared: N,
     /// Barycentric weights of the corners: not negative, with sum 1, and zero for corners outside
-    /// the feature.
+    /// the feature that `point` lies on.
     pub(super) weights: [N; 4],
-    /// Whether the origin lies in the interior; `point` is then zero.
+    /// Whether the origin lies in the interior of the simplex; `point` is then zero.
     pub(super) enclosed: bool,
 }
 
@@ -64,7 +64,8 @@ impl<N: Real, const D: usize> NearestOfSimplex<N, D> {
         Self { point, squared: point.norm_squared(), weights, enclosed: false }
     }
 
-    /// Returns the result if the origin is inside, with these weights.
+    /// Returns the result for an origin inside the simplex, which has the barycentric coordinates
+    /// `weights`.
     pub(super) fn enclosed(weights: [N; 4]) -> Self {
         Self { enclosed: true, ..Self::new(Vector::<N, D>::zeros(), weights) }
     }
@@ -81,7 +82,7 @@ impl<N: Real, const D: usize> NearestOfSimplex<N, D> {
         corners.iter().all(|&corner| self.weights[corner] > N::ZERO)
     }
 
-    /// Returns the nearer of two results, `self` in a tie.
+    /// Returns the nearer of two results; `self` in a tie, and if `other` is `None`.
     pub(super) fn or_nearer(self, other: Option<Self>) -> Self {
         match other {
             Some(other) if other.squared < self.squared => other,
@@ -90,9 +91,9 @@ impl<N: Real, const D: usize> NearestOfSimplex<N, D> {
     }
 }
 
-/// Returns the point nearest to the origin of the segment between the corners `i` and `j`.
+/// Returns the point nearest to the origin on the segment between the corners `i` and `j`.
 ///
-/// Ends closer to each other than `rounding_error` count as one.
+/// If the ends are closer to each other than `rounding_error`, returns the nearer end.
 pub(super) fn nearest_on_segment<N: Real, const D: usize>(
     points: &[Vector<N, D>],
     [i, j]: [usize; 2],
@@ -140,12 +141,13 @@ impl<N: Simplicial<D>, const D: usize> Simplex<N, D> {
         Self { vertices: [vertex; 4], points: [vertex.point, zero, zero, zero], weights, len: 1 }
     }
 
-    /// Returns the vertices: points with the points of the cores that they come from.
+    /// Returns the vertices: points of the difference, and the points of both cores that they come
+    /// from.
     pub(super) fn vertices(&self) -> &[Vertex<N, D>] {
         &self.vertices[..self.len]
     }
 
-    /// Returns the points.
+    /// Returns the points of the difference, without the points of the cores.
     pub(super) fn points(&self) -> &[Vector<N, D>] {
         &self.points[..self.len]
     }

@@ -5,7 +5,7 @@ use crate::math::{Real, Vector, unit};
 /// Unit of length in which the size of a pair is about 1: a power of two, so that scaling is exact.
 ///
 /// The unit is at most the sum of both bounding radii and the distance of the origins, and more
-/// than half of that sum.
+/// than half of that sum. If the sum is zero, the unit is 4.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Units<N> {
     /// The length of one unit.
@@ -15,7 +15,8 @@ pub(crate) struct Units<N> {
 }
 
 impl<N: Real> Units<N> {
-    /// Returns the unit of two solids with these bounding radii, the second at `translation`.
+    /// Returns the unit of two solids with the bounding radii `reach1` and `reach2`. `translation`
+    /// is the vector from the origin of the first to the origin of the second.
     pub(crate) fn of<const D: usize>(reach1: N, reach2: N, translation: &Vector<N, D>) -> Self {
         // All lengths are divided by 4, because the sum of finite lengths must not overflow.
         let quarter = N::HALF * N::HALF;

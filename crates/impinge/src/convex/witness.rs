@@ -1,10 +1,11 @@
 //! Finds the points of the two cores that belong to a normal and its height.
 //!
 //! A mix (weighted mean) of points of the difference is the difference of the mixes of the core
-//! points that they come from. These lie in the cores, which are convex. If the mix is the point
-//! `height · normal`, both core points lie on the supporting planes of the normal: no mixed point
-//! is lower than the height, so none is higher either. So the error is the distance of the mix from
-//! that point.
+//! points that they come from. These mixes lie in the cores, because the cores are convex. No point
+//! of the difference is lower along the normal than `height`. If the mix is the point
+//! `height · normal`, each point that has a weight lies at exactly this height, so both core points
+//! lie on the supporting planes of the normal. The error of a mix is therefore its distance from
+//! `height · normal`.
 
 use super::Separation;
 use super::candidate::SupportCandidate;
@@ -13,12 +14,12 @@ use super::gjk::nearest_simplex;
 use super::simplex::{Simplex, Simplicial};
 use crate::math::{Point, Real, Vector, max, unit};
 
-/// Cap on the number of vertices that are added to a mix.
+/// Cap on the number of vertices that [`mix`] adds.
 const ROUNDS: usize = 32;
 /// Cap on the number of nearest-point searches in [`search`].
 const SEARCHES: usize = 16;
 
-/// A point of each core, both mixed from core points with the same weights.
+/// A point of each core, which is a weighted mean of other points of that core.
 #[derive(Clone, Copy)]
 pub(super) struct Mix<N: Real, const D: usize> {
     on1: Vector<N, D>,
@@ -26,12 +27,12 @@ pub(super) struct Mix<N: Real, const D: usize> {
 }
 
 impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
-    /// Creates the mix with these points.
+    /// Creates the mix with the point `on1` of the first core and `on2` of the second.
     pub(super) fn new(on1: Vector<N, D>, on2: Vector<N, D>) -> Self {
         Self { on1, on2 }
     }
 
-    /// Mixes the vertices of a simplex with its weights.
+    /// Mixes the core points of the vertices of a simplex with its weights.
     pub(super) fn of(simplex: &Simplex<N, D>) -> Self {
         Self::by(simplex, simplex.weights())
     }
@@ -46,7 +47,7 @@ impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
         Self { on1, on2 }
     }
 
-    /// Returns the mix nearest to `height · normal` over the hull of up to `D + 1` vertices.
+    /// Returns the mix of up to `D + 1` vertices that is nearest to `height · normal` of `best`.
     pub(super) fn nearest(best: &SupportCandidate<N, D>, vertices: &[Vertex<N, D>]) -> Self {
         let target = best.normal * best.height;
         let moved = |vertex: &Vertex<N, D>| moved(vertex, &target);
@@ -55,9 +56,9 @@ impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
         Self::by(&simplex, &N::nearest(simplex.points()).weights)
     }
 
-    /// Returns the mix nearest to the target over the facets of a simplex, or `best` if that is
-    /// nearer. If the volume of a simplex is mostly rounding error, its weights are poor, but its
-    /// facets come as near.
+    /// Returns the mix nearest to `target` over the facets of a simplex, or `best` if that is
+    /// nearer. If the volume of a simplex is mostly rounding error, its weights are poor, but the
+    /// weights of one of its facets give a mix as near.
     fn of_facets(simplex: &Simplex<N, D>, mut best: Self, target: &Vector<N, D>) -> Self {
         for dropped in 0..=D {
             let mut kept = [N::ONE; 4];
@@ -77,17 +78,17 @@ impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
         (self.on2 - self.on1 - target).norm_squared()
     }
 
-    /// Returns whether the points face each other along the normal and lie on the supporting
-    /// planes, up to rounding.
+    /// Returns whether the points face each other along the normal of `best` and lie on its
+    /// supporting planes, up to rounding.
     pub(super) fn meets(&self, best: &SupportCandidate<N, D>) -> bool {
         let slack = N::TWO * rounding_error();
         self.miss(&(best.normal * best.height)) <= slack * slack
     }
 }
 
-/// Returns the separation, in units of the pair, with the points of `mix`. They are moved onto the
-/// supporting planes, and perpendicular to the normal until they face each other exactly: the first
-/// point by `share` of the offset, the second by the rest.
+/// Returns the separation, in units of the pair, with the points of `mix`. These points are moved
+/// onto the supporting planes, and perpendicular to the normal until they face each other exactly:
+/// the first point by `share` of the offset, the second by the rest.
 pub(super) fn placed<N: Simplicial<D>, const D: usize>(
     best: &SupportCandidate<N, D>,
     mix: &Mix<N, D>,
@@ -105,7 +106,8 @@ pub(super) fn placed<N: Simplicial<D>, const D: usize>(
 }
 
 /// Returns the fraction of the offset between the two points, perpendicular to the normal, by which
-/// the first point is moved; the second is moved by the rest.
+/// the first point is moved; the second is moved by the rest. One half if neither point would leave
+/// its core, or if there is no offset.
 ///
 /// A point of a curved surface may be moved, because it leaves the surface only by the square of
 /// the distance. A point of an edge must stay. The supporting planes in a direction halfway between
@@ -134,8 +136,8 @@ fn share<N: Simplicial<D>, const D: usize>(
     }
 }
 
-/// Returns the separation with the points of `mix` if they fit; else with a mix of `vertices` or,
-/// if that does not fit either, with the points that [`search`] finds.
+/// Returns the separation with the points of `mix` if [`Mix::meets`] returns `true` for it; else
+/// the result of [`locate`].
 pub(super) fn finish<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,
@@ -148,8 +150,8 @@ pub(super) fn finish<N: Simplicial<D>, const D: usize>(
     locate(difference, best, vertices)
 }
 
-/// Returns the separation with a mix of `vertices` or, if that does not fit, with the points that
-/// [`search`] finds.
+/// Returns the separation with the mix of `vertices` nearest to `height · normal` or, if
+/// [`Mix::meets`] returns `false` for that mix, with the points that [`search`] finds.
 pub(super) fn locate<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,
@@ -159,8 +161,8 @@ pub(super) fn locate<N: Simplicial<D>, const D: usize>(
     if mix.meets(best) { placed(best, &mix, N::HALF) } else { search(difference, best, &mix) }
 }
 
-/// Returns the separation with the points of further searches, or with those of `mix` if they fit
-/// better.
+/// Returns the separation with the points that up to [`SEARCHES`] runs of GJK find, or with the
+/// points of `mix` if their error is smaller.
 ///
 /// The difference is moved along the normal until it is well away from the origin. Its nearest
 /// point is then a mix of points that are lowest along the normal. If the normal is slightly wrong,
@@ -231,7 +233,7 @@ fn mix<N: Simplicial<D>, const D: usize>(
     best
 }
 
-/// Returns a vertex whose point is relative to `target`; the core points stay.
+/// Returns a vertex with its point translated by `-target`; its core points are unchanged.
 fn moved<N: Simplicial<D>, const D: usize>(
     vertex: &Vertex<N, D>,
     target: &Vector<N, D>,
@@ -254,7 +256,7 @@ fn nearest_to<'a, N: Simplicial<D>, const D: usize>(
     best
 }
 
-/// Returns the vertex lowest along a direction; `None` without a finite height.
+/// Returns the vertex lowest along a direction; `None` if all heights are NaN or plus infinity.
 fn lowest_along<'a, N: Simplicial<D>, const D: usize>(
     direction: &Vector<N, D>,
     vertices: &'a [Vertex<N, D>],

@@ -83,7 +83,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
     }
 
     /// Returns the drawing with the function `color`, which returns the colour of an object from
-    /// its handle. If it returns `None`, the object has the colour of the style.
+    /// its handle. If `color` returns `None`, the object has the colour of the style.
     ///
     /// ```
     /// use impinge::debug_render::{Color, DebugDrawing, DebugOptions};

@@ -24,8 +24,9 @@ struct Inflation<'a, N: Real> {
 }
 
 /// Adds the surface of a polyhedron inflated by a radius, with the outlines of its faces and the
-/// arcs at the ends of its edges. Returns `false` and adds nothing if a side does not belong to
-/// exactly two faces, or if a corner is too sharp (see [`middle_of`]).
+/// arcs at the ends of its edges. Returns `false` and adds nothing if there is no face, if a side
+/// has the length zero or does not belong to exactly two faces, or if a corner is too sharp (see
+/// [`middle_of`]).
 pub(super) fn inflated<N: Real>(
     sketch: &mut Sketch<N, 3>,
     faces: &[Feature<N, 3>],
@@ -102,7 +103,8 @@ impl<N: Real> Inflation<'_, N> {
         corner + direction * self.radius
     }
 
-    /// Returns the other face that has a side; `None` if there is none.
+    /// Returns the index of the face beyond a side of a face: the face that has the reverse of the
+    /// side. `None` if no face has it.
     fn beyond(&self, [a, b]: [Point<N, 3>; 2]) -> Option<usize> {
         self.face_of_side.get(&[bits(b), bits(a)]).copied()
     }
@@ -172,7 +174,7 @@ impl<N: Real> Inflation<'_, N> {
     }
 
     /// Returns the directions around the start point of a side of the face `start`, clockwise seen
-    /// from outside. In each step it moves to the face beyond the side that leaves the corner.
+    /// from outside. Each step moves to the face beyond the side that leaves the corner.
     fn directions_around(&self, start: usize, side: [Point<N, 3>; 2]) -> Vec<Vector<N, 3>> {
         let (mut face, mut side, mut around) = (start, side, Vec::new());
         for _ in 0..self.face_of_side.len() {
@@ -191,8 +193,8 @@ impl<N: Real> Inflation<'_, N> {
         around
     }
 
-    /// Returns [`Self::arc`], computed from the face with the lower index. So its bits equal the
-    /// bits that the cylinder patch uses.
+    /// Returns [`Self::arc`], computed from the face with the lower index. So the directions are
+    /// bitwise equal to the directions of the cylinder patch.
     fn ordered_arc(&self, face: usize, [a, b]: [Point<N, 3>; 2]) -> Vec<Vector<N, 3>> {
         match self.beyond([a, b]) {
             Some(other) if other < face => self.arc(other, [b, a]).into_iter().rev().collect(),

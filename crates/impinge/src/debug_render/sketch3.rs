@@ -84,7 +84,8 @@ fn great_circles<N: Real>(sketch: &mut Sketch<N, 3>, at: impl Fn(&Vector<N, 3>) 
 }
 
 /// Adds the outlines of a tapered capsule in two planes through its axis, and the circles where its
-/// side touches the balls at its ends.
+/// side touches the balls at its ends. If one ball contains the other, adds a great circle of the
+/// larger ball instead.
 fn round_ends<N: Real>(sketch: &mut Sketch<N, 3>, capsule: &TaperedCapsule<N, 3>) {
     let (parts, center) = (sketch.parts_of_turn(), capsule.segment().center());
     let axis = unit_or(&(capsule.segment().b() - capsule.segment().a()), Vector::<N, 3>::y());

@@ -1,9 +1,9 @@
 //! The names that common programs need, for a glob import: the world and its events, the shapes,
 //! vectors and poses, and the queries of two shapes, in 2D.
 //!
-//! A name that you define or import takes precedence over one of a glob import. All other names are
-//! in the other modules of this dimension. Import only one prelude in a file, of `dim2` or of
-//! `dim3`, since their names are equal.
+//! A name that you define or import by itself takes precedence over a name from a glob import. All
+//! other names are in the other modules of `dim2`. In one file, import the prelude of `dim2` or of
+//! `dim3`, not both: they define the same names.
 //!
 //! ```
 //! use impinge::dim2::prelude::*;

@@ -1,9 +1,9 @@
-//! The trait of pair filters with the dimension filled in.
+//! The trait [`BroadPhasePairFilter`] for 3D.
 
 use super::world::CollisionObject;
 use crate::math::Real;
 
-/// A filter that decides which pairs of objects may exist; see
+/// A filter that decides which pairs of objects may interact; see
 /// [`crate::world::BroadPhasePairFilter`].
 ///
 /// Closures that take two references to objects and return a `bool` implement this trait.

@@ -1,8 +1,8 @@
-//! 3D: every name of the library with the dimension filled in.
+//! The names of the library for 3D.
 //!
-//! A type here is the generic type of the same name at the crate's root with `D` = 3:
-//! `dim3::world::CollisionWorld<N, T>` is `world::CollisionWorld<N, 3, T>`. The module [`prelude`]
-//! re-exports the names that common programs need.
+//! Most types here are aliases of the generic type of the same name at the crate's root, with `D` =
+//! 3: `dim3::world::CollisionWorld<N, T>` is `world::CollisionWorld<N, 3, T>`. The module
+//! [`prelude`] re-exports the names that common programs need.
 //!
 //! ```
 //! use impinge::dim3::math::{Isometry, Vector};
@@ -56,7 +56,7 @@ pub mod debug_render {
     pub type SweptShape<'a, N> = crate::debug_render::SweptShape<'a, N, 3>;
 }
 
-/// One query for many placed shapes, with the results in columns.
+/// Batches: one query runs for many placed shapes and writes each quantity to an output column.
 pub mod batch {
     pub use crate::batch::{
         AsPose, BatchError, Control, MatrixError, NO_FEATURE, OnePose, PoseSource, TileCut,

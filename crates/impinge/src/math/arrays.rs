@@ -1,4 +1,5 @@
-//! SIMD vectors emulated by arrays of 8 numbers, for targets without SIMD.
+//! SIMD vectors emulated by arrays of 8 numbers: for targets without SIMD, for `f64` on SSE2, and
+//! for tests.
 //!
 //! The operations are functions that are not inlined. Inlining would turn a kernel of a thousand
 //! operations into a function with thousands of loops, which takes too long to compile.

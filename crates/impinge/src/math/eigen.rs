@@ -13,8 +13,8 @@ use super::{Matrix, Vector};
 const MAX_SWEEPS: usize = 32;
 
 /// An off-diagonal element is negligible if its magnitude is at most this fraction of the geometric
-/// mean of the diagonal elements in its row and its column. It is then a rounding error of the
-/// matrix.
+/// mean of the diagonal elements in its row and its column. It is then no larger than the rounding
+/// errors of the matrix.
 const NEGLIGIBLE: f64 = 8.0 * f64::EPSILON;
 
 /// Returns the eigenvalues of a finite symmetric matrix, and a rotation whose columns are the

@@ -162,8 +162,9 @@ mod tests {
 
     #[test]
     fn the_sign_survives_where_rounding_loses_it() {
-        // Kettner et al., "Classroom Examples of Robustness Problems" (2004): a grid of neighbouring
-        // doubles around a point of the line y = x, whose side the rounded determinant gets wrong.
+        // Kettner et al., "Classroom Examples of Robustness Problems" (2004): a grid of
+        // neighbouring doubles around a point of the line y = x, whose side the rounded determinant
+        // gets wrong.
         let step = f64::EPSILON / 2.0;
         let (b, c) = (P2::new(12.0, 12.0), P2::new(24.0, 24.0));
         let mut rounded_wrong = 0;

@@ -1,8 +1,9 @@
 //! The numbers of saved data, stored without rounding error in every format.
 //!
-//! Text formats may round `f64`, and most have neither NaN nor infinities. So in human-readable formats a list of
-//! numbers is one string, such as `"0.5 -inf 1e-45"`, which parses to the same bits. A NaN is written as `NaN:` and its
-//! bits in hexadecimal. In binary formats the list is a sequence of `f32` or `f64`.
+//! Text formats may round `f64`, and most have neither NaN nor infinities. So in human-readable
+//! formats a list of numbers is one string, such as `"0.5 -inf 1e-45"`, which parses to the same
+//! bits. A NaN is written as `NaN:` and its bits in hexadecimal. In binary formats the list is a
+//! sequence of `f32` or `f64`.
 
 use core::fmt::{self, Write as _};
 use core::marker::PhantomData;
@@ -47,8 +48,8 @@ impl<N: Real> Numbers<N> {
         Self(points.iter().flat_map(|point| point.iter().copied()).collect())
     }
 
-    /// Creates a list of the numbers of an isometry: the translation, followed by the cosine and sine of the rotation
-    /// in 2D, or its quaternion (i, j, k, w) in 3D.
+    /// Creates a list of the numbers of an isometry: the translation, followed by the cosine and
+    /// sine of the rotation in 2D, or its quaternion (i, j, k, w) in 3D.
     pub(crate) fn of_isometry<const D: usize>(isometry: &N::Isometry) -> Self
     where
         N: Space<D>,

@@ -45,8 +45,8 @@ pub(crate) fn sort_few<T>(items: &mut [T], is_less: impl Fn(&T, &T) -> bool) {
         return;
     }
     for step in (0..count + count / 2).rev() {
-        // The first `count / 2` steps build the heap from the back. Each later step moves the greatest item of the heap
-        // to the position behind the shrunk heap.
+        // The first `count / 2` steps build the heap from the back. Each later step moves the
+        // greatest item of the heap to the position behind the shrunk heap.
         let (mut at, end) = if step >= count {
             (step - count, count)
         } else {

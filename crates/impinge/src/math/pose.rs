@@ -5,7 +5,7 @@ use super::na::ArrayStorage;
 use super::{AbstractRotation, Isometry, Mapped, Matrix, Point, Real, Vector, filled};
 
 // The following functions replace products of nalgebra, which make about thirty nested calls for
-// each number if they are not optimised. The results are bitwise equal: each sum runs over the
+// each number in builds without optimisation. The results are bitwise equal: each sum runs over the
 // columns in order.
 
 /// Returns `matrix · v`.

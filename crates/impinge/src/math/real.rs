@@ -61,7 +61,8 @@ pub trait Real: RealField + Scalar + Copy + Default + Compiled<2> + Compiled<3> 
     }
     /// Returns the bits of the value, zero-extended to 64 bits.
     fn bits(self) -> u64;
-    /// Returns the number with these bits: the inverse of [`Self::bits`]. For `f32` only the lowest 32 bits are used.
+    /// Returns the number with these bits: the inverse of [`Self::bits`]. For `f32` only the lowest
+    /// 32 bits are used.
     fn of_bits(bits: u64) -> Self;
     /// Returns the largest power of two that is not above the magnitude. Division by it is exact
     /// unless the quotient underflows.

@@ -4,7 +4,8 @@
 //! 754, so each lane is bitwise equal to a scalar computation. There are two kinds of kernels:
 //!
 //! * in some kernels, each lane is a pair or a part, independent of the other lanes. [`in_lanes!`]
-//!   runs these with the vectors of the target, or lane by lane if there are none: [`Level::runs`];
+//!   runs these with the vectors of the target, or lane by lane if [`Level::vectors`] returns
+//!   `None`: see [`Level::runs`];
 //! * in the other kernels, lanes interact. For example, the lanes are features of one solid, and
 //!   the kernel selects the best feature; or a step reads rows that the previous step wrote for all
 //!   lanes (chains, balls among triangles, checkers). [`with_lanes!`] runs these with all lanes on

@@ -14,11 +14,12 @@ pub(super) struct CompositeViews<'a, N: Space<D>, const D: usize> {
     group: &'a CompositeGroup<N, D>,
     /// Touching flags, 64 in a word.
     touching: &'a [u64],
-    /// Index of the next word of flags. `flags` has the remaining flags of the word before it.
+    /// Index of the next word of flags. `flags` has the flags of the word `word - 1` whose pairs
+    /// have not been read yet.
     word: usize,
     flags: u64,
-    /// Row of the current pair, and its next patch. The patch is `usize::MAX` if there is no
-    /// current pair.
+    /// Row of the current pair, and the index of its next patch: the contacts of one manifold. The
+    /// patch is `usize::MAX` if there is no current pair.
     row: usize,
     patch: usize,
 }
@@ -48,13 +49,12 @@ impl<'a, N: Space<D>, const D: usize> CompositeViews<'a, N, D> {
     }
 
     /// Returns the row of the pair of the lowest set bit in `flags`, which are flags of the word
-    /// before `word`.
+    /// `self.word - 1`.
     const fn lowest_row(&self, flags: u64) -> usize {
         (self.word - 1) * 64 + flags.trailing_zeros() as usize
     }
 
-    /// Loads the data of the pairs of one word of flags, so that the cache misses overlap. Changes
-    /// nothing.
+    /// Loads the data of the pairs in `flags`, so that the cache misses overlap. Changes nothing.
     fn prefetch(&self) {
         let (mut flags, mut loaded) = (self.flags, N::ZERO);
         while flags != 0 {

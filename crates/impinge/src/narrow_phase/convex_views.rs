@@ -14,8 +14,8 @@ pub(super) struct ConvexViews<'a, N: Space<D>, const D: usize> {
     table: &'a ObjectTable<N, D>,
     groups: slice::Iter<'a, ContactGroup<N, D>>,
     group: Option<&'a ContactGroup<N, D>>,
-    /// Index of the next word of flags in the group. `flags` has the remaining flags of the word
-    /// before it.
+    /// Index of the next word of flags in the group. `flags` has the flags of the word `word - 1`
+    /// whose pairs have not been read yet.
     word: usize,
     flags: u64,
     /// Number of words still to be read; `usize::MAX` if the iterator is not restricted.
@@ -63,8 +63,7 @@ impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
         }
     }
 
-    /// Loads the data of the pairs of one word of flags, so that the cache misses overlap. Changes
-    /// nothing.
+    /// Loads the data of the pairs in `flags`, so that the cache misses overlap. Changes nothing.
     fn prefetch(&self, group: &ContactGroup<N, D>) {
         let (mut flags, mut sum) = (self.flags, 0_u32);
         while flags != 0 {
@@ -96,7 +95,8 @@ impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
     }
 }
 
-/// Clears the lowest set flag of the word before `word`, and returns the row of its pair.
+/// Clears the lowest set flag of `flags`, the flags of word `word - 1`, and returns the row of its
+/// pair.
 #[inline]
 const fn take_row(word: usize, flags: &mut u64) -> usize {
     let row = (word - 1) * 64 + flags.trailing_zeros() as usize;

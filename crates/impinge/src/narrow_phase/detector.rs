@@ -6,7 +6,7 @@ use crate::query::Proximity;
 use crate::shape::Shape;
 use crate::tables::entries;
 
-/// Computes the proximity of any two built-in solids.
+/// Computes the proximity of any two shapes by the library's own algorithm.
 ///
 /// ```
 /// use impinge::dim2::events::Proximity;

@@ -41,7 +41,7 @@ pub(crate) fn posed<N: Space<D>, const D: usize>(
     }
 }
 
-/// The last proximity of a pair. Each change of it is reported as an event.
+/// The last proximity of a pair. Each change of the proximity is reported as an event.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Status(pub(crate) Proximity);
 
@@ -110,7 +110,8 @@ impl<M: Default> ContactView<M> {
 }
 
 impl<M: Default> ContactView<M> {
-    /// Marks the manifolds of a view as out of date; does nothing for a group without views.
+    /// Marks the manifolds of a view as out of date; does nothing if `view` is `None`, as in a
+    /// group without views.
     #[inline]
     pub(crate) fn expire_any(view: Option<&mut Self>) {
         if let Some(view) = view {

@@ -131,7 +131,7 @@ impl Events {
     }
 
     /// Sorts the events of the update into canonical order. If one list has two events of a pair,
-    /// the one that ends the old status comes first.
+    /// the event that ends the old status comes first.
     pub(crate) fn sort(&mut self) {
         let begins = |event: &ContactEvent| matches!(event, ContactEvent::Started(..));
         self.contacts[self.sorted.0..].sort_unstable_by_key(|e| (e.handles(), begins(e)));
@@ -180,13 +180,13 @@ impl Events {
         }
     }
 
-    /// Returns the contact events of the batch.
+    /// Returns the contact events, in the order that [`Events`] describes.
     #[must_use]
     pub fn contacts(&self) -> &[ContactEvent] {
         &self.contacts
     }
 
-    /// Returns the proximity events of the batch.
+    /// Returns the proximity events, in the order that [`Events`] describes.
     #[must_use]
     pub fn proximities(&self) -> &[ProximityEvent] {
         &self.proximities

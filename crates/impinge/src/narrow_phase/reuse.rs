@@ -9,9 +9,9 @@
 //! the last step, so that errors do not accumulate.
 //!
 //! A signed distance changes by no more than the motion of its solids. So a reused distance differs
-//! from that of a query by at most twice the tolerance, and may exceed the prediction by as much.
-//! Contacts are not reused if all of them are beyond the prediction and farther apart than at the
-//! last query.
+//! from the distance that a new query would find by at most twice the tolerance, and may exceed the
+//! prediction by as much. Contacts are not reused if all of them are beyond the prediction and
+//! farther apart than at the last query.
 
 use core::fmt;
 
@@ -58,8 +58,8 @@ pub(super) fn usable_tolerance<N: Real>(tolerance: N) -> Result<N, ReuseError> {
 pub(crate) struct Reference<N: Real, const D: usize> {
     /// Pose of the solid in whose frame contacts are stored, relative to the other solid.
     pub(super) pose21: Pose<N, D>,
-    /// Upper bound of the distance of the relevant points of that solid from its origin; infinite
-    /// if the contacts cannot be reused.
+    /// Upper bound of the distance of the relevant points of the solid in whose frame contacts are
+    /// stored from the origin of that solid; infinite if the contacts cannot be reused.
     pub(super) reach: N,
     /// Number of further updates in which the reference is neither compared nor set, because the
     /// pair is fast.
@@ -84,8 +84,8 @@ impl<N: Real, const D: usize> Default for Reference<N, D> {
 
 impl<N: Space<D>, const D: usize> Reference<N, D> {
     /// Updates the distances of the contacts of a pair and returns `true`, if the pair has moved by
-    /// less than the limit and a contact is still near. Otherwise returns `false`. `pose21` returns
-    /// the present relative pose.
+    /// less than the limit and a contact is still within the prediction or within its old distance.
+    /// Otherwise returns `false`. `pose21` returns the present relative pose.
     ///
     /// The limit is the smaller of `tolerance` and `prediction`, so that no contact of overlapping
     /// solids is missed.
@@ -180,9 +180,9 @@ type KeptRows<'a, N, S, V, const D: usize> =
     Rows<'a, ContactEntry<N, S>, ContactView<V>, Reference<N, D>>;
 
 impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
-    /// Updates the distances of the contacts of a pair and returns `true`, if the pair has moved
-    /// little enough ([`Reference::keeps`]). The number of contacts does not change, so there are
-    /// no events.
+    /// Updates the distances of the contacts of a pair and returns `true`, if the group has
+    /// references and [`Reference::keeps`] returns `true`. Otherwise returns `false`. The number of
+    /// contacts does not change, so there are no events.
     #[inline]
     pub(super) fn keeps<S: KeptContacts<N, D>>(
         &self,

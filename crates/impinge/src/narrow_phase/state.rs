@@ -224,7 +224,7 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
 }
 
 impl<N: Real, const D: usize> ContactState<N, D> {
-    /// Returns the manifold, and whether it is in the frame of the second solid.
+    /// Returns the manifold, and `true` if it is in the frame of the second solid.
     pub(super) const fn kept(&self) -> (&RawManifold<N, D>, bool) {
         (&self.kept.contacts, self.kept.swapped)
     }

@@ -1,4 +1,4 @@
-//! All contacts of an update in two dense lists, with the index of each contact in the lists before.
+//! All contacts of an update in two dense lists, each contact with its index in the previous lists.
 //!
 //! ```text
 //! manifolds   [pair 7 | 0..4]  [pair 9 | 4..6]  [pair 3 | 6..10] ...         in memory order
@@ -9,8 +9,9 @@
 //! ```
 //!
 //! Memory order changes little between updates, so a pair is searched among the next [`WINDOW`] old
-//! pairs. A pair that is not there, such as one that filled the gap of a removed pair, is searched
-//! in the sorted list of the old pairs that are left. A fill without such pairs takes linear time.
+//! pairs. A pair that is not among them, such as a pair that filled the gap of a removed pair, is
+//! searched in a sorted list of the old pairs that no pair has matched. A fill without such pairs
+//! takes linear time.
 
 use core::num::NonZeroU32;
 use core::ops::Range;
@@ -19,20 +20,21 @@ use super::CollisionObjectHandle;
 use crate::math::{Point, Real, Space, Unit, Vector};
 use crate::query::{ContactId, ManifoldView};
 
-/// Number of old pairs among which the next pair is searched.
+/// Number of old pairs, from the first unmatched one, among which a pair is searched.
 const WINDOW: usize = 16;
 
 /// A contact point in a [`ContactStream`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StreamPoint<N: Real, const D: usize> {
-    /// The point on the surface of the first solid, in the world frame. The point on the second is
-    /// `world1 - depth * normal`, with the normal of the manifold.
+    /// The point on the surface of the first solid, in the world frame. The point on the second
+    /// solid is `world1 - depth * normal`, with the normal of the manifold.
     pub world1: Point<N, D>,
     /// The penetration depth along the normal; minus the distance if the solids are apart.
     pub depth: N,
     /// The second half of the contact's id.
     number: u32,
-    /// One more than the index in the points of the fill before.
+    /// One more than the index of the contact in the points of the fill before; `None` for a new
+    /// contact.
     previous: Option<NonZeroU32>,
 }
 
@@ -91,8 +93,8 @@ impl<N: Real, const D: usize> StreamManifold<N, D> {
 /// Features, parts and kinematics are not in the stream: read them by
 /// [`CollisionWorld::contact_pair`].
 ///
-/// After [`CollisionWorld::rewind`], or to read another world, call [`Self::clear`]: contact ids are
-/// unique in one history of one world only.
+/// After [`CollisionWorld::rewind`], or to read another world, call [`Self::clear`]: contact ids
+/// are unique in one history of one world only.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -135,7 +137,8 @@ impl<N: Real, const D: usize> StreamManifold<N, D> {
 pub struct ContactStream<N: Real, const D: usize> {
     now: Lists<N, D>,
     old: Lists<N, D>,
-    /// Scratch of a fill: the pairs that were not found in the window, and the old pairs left.
+    /// Scratch of a fill: the pairs that were not found in the window, and, in the next field, the
+    /// old pairs that no pair has matched.
     missed: Vec<PairRange>,
     left: Vec<PairRange>,
 }
@@ -239,7 +242,7 @@ impl<N: Space<D>, const D: usize> ContactStream<N, D> {
     }
 }
 
-/// The number of an old pair that was found again; no pair has it.
+/// Replaces the pair identifier of an old pair that was found again; no pair has this identifier.
 const TAKEN: u64 = ContactId::NULL.pair;
 
 impl<N: Space<D>, const D: usize> Lists<N, D> {
@@ -292,7 +295,7 @@ impl<N: Real, const D: usize> Lists<N, D> {
     }
 
     /// Searches a pair among the [`WINDOW`] pairs from `next`. If it is there, marks it as
-    /// [`TAKEN`] and advances `next` behind it.
+    /// [`TAKEN`], advances `next` behind it and returns it; else returns `None`.
     #[inline]
     fn take(&mut self, pair: u64, next: &mut usize) -> Option<PairRange> {
         let mut after = *next;

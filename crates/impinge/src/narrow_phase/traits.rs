@@ -37,15 +37,15 @@ impl<N: Real> ContactPrediction<N> {
         self.linear
     }
 
-    /// Returns the angle in radians by which the first solid may rotate to come within the
-    /// distance.
+    /// Returns the angle in radians by which the first solid may rotate for a point to come within
+    /// [`Self::linear`].
     #[must_use]
     pub const fn angular1(&self) -> N {
         self.angular1
     }
 
-    /// Returns the angle in radians by which the second solid may rotate to come within the
-    /// distance.
+    /// Returns the angle in radians by which the second solid may rotate for a point to come within
+    /// [`Self::linear`].
     #[must_use]
     pub const fn angular2(&self) -> N {
         self.angular2
@@ -207,8 +207,8 @@ pub trait ProximityDetector<N: Space<D>, const D: usize>: Send + Sync {
 /// assert_eq!(detector.proximity(), Proximity::WithinMargin);
 /// ```
 pub trait ProximityDispatcher<N: Space<D>, const D: usize>: Send + Sync {
-    /// Returns a new algorithm for the proximity of `a` and `b`; `None` if the pair needs none, and
-    /// is never near.
+    /// Returns a new algorithm for the proximity of `a` and `b`; `None` if no proximity is to be
+    /// computed for the pair.
     fn get_proximity_algorithm(
         &self,
         a: &dyn Shape<N, D>,

@@ -275,8 +275,8 @@ impl ProximityPair {
     }
 }
 
-/// Returns the indices of the pairs for which `is_wanted` returns `true`, sorted by pair: by the
-/// smaller object, then by the larger.
+/// Returns the indices of the pairs for which `is_wanted` returns `true`, sorted by the smaller
+/// object index of the pair, then by the larger.
 fn sorted(pairs: &PairTable, is_wanted: impl Fn(usize) -> bool) -> Vec<u32> {
     let objects = pairs.pairs().iter().map(|&(_, second)| second + 1).max().unwrap_or(0);
     let (mut order, mut partners) = (Vec::new(), Vec::new());

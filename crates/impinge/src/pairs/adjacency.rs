@@ -15,7 +15,8 @@ use crate::memory::{Look, clone_fields};
 const PER_LINE: usize = 8;
 /// Number of links in a head, which uses the rest of its line to describe the run.
 const INLINE: usize = PER_LINE - 1;
-/// Idle heads are dropped when their number exceeds half of all heads by more than `MAX_IDLE`.
+/// Idle heads, which have no owner, are dropped when their number exceeds half of all heads by more
+/// than `MAX_IDLE`.
 const MAX_IDLE: usize = 256;
 /// Entry in `head_indices` of an object without links.
 const NO_HEAD: u32 = u32::MAX;
@@ -232,8 +233,8 @@ impl Adjacency {
         })
     }
 
-    /// Returns the index of the pair in the dense array; `None` if there is none. Searches the
-    /// object with fewer links.
+    /// Returns the index of the pair of `a` and `b` in the dense array; `None` if it is not there.
+    /// Searches the object with fewer links.
     #[inline]
     pub(super) fn pair_of(&self, a: u32, b: u32) -> Option<usize> {
         let a_is_lighter = self.count(a) <= self.count(b);

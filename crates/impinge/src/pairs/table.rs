@@ -4,7 +4,7 @@ use super::adjacency::{Adjacency, Link, small};
 use crate::journal::Journal;
 use crate::memory::{Look, clone_fields};
 
-/// A set of unordered pairs of indices; see the module for its layout.
+/// A set of unordered pairs of indices. The [module](super) describes its layout.
 ///
 /// An index may be paired with any index, itself included. Finding, inserting and removing a pair
 /// take constant time.

@@ -163,7 +163,7 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
     }
 
     /// Calls `visit` with the index of each box that the ray enters at or before `max_time`, and the time of entry, in
-    /// ascending order of (time, index). Times are in units of the length of the ray's direction.
+    /// ascending order of (time, index). At time `t` the ray is at `origin + t * dir`.
     ///
     /// `visit` returns the new `max_time`, which must not increase. Return the time of the best hit so far to find the
     /// first object that the ray meets, the unchanged `max_time` to visit all boxes, or a negative time to stop. A ray

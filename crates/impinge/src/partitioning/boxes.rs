@@ -36,8 +36,8 @@ pub(super) fn around<N: Real, const D: usize>(boxes: &[Aabb<N, D>]) -> Option<Aa
     boxes.iter().copied().reduce(|all, aabb| all.merged(&aabb))
 }
 
-/// Converts the number of boxes to `u32`. An error if it is `u32::MAX` or more: the tree reserves
-/// the id `u32::MAX` for "none".
+/// Converts the number of boxes to `u32`. Returns an error for `u32::MAX` or more boxes: the tree
+/// reserves the id `u32::MAX` for "none".
 pub(super) fn count(given: usize) -> Result<u32, BoxTreeError> {
     let count = u32::try_from(given).ok().filter(|&count| count < u32::MAX);
     count.ok_or(BoxTreeError::TooMany { given })

@@ -70,7 +70,7 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         self.unbounded.iter().copied().for_each(propose);
     }
 
-    /// Wraps `found` in a function that calls it only for ids whose exact box passes `accept`.
+    /// Returns a function that calls `found` only for ids whose exact box passes `accept`.
     fn accepted(
         &self,
         accept: impl Fn(&Aabb<N, D>) -> bool,
@@ -148,9 +148,9 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
     }
 
     /// Calls `found` with the objects that the moving box may touch by `limit`, in groups, each
-    /// with a lower bound of the time; roughly near ones first. `found` returns the new limit; a
-    /// larger one than before has no effect. The exact boxes are not tested: for callers that test
-    /// the objects themselves.
+    /// with a lower bound of the time; earlier objects roughly first. `found` returns the new
+    /// limit; a limit above the previous one has no effect. The exact boxes are not tested: for
+    /// callers that test the objects themselves.
     pub(crate) fn groups_by_time(
         &self,
         sweep: &Sweep<N, D>,
@@ -168,8 +168,8 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
     }
 
     /// Calls `found` with the objects that may be at most `limit` from `aabb`, in groups, each with
-    /// a lower bound of the distance; roughly near ones first. `found` returns the new limit; a
-    /// larger one than before has no effect. The exact boxes are not tested.
+    /// a lower bound of the distance; nearer objects roughly first. `found` returns the new limit;
+    /// a limit above the previous one has no effect. The exact boxes are not tested.
     pub(crate) fn groups_by_distance(
         &self,
         aabb: &Aabb<N, D>,
@@ -201,8 +201,8 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         })
     }
 
-    /// Prepares the moving box for slab tests; `None` if its velocity is not finite or it has no
-    /// finite point.
+    /// Prepares the moving box for slab tests; `None` if its velocity is not finite or the box has
+    /// no finite point.
     fn slabs(&self, sweep: &Sweep<N, D>) -> Option<Slabs<D>> {
         let Sweep { aabb, velocity } = sweep;
         let is_path = velocity.iter().all(|x| x.is_finite_number());
@@ -210,8 +210,8 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         moves.then(|| Slabs::new(aabb, velocity, self.size()))
     }
 
-    /// Wraps `found` in a function that calls it only if the key of the exact box is at most the
-    /// limit so far. The function returns the new limit.
+    /// Returns a function that calls `found` with an id only if the key of the id's exact box is at
+    /// most the current limit. The function returns the new limit.
     fn within(
         &self,
         limit: N,

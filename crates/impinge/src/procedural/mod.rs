@@ -6,7 +6,8 @@
 //!
 //! Common properties:
 //! * every vertex is a point of the true surface, up to a few rounding units, so that the result
-//!   lies inside the solid, within the gap that each function states;
+//!   lies inside the solid. Each function states a bound of the gap: the greatest distance of a
+//!   point of the true surface from the result;
 //! * a size of zero changes no vertex count and no triangle: some triangles then have no area;
 //! * scaling a shape by a power of two scales every vertex exactly, and the results are bitwise
 //!   equal on every machine;

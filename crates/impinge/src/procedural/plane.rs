@@ -91,8 +91,9 @@ pub fn tapered_capsule<N: Real>(capsule: &TaperedCapsule<N, 2>, subdivisions: u3
     };
     let [right_side, left_side] =
         [taper.cosine, -taper.cosine].map(|away| placed(Vector::<N, 2>::new(away, taper.sine)));
-    // The directions of each end may wrap around the first direction: the second end starts below
-    // it, the first end after the highest.
+    // The directions of an end may wrap around the end of the list of all directions. The second
+    // end's directions start with the last ones below the first direction, the first end's after
+    // the highest.
     let (highest, lowest) = (count.div_ceil(4), 3 * count / 4 + 1);
     let mut points = vec![corner(1, right_side)];
     points.extend(facing(1, lowest..count));

@@ -4,8 +4,8 @@ use super::TriangleSurface;
 use super::circle::direction;
 use crate::math::{Point, Real, Vector, cross, orthonormal_basis};
 
-/// A circle around the axis that the surface passes through; the first and the last of a profile
-/// are points on the axis, whatever their radius.
+/// A circle around the axis that the surface passes through; the first and the last stop of a
+/// profile are points on the axis, and their `radius` is ignored.
 ///
 /// Normals are (away from the axis, along the axis). At a crease the normals on the two sides of
 /// the circle differ.

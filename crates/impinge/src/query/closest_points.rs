@@ -40,13 +40,13 @@ impl<N: Real, const D: usize> ClosestPoints<N, D> {
     }
 }
 
-/// Returns the nearest points of two solids that are at most `max_distance` apart.
+/// Returns the nearest points of two solids if these are apart by at most `max_distance`.
 ///
-/// If several pairs of points are equally near, one pair is chosen, the same for both orders of the
-/// arguments. A distance equal to `max_distance` is within the limit; a negative or NaN
-/// `max_distance` is treated as zero. Returns [`ClosestPoints::Disjoint`] if a pose is not finite.
-/// For composites the points lie on the nearest parts; [`witness`](super::witness()) returns the
-/// indices of these parts.
+/// If several pairs of points are equally near, one pair is chosen; both orders of the arguments
+/// choose the same pair. A distance equal to `max_distance` is within the limit; a negative or NaN
+/// `max_distance` is treated as zero. Returns [`ClosestPoints::Disjoint`] if a pose is not finite
+/// or a composite has no parts. For composites the points lie on the nearest parts;
+/// [`witness`](super::witness()) returns the indices of these parts.
 pub fn closest_points<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,
@@ -57,7 +57,7 @@ pub fn closest_points<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     entries::closest_points(R::view(m1), g1, R::view(m2), g2, max_distance)
 }
 
-/// Implements [`closest_points`] with poses by reference.
+/// Implements [`closest_points`] for poses passed by reference.
 #[inline]
 pub(crate) fn closest_points_at<N: Space<D>, const D: usize>(
     isometry1: IsometryRef<'_, N, D>,

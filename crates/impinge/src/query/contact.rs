@@ -58,14 +58,14 @@ impl<N: Real, const D: usize> Contact<N, D> {
 ///
 /// If the solids overlap, the depth is the length of the shortest translation that separates them,
 /// and the normal is the direction of that translation for the second solid. A distance equal to
-/// `prediction` is within it. A negative `prediction` restricts the result to contacts at least
-/// that deep. Returns `None` if the solids are farther apart, if `prediction` is NaN or a pose is
-/// not finite, and for two half-spaces whose overlap is unbounded, as they have no depth.
+/// `prediction` is within it. A negative `prediction` restricts the result to contacts of depth
+/// `-prediction` or more. Returns `None` if the solids are farther apart, if `prediction` is NaN or
+/// a pose is not finite, and for two half-spaces whose overlap is unbounded, as they have no depth.
 ///
 /// For a composite the result is the deepest contact of its manifolds: the contact of a part, with
 /// a normal of the whole surface ([`Surface`](crate::shape::Surface)). A one-sided surface has no
-/// contacts from behind. The cost is that of [`distance`](crate::query::distance), plus the parts
-/// that overlap.
+/// contacts from behind. The cost is that of [`distance`](crate::query::distance()), plus that of
+/// the contacts of all parts that overlap.
 ///
 /// ```
 /// use impinge::math::{Isometry3, Vector};

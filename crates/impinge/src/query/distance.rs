@@ -8,8 +8,8 @@ use crate::tables::entries;
 /// Returns the distance between two solids: zero if they touch or overlap.
 ///
 /// The distance is the length of the shortest translation that makes the solids touch. Swapping the
-/// solids gives a bitwise equal result. Infinite if a pose is not finite, and for a composite
-/// without parts.
+/// solids gives a bitwise equal result. The distance is infinite if a pose is not finite, and for a
+/// composite without parts.
 ///
 /// The distance of composites is the distance of their nearest parts; [`witness`](super::witness())
 /// returns these parts and documents the cost.
@@ -54,7 +54,8 @@ pub(crate) fn distance_between<'a, N: Space<D>, const D: usize>(
     found.map_or(N::INFINITY, |distance| max(distance, N::ZERO))
 }
 
-/// Returns the distance of two shapes, zero or more; `None` if it exceeds `limit`.
+/// Returns the distance of two shapes, zero or more; `None` if it exceeds `limit` or a pose is not
+/// finite.
 #[inline]
 pub(crate) fn distance_within<'a, N: Space<D>, const D: usize>(
     one: &impl Placing<'a, N, D>,

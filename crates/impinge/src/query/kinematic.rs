@@ -43,7 +43,7 @@ pub enum NeighborhoodGeometry<N: Real, const D: usize> {
 enum NormalRule<N: Real, const D: usize> {
     /// The normal rotates with the first solid, one of whose faces defines it.
     First,
-    /// The normal rotates with the second solid.
+    /// The normal rotates with the second solid, one of whose faces defines it.
     Second,
     /// The points and lines of the contact define the normal: it is perpendicular to the lines, or
     /// along the connection of the points.
@@ -55,8 +55,8 @@ enum NormalRule<N: Real, const D: usize> {
 
 /// The data to predict a contact at new poses of its two solids.
 ///
-/// All vectors are in the local frames of the solids and describe their cores; the rounding radii
-/// are added at the end. A round side is represented by its axis, with a radius.
+/// All vectors are in the local frames of the solids and describe their cores (the solids without
+/// their rounding radii); the radii are added at the end. A round side has its axis as its core.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -138,13 +138,13 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     ///
     /// At the poses of the last update the result is the contact itself; for a small motion its
     /// error is of second order. The prediction does not detect that other features came nearer, or
-    /// that the contact left its features: query again after a larger motion. A corner stays on the
-    /// plane or line of the other solid. Two crossing lines give their nearest points; two points,
-    /// or a point and a line, give the shortest connection. If the connection vanishes, and for
-    /// lines that are nearly parallel, the points and the normal at the last update move with their
-    /// solids. For the deepest contact on a round rim the distance and the normal have errors of
-    /// second order, its position on the rim of first order; the other contacts on that rim follow
-    /// the deepest one. If a pose is not finite, the result is not finite.
+    /// that the contact left its features: query again after a larger motion. A corner keeps its
+    /// nearest point on the plane or line of the other solid. Two crossing lines give their nearest
+    /// points; two points, or a point and a line, give the shortest connection. If the connection
+    /// vanishes, and for nearly parallel lines, the points and the normal at the last update move
+    /// with their solids. The deepest contact on a round rim has errors of second order in distance
+    /// and normal, of first order in position; the other contacts on that rim follow it. If a pose
+    /// is not finite, the result is not finite.
     #[must_use]
     pub fn contact<R: AbstractRotation<N, D>>(
         &self,
@@ -203,7 +203,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     }
 
     /// Returns the kinematic in the frames of two shapes that have the solids as parts. `pose1` and
-    /// `pose2` are the poses of the solids there; `turns` is whether rotations change the shapes.
+    /// `pose2` are the poses of the solids there; `turns` says whether rotations change each shape.
     pub(super) fn in_frames(&self, [pose1, pose2]: [&Pose<N, D>; 2], turns: [bool; 2]) -> Self {
         Self {
             turns,
@@ -248,8 +248,8 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         (normal - self.normal1).norm() <= least_angle()
     }
 
-    /// Returns whether a line certainly rises so steeply along the manifold's normal that no normal
-    /// perpendicular to it is near. Of two nearly parallel lines, only the first counts.
+    /// Returns whether a line is too far from perpendicular to the manifold's normal to give that
+    /// normal. The limit is larger for the second line, which may be parallel to the first.
     fn is_steep(&self) -> bool {
         let is_tilted = |geometry: NeighborhoodGeometry<N, D>, normal: &Vector<N, D>, least: N| {
             match geometry {
@@ -417,8 +417,8 @@ impl<N: Real, const D: usize> SlideLines<N, D> {
         once - self.second * self.second.dot(&once)
     }
 
-    /// Returns a unit vector projected perpendicular to the lines and normalised; `fallback` itself
-    /// if the projection vanishes.
+    /// Returns the unit vector `fallback` projected perpendicular to the lines and normalised; the
+    /// vector itself if the projection vanishes.
     fn upright(&self, fallback: &Vector<N, D>) -> Vector<N, D> {
         unit(&self.reject(fallback)).map_or(*fallback, |(upright, _)| upright)
     }
@@ -446,13 +446,13 @@ impl<N: Real, const D: usize> SlideLines<N, D> {
     }
 }
 
-/// The crossing of two lines is computed if their squared sine is at least this.
+/// The crossing of two lines is computed if the squared sine of their angle exceeds this.
 const MIN_SINE_SQUARED: f64 = 1e-6;
 
 /// Returns the points of the two cores that face each other along the normal.
 ///
-/// A point or line is fixed to its solid, and the point on a plane follows it. For two planes the
-/// point on the first is fixed.
+/// A point or a line is fixed to its solid; the point on a plane follows the point or the line of
+/// the other solid. For two planes the point on the first plane is fixed.
 fn feet<N: Real, const D: usize>(
     [point1, point2]: [&Point<N, D>; 2],
     geometries: [NeighborhoodGeometry<N, D>; 2],

@@ -151,8 +151,9 @@ impl<N: Real, const D: usize> TrackedContact<N, D> {
 /// rests on a plane has one manifold of four points in 3D and two in 2D; a ball gives one point.
 /// [`Self::deepest_contact`] has the depth that the query for one contact returns. The first
 /// manifold of a pair contains its deepest point. In later manifolds an older point may replace the
-/// deepest one, if its depth is within 1/512 of the size of the smaller solid (half the diagonal of
-/// its box). An empty manifold means that the solids are farther apart than the prediction.
+/// deepest point, if the depths of the two differ by at most 1/512 of the size of the smaller solid
+/// (half the diagonal of its box). An empty manifold means that the solids are farther apart than
+/// the prediction.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -248,8 +249,9 @@ pub(crate) struct Placement<'a, N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Placement<'_, N, D> {
-    /// Passes a contact of a raw manifold with the normal `own` on: its id, its point on the user's
-    /// first solid in the world frame, and its depth. The bits are those of [`placed`].
+    /// Calls `each` with the id of a contact of a raw manifold, its point on the user's first solid
+    /// in the world frame, and its depth; `own` is the normal of that manifold. The values are
+    /// bitwise equal to those of [`placed`].
     #[inline(always)]
     pub(super) fn place(
         &self,

@@ -78,14 +78,14 @@ impl<N: Real, const D: usize> ContactPoint<N, D> {
 /// |---|---|
 /// | the common normal, from the first solid to the second | [`Self::normal`] |
 /// | points, depth, id, features and parts of each contact | [`Self::contacts`], a [`ContactPoint`] for each |
-/// | the deepest of them | [`Self::deepest_contact`] |
+/// | the deepest contact | [`Self::deepest_contact`] |
 /// | the motion of a contact with its solids | [`Self::kinematic`] |
-/// | both at once, as in ncollide's guide | [`Self::tracked_contact`], a [`TrackedContact`] |
+/// | a contact and its kinematic, as in ncollide's guide | [`Self::tracked_contact`], a [`TrackedContact`] |
 /// | the manifold to keep across an update | [`Self::to_manifold`], a [`ContactManifold`] |
 ///
 /// A world returns views of all its manifolds
-/// ([`CollisionWorld::contact_views`](crate::world::CollisionWorld::contact_views)) and of those of
-/// one pair ([`ContactPair::views`](crate::narrow_phase::ContactPair::views)).
+/// ([`CollisionWorld::contact_views`](crate::world::CollisionWorld::contact_views)) and of the
+/// manifolds of one pair ([`ContactPair::views`](crate::narrow_phase::ContactPair::views)).
 /// [`CollisionWorld::contact_manifolds`](crate::world::CollisionWorld::contact_manifolds) and
 /// [`ContactPair::contacts`](crate::narrow_phase::ContactPair::contacts) return bitwise equal
 /// contacts in the same order, as manifolds that are built on first use.

@@ -72,10 +72,10 @@ impl<N: Real, const D: usize> Witness<N, D> {
 ///
 /// [`distance`](super::distance()), [`closest_points`](super::closest_points()) and
 /// [`proximity`](super::proximity()) are derived from the same result. If several pairs of points
-/// are equally near, one pair is chosen, the same for both orders of the arguments; among the parts
-/// of composites the lowest indices win. For composites that overlap, the result is the pair of
-/// parts that are deepest in each other: a translation by `distance` along the normal separates
-/// these two parts, not always the shapes.
+/// are equally near, one pair is chosen; both orders of the arguments choose the same pair, and
+/// among the parts of composites the lowest indices win. For composites that overlap, the result is
+/// the pair of parts that are deepest in each other: a translation by `distance` along the normal
+/// separates these two parts, not always the shapes.
 ///
 /// A rounded solid has the features of its core. A distance equal to `max_distance` is within it; a
 /// negative `max_distance` restricts the result to overlaps at least that deep. Returns `None` if
@@ -84,8 +84,8 @@ impl<N: Real, const D: usize> Witness<N, D> {
 ///
 /// The cost for two convex solids is that of their distance; a composite is searched for the parts
 /// near the other shape. Of two composites, the parts of the one with fewer parts each search the
-/// other, unless they are too far away: O(n log m) at most. A half-space not aligned with an axis
-/// is tested against every part.
+/// other, except parts that are too far away: O(n log m) at most. A half-space not aligned with an
+/// axis is tested against every part.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Point, Vector};

@@ -8,7 +8,7 @@ use core::fmt;
 use crate::math::{Real, Vector, is_unit};
 use crate::shape::{MAX_NESTING, ShapeKind};
 
-/// Why a constructor rejected its input. Values are converted to `f64` without loss.
+/// The reason why a constructor rejected its input. Values are converted to `f64` without loss.
 ///
 /// ```
 /// use impinge::dim2::shape::{Ball, ShapeError};
@@ -73,7 +73,7 @@ pub enum ShapeError {
         /// The number of points.
         points: usize,
     },
-    /// The faces of a solid do not close: a side of one face is not a side of exactly one other.
+    /// The faces of a solid do not close: a side of a face is not a side of exactly one other face.
     NotClosed {
         /// The index of a face with such a side.
         face: usize,
@@ -88,7 +88,7 @@ pub enum ShapeError {
         /// The kind of the shape.
         kind: ShapeKind,
     },
-    /// A composite without parts.
+    /// A compound was given no children.
     NoChildren,
     /// The position of a child of a compound is NaN or infinite.
     ChildPoseNotFinite {

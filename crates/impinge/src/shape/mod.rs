@@ -151,8 +151,9 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
         None
     }
 
-    /// Returns the name of the type and the data of the shape for a saved world; see [`SavedShape`] for an example.
-    /// Not called for shapes of the library. `None` (the default) for a shape that cannot be saved.
+    /// Returns the name of the type and the data of the shape for a saved world; see [`SavedShape`]
+    /// for an example. Not called for shapes of the library. `None` (the default) for a shape that
+    /// cannot be saved.
     #[cfg(feature = "serde")]
     fn saved(&self) -> Option<SavedShape> {
         None

@@ -6,7 +6,7 @@ use crate::bounding_volume::Aabb;
 use crate::math::{Point, Real, Vector};
 use crate::shape::{MeshError, ShapeError};
 
-/// Why a shape cannot be scaled.
+/// The reason why a shape cannot be scaled.
 ///
 /// ```
 /// use impinge::dim3::math::Vector;

@@ -62,8 +62,8 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
     /// derivative does not exist for `direction`, such as along the axis of a disk.
     ///
     /// `point` is a result of [`Self::core_support`] for a nearby direction, up to rounding. A core
-    /// may have several curved features, such as the two rims of a cylinder. The one that contains
-    /// `point` need not be the farthest along `direction`.
+    /// may have several curved features, such as the two rims of a cylinder. The feature that
+    /// contains `point` need not be the farthest along `direction`.
     ///
     /// The default is `None`, which is right for cores that are hulls of finitely many points. For
     /// curved cores without this method, contact normals have a relative error of about the square

@@ -35,18 +35,18 @@ use crate::shape::{
     ConvexHull, ConvexPolygon, FeatureId, Kind, MeshByDimension, ShapeHandle, TriMesh, Triangle,
 };
 
-/// The algorithms that differ by dimension. They are methods of [`Here`] rather than of the scalar, so that they are
-/// not visible on a user's `N`.
+/// The algorithms that differ by dimension. They are methods of [`Here`] rather than of the scalar,
+/// so that they are not visible on a user's `N`.
 #[expect(unnameable_types, private_interfaces, reason = "for this crate alone")]
 pub trait ByDimension<N: Real, const D: usize>:
     MassByDimension<N, D> + MeshByDimension<N, D>
 {
-    /// Computes the separation of two convex solids; `None` above `limit`. All queries derive from it; see
-    /// [`crate::query`].
+    /// Computes the separation of two convex solids; `None` above `limit`. All queries derive from
+    /// it; see [`crate::query`].
     fn separation(pair: &Pair<'_, N, D>, limit: N) -> Option<Separation<N, D>>;
 
-    /// Appends the contacts of a box or a convex hull with the triangles of a surface, in SIMD lanes. Returns `false`
-    /// for other pairs, and always in 2D.
+    /// Appends the contacts of a box or a convex hull with the triangles of a surface, in SIMD
+    /// lanes. Returns `false` for other pairs, and always in 2D.
     fn face_contacts(
         query: &Query<'_, N, D>,
         scene: &Scene<'_, N, D>,
@@ -63,8 +63,8 @@ pub trait ByDimension<N: Real, const D: usize>:
     /// Classifies up to 8 pairs of parts: farther apart than `limit`, within it, or undecided.
     fn part_pairs(pairs: &PartPairs<N, D>, limit: N) -> PairMasks;
 
-    /// Updates the contacts of a convex solid and a chain of segments (2D), or of a ball and a surface (3D). Returns
-    /// `false` if the pair needs the generic path.
+    /// Updates the contacts of a convex solid and a chain of segments (2D), or of a ball and a
+    /// surface (3D). Returns `false` if the pair needs the generic path.
     fn update_quickly(
         contacts: &mut CompositeContacts<N, D>,
         between: &Between<'_, N, D>,
@@ -90,8 +90,8 @@ pub trait ByDimension<N: Real, const D: usize>:
     /// Projects a point onto a solid; `None` if there is no closed form.
     fn project_on_solid(solid: Kind<'_, N, D>, point: &Point<N, D>) -> Option<Projection<N, D>>;
 
-    /// Computes the contact points of a pair: by the SIMD kernel of its kinds if there is one, else from the
-    /// separation.
+    /// Computes the contact points of a pair: by the SIMD kernel of its kinds if there is one, else
+    /// from the separation.
     fn contacts(pair: &Pair<'_, N, D>, request: &ManifoldRequest<N>, out: &mut RawManifold<N, D>)
     where
         N: Space<D>,
@@ -108,8 +108,8 @@ pub trait ByDimension<N: Real, const D: usize>:
         out: &mut RawManifold<N, D>,
     );
 
-    /// Computes the contact points of one pair by the SIMD kernel of its kinds. Returns `false` if there is no kernel
-    /// or the kernel does not support the pair.
+    /// Computes the contact points of one pair by the SIMD kernel of its kinds. Returns `false` if
+    /// there is no kernel or the kernel does not support the pair.
     fn update_pair(question: &PairQuestion<'_, N, D>, out: &mut RawManifold<N, D>) -> bool
     where
         N: Space<D>;
@@ -155,8 +155,8 @@ pub trait ByDimension<N: Real, const D: usize>:
     /// in 2D, for a thin triangle, and where `tolerance` leaves the region uncertain.
     fn over(triangle: &Triangle<N, D>, center: &Point<N, D>, tolerance: N) -> Option<FeatureId>;
 
-    /// Returns the interval of times in which the line of a ray is inside a solid; `None` if it
-    /// misses.
+    /// Returns the interval of times in which the line of a ray is inside a solid; `None` if the
+    /// line misses the solid.
     fn ray_span(solid: Kind<'_, N, D>, ray: &Ray<N, D>) -> Option<Span<N, D>>;
 
     /// Returns the first hit of a ray on a mesh.
@@ -183,7 +183,7 @@ pub trait ByDimension<N: Real, const D: usize>:
     /// Converts a solid of revolution to a `Kind`. The 2D implementation is unreachable.
     fn revolved(solid: &Revolved<N>) -> Kind<'_, N, D>;
 
-    /// Returns the convex hull of points; `None` if it has no area (2D) or volume (3D).
+    /// Returns the convex hull of points; `None` if the hull has no area (2D) or volume (3D).
     fn hull(points: &[Point<N, D>]) -> Option<ShapeHandle<N, D>>;
 
     /// Adds the lines and triangles of a convex solid to a sketch.

@@ -66,28 +66,30 @@ compiled! {
         with_features: bool,
     ) -> Option<Witness<N, D>> = witness_of_placed;
 
-    /// Computes the time and place at which two solids that translate first touch.
+    /// Computes the time at which two solids that translate first touch, and the contact at that
+    /// time; `None` without an impact.
     fn impact(
         one: &Moving<'_, N, D>,
         other: &Moving<'_, N, D>,
         options: &ImpactOptions<N>,
     ) -> Option<Impact<N, D>> = impact_of_pair;
 
-    /// Computes the time at which two solids that translate first touch.
+    /// Computes the time at which two solids that translate first touch; `None` without an impact.
     fn time_of_impact(
         one: &Moving<'_, N, D>,
         other: &Moving<'_, N, D>,
         options: &ImpactOptions<N>,
     ) -> Option<N> = time_of_pair;
 
-    /// Computes the time and place at which two solids that translate and rotate first touch.
+    /// Computes the time at which two solids that translate and rotate first touch, and the contact
+    /// at that time; `None` without an impact.
     fn nonlinear_impact(
         flight: &Flight<'_, N, D>,
         options: &ImpactOptions<N>,
     ) -> Option<Impact<N, D>> = impact_of_flight;
 
-    /// Returns the interval of times in which the line of a ray is inside a solid; `None` if it
-    /// misses.
+    /// Returns the interval of times in which the line of a ray is inside a solid; `None` if the
+    /// line misses the solid.
     fn ray_span(solid: Kind<'_, N, D>, ray: &Ray<N, D>) -> Option<Span<N, D>> =
         <Here as ByDimension<N, D>>::ray_span;
 

@@ -1,10 +1,11 @@
 //! Entries (functions that are compiled in this crate instead of the caller's), and the algorithms
 //! that differ by dimension.
 //!
-//! Generic code is compiled where it is first used with concrete types: in the user's crate, at the optimisation level
-//! of that crate, and again after each change there. So the public functions of the library are thin generic wrappers
-//! around *entries*: functions that this crate compiles for each scalar and dimension. [`compiled!`] generates the
-//! entries from a list of signatures. A program links only the entries that it calls, and their callees.
+//! Generic code is compiled where it is first used with concrete types: in the user's crate, at the
+//! optimisation level of that crate, and again after each change there. So the public functions of
+//! the library are thin generic wrappers around *entries*: functions that this crate compiles for
+//! each scalar and dimension. [`compiled!`] generates the entries from a list of signatures. A
+//! program links only the entries that it calls, and their callees.
 //!
 //! ```text
 //!   query::distance::<f32, 3>     generic, compiled in the user's crate
@@ -13,8 +14,9 @@
 //!               -> separation::distance_in_world::<f32, 3>    generic code again, compiled here with the entry
 //! ```
 //!
-//! Code that differs by dimension is a method of [`ByDimension`], which has one `impl` for each dimension. This module
-//! is on no floor of `ARCHITECTURE.md`: it is the only module through which lower floors may reach higher floors.
+//! Code that differs by dimension is a method of [`ByDimension`], which has one `impl` for each
+//! dimension. This module is on no floor of `ARCHITECTURE.md`: it is the only module through which
+//! lower floors may reach higher floors.
 
 mod by_dimension;
 #[cfg(feature = "f64")]
@@ -23,19 +25,21 @@ pub(crate) mod entries;
 
 pub(crate) use self::by_dimension::ByDimension;
 
-/// Declares entries. Generates a trait with a method for each entry, the implementations of this trait for [`Here`]
-/// (two scalars, two dimensions), and for each entry a generic function over `N: Space<D>` that calls the method for
-/// `N` and `D`.
+/// Declares entries. Generates a trait with a method for each entry, the implementations of this
+/// trait for [`Here`] (two scalars, two dimensions), and for each entry a generic function over
+/// `N: Space<D>` that calls the method for `N` and `D`.
 ///
-/// An `inlined trait` has entries whose work is small compared with a call: in a build without debug assertions, their
-/// generic code is compiled into the caller. A build with debug assertions usually does not optimise the caller. There
-/// a call of the entry is many times as fast, even if this crate is not optimised either.
+/// An `inlined trait` has entries whose work is small compared with a call: in a build without
+/// debug assertions, their generic code is compiled into the caller. A build with debug assertions
+/// usually does not optimise the caller. In such a build a call of the entry is many times as fast
+/// as its code in the caller, even if this crate is not optimised either.
 ///
 /// Entries of a list `where feature = "…"` are compiled in this crate only with that feature, else
 /// in the crates that call them.
 ///
-/// Signatures use `N` and `D`, which are concrete types and numbers in the implementations. Without the feature of a
-/// dimension, its entries are `#[inline]` functions that no one calls, so they are not compiled.
+/// Signatures use `N` and `D`, which are concrete types and numbers in the implementations. Without
+/// the feature of a dimension, its entries are `#[inline]` functions that no one calls, so they are
+/// not compiled.
 macro_rules! compiled {
     ($(#[$about:meta])* trait $entries:ident; $($list:tt)*) => {
         $crate::tables::compiled! { @list called, all(); $(#[$about])* trait $entries; $($list)* }
@@ -122,8 +126,8 @@ macro_rules! compiled {
 }
 pub(crate) use compiled;
 
-/// The type that implements the entries and algorithms of all scalars and dimensions. They are not methods of the
-/// scalar, since these would be visible on a user's `N`.
+/// The type that implements the entries and algorithms of all scalars and dimensions. They are not
+/// methods of the scalar, since these would be visible on a user's `N`.
 #[expect(unnameable_types, reason = "for this crate alone")]
 #[derive(Debug)]
 pub struct Here;

@@ -27,9 +27,9 @@ impl<N: Real> ConvexHull<N> {
     /// The hull is computed from the points, as by [`Self::try_from_points`]: coplanar faces become
     /// one, and points that are not corners are left out, so vertices and faces get new indices.
     /// The given faces are only checked: the centre of each must lie on the hull, within 64 epsilon
-    /// of the largest coordinate, and together they must close.
+    /// of the largest coordinate, and each side must belong to exactly two faces.
     ///
-    /// The cost is that of the hull, plus one test of all its faces for each given face.
+    /// The cost is the cost of the hull, plus one test of all its faces for each given face.
     ///
     /// ```
     /// use impinge::dim3::math::Point;

@@ -33,15 +33,16 @@ const ROUNDS: usize = 8;
 
 /// Returns the convex hull of some points.
 ///
-/// Let `u = N::EPSILON · max |coordinate|`, one rounding unit of the points. Points outside by less
-/// than 2 u are left out. Triangles within 4 u of a plane are merged into one polygon. Vertices
-/// within 4 u of the segment between two neighbors, or of the plane of all their neighbors, are
-/// removed. A face has the normal of its largest triangle. So no given point is in front of a face,
-/// measured from the face's highest vertex, by more than 8 u, and usually not by more than 4 u.
-/// Where two faces meet at an angle that is itself rounding error, as at the rim of a dish about
-/// 100 u deep, the bound is 32 u. No vertex of a face lies lower than the highest one by more than
-/// 8 u. Every vertex is bitwise equal to one of the points; of coinciding points one is used. The
-/// faces visible from a point are decided exactly, so no input breaks the algorithm.
+/// Let `u = N::EPSILON · max |coordinate|`, one rounding unit of the points. Points outside the
+/// hull by less than 2 u are left out. Triangles within 4 u of a plane are merged into one polygon.
+/// Vertices within 4 u of the segment between two neighbors, or of the plane of all their
+/// neighbors, are removed. A face has the normal of its largest triangle. So no given point is in
+/// front of a face, measured from the face's highest vertex, by more than 8 u, and usually not by
+/// more than 4 u. Where two faces meet at an angle that is itself rounding error, as at the rim of
+/// a dish about 100 u deep, the bound is 32 u. Along the normal of a face, its vertices differ in
+/// height by at most 8 u. Every vertex is bitwise equal to one of the points; of coinciding points
+/// one is used. The faces visible from a point are decided exactly, so no input breaks the
+/// algorithm.
 ///
 /// The algorithm is quickhull, with an expected time of O(n log n). The result depends only on the
 /// points and their order, and scaling them by a power of two changes no index.

@@ -150,8 +150,9 @@ impl FaceRings {
     }
 
     /// Removes each vertex that only two faces share, if it lies on a straight line between its
-    /// neighbors in both. Returns false if such a vertex is not on a straight line, as at a closed
-    /// seam between two nearly coplanar faces: a vertex with two sides is invalid.
+    /// neighbors in both. Returns `false` if such a vertex is not on a straight line or one of its
+    /// faces is a triangle, or if the faces no longer close: a vertex with two sides is invalid.
+    /// This occurs at a closed seam between two nearly coplanar faces.
     fn straighten(&mut self, scaled: &Scaled<3>) -> bool {
         let mut uses = vec![(0_u32, [0; 2]); scaled.points.len()];
         for (face, ring) in self.rings().enumerate() {

@@ -48,9 +48,9 @@ impl Facet {
         let [a, b, c] = corner_points;
         let (u, v) = (b - a, c - a);
         let mut across = u.cross(&v);
-        // The cross product has a rounding error of 2⁻⁵⁰ times the product of the two lengths. That
-        // is at most 2⁻⁴⁵ of its own length if this is at least 1/32 of the product. A shorter
-        // cross product is recomputed exactly.
+        // The cross product has a rounding error of 2⁻⁵⁰ times the product of the two lengths. This
+        // error is at most 2⁻⁴⁵ of the length of the cross product if that length is at least 1/32
+        // of the product of the two lengths. A shorter cross product is recomputed exactly.
         if across.norm_squared() * 1024.0 < u.norm_squared() * v.norm_squared() {
             across = area_vector(corner_points);
         }
@@ -172,8 +172,8 @@ impl<'a> HullSurface<'a> {
     }
 
     /// Puts a point into the list of the facet over which it is highest, among the facets with an
-    /// index of at least `first`. If it is in front of none of them, it is dropped: it stays inside
-    /// the growing surface.
+    /// index of at least `first`. A point in front of none of these facets is dropped, since it
+    /// stays inside the growing surface.
     ///
     /// A point that is outside, and was in front of a removed facet, is in front of one of the
     /// facets that replaced it.
@@ -307,8 +307,8 @@ impl<'a> HullSurface<'a> {
     }
 
     /// Moves each remaining outside point to the facet over which it is highest. Appends to
-    /// `pending` the facets for which it is farther outside than the tolerance. Other points stay
-    /// in their lists: later facets may be below them.
+    /// `pending` each facet that receives a point farther outside than the tolerance. Other points
+    /// stay in their lists: later facets may be below them.
     fn promote(&mut self, pending: &mut Vec<u32>) {
         for facet in 0..index_of(self.facets.len()) {
             if self.facets[at(facet)].visited == GONE {
@@ -327,9 +327,10 @@ impl<'a> HullSurface<'a> {
         }
     }
 
-    /// Returns the facet over which a point is highest, starting from the facet `first` that it is
-    /// in front of, and the point's distance outside: that height, or the distance from the
-    /// surface. Near the rim of a thin solid no facet has a large height.
+    /// Returns the facet over which a point is highest, and how far the point is outside: its
+    /// height over this facet, or, if that is within the tolerance, at least its distance from the
+    /// surface. The search starts from the facet `first`, which the point is in front of. Near the
+    /// rim of a thin solid no facet has a large height.
     fn farthest_outside(&mut self, point: u32, first: u32) -> (u32, f64) {
         self.look(point, first);
         let mut best = (first, 0.0);

@@ -39,14 +39,14 @@ impl<const D: usize> Scaled<D> {
     }
 }
 
-/// Returns the larger of two numbers. `math::max` needs a scalar of the library, which `f64` is
-/// only with its feature.
+/// Returns the larger of two numbers. `math::max` needs a scalar of the library, and `f64` is one
+/// only with the feature `f64`.
 pub(super) fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
 /// Returns the unit vector along a vector between scaled points, and the length of the vector;
-/// `None` if it is zero.
+/// `None` for a zero vector.
 pub(super) fn direction<const D: usize>(v: &Vector<f64, D>) -> Option<(Vector<f64, D>, f64)> {
     let length = v.norm();
     (length > 0.0).then(|| (v / length, length))
@@ -72,10 +72,10 @@ fn last<const D: usize>(points: &[Point<f64, D>], measures: &[f64], tied: f64) -
 }
 
 /// Returns the two points that are farthest apart along the axis of the largest spread; of several
-/// such points the last in order of coordinates.
+/// points at one end, the last in order of coordinates.
 ///
 /// # Errors
-/// [`ShapeError::Degenerate`] with dimension 0 if the points coincide.
+/// [`ShapeError::Degenerate`] with dimension 0 if the points coincide within [`Scaled::flat`].
 pub(super) fn first_two<const D: usize>(scaled: &Scaled<D>) -> Result<[usize; 2], ShapeError> {
     let points = &scaled.points;
     let mut ends = [[0; 2]; D];
@@ -114,7 +114,8 @@ pub(super) fn distance_from_segment<const D: usize>(
 /// Returns three points that span a nearly widest triangle, found in one pass.
 ///
 /// # Errors
-/// [`ShapeError::Degenerate`] with the dimension 0 or 1 if the points coincide or lie on a line.
+/// [`ShapeError::Degenerate`] with the dimension 0 or 1 if the points coincide or lie on a line,
+/// within [`Scaled::flat`].
 pub(super) fn first_three<const D: usize>(scaled: &Scaled<D>) -> Result<[usize; 3], ShapeError> {
     let [first, second] = first_two(scaled)?;
     let line = ShapeError::Degenerate { dimension: 1 };
@@ -138,7 +139,8 @@ pub(super) fn first_three<const D: usize>(scaled: &Scaled<D>) -> Result<[usize; 
 /// Returns four points that span a nearly largest tetrahedron, found in one pass.
 ///
 /// # Errors
-/// [`ShapeError::Degenerate`] if the points coincide or lie on a line or in a plane.
+/// [`ShapeError::Degenerate`] if the points coincide or lie on a line or in a plane, within
+/// [`Scaled::flat`].
 pub(super) fn first_four(scaled: &Scaled<3>) -> Result<[usize; 4], ShapeError> {
     let [first, second, third] = first_three(scaled)?;
     let plane = ShapeError::Degenerate { dimension: 2 };

@@ -89,7 +89,8 @@ fn segment<N: Real, const D: usize>(
 }
 
 /// Returns the polygon of coplanar points; `None` if they lie on a line. Its corners are computed
-/// in the most nearly parallel coordinate plane, where no coordinate is rounded.
+/// in the coordinate plane that is most nearly parallel to the polygon, so that no coordinate is
+/// rounded.
 fn flat_polygon<N: Space<3>>(
     scaled: &Scaled<3>,
     points: &[Point<N, 3>],

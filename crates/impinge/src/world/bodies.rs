@@ -26,8 +26,9 @@ const CHANGE_INDEX: u32 = PREDICTED - 1;
 /// Maximum number of entries in the list of changes, and therefore of objects.
 pub(super) const MAX_CHANGES: u32 = CHANGE_INDEX;
 
-/// An object as the user last set it, without the user's data. The two phases have copies as of the
-/// last update. Takes 96 bytes for `f32` in 3D.
+/// An object as the user last set it, without the user's data. The broad phase and the object table
+/// of the narrow phase have copies of its data as of the last update. Takes 96 bytes for `f32` in
+/// 3D.
 ///
 /// Fields that queries read are adjacent, from `isometry` to `groups`:
 ///
@@ -55,7 +56,7 @@ clone_fields!([N: Space<D>, const D: usize] WorldBody<N, D> {
 });
 
 /// The fields of a body that change when it moves, and when an update processes the move. While the
-/// world has marks, a move records them.
+/// world has marks ([`WorldMark`](super::WorldMark)), the old values are recorded before each move.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BodyMotion<N: Space<D>, const D: usize> {
     isometry: N::Isometry,
@@ -71,7 +72,7 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         (self.isometry, self.state) = (motion.isometry, motion.state);
     }
 
-    /// Returns the handle index.
+    /// Returns the index of the object's handle.
     pub(crate) const fn index(&self) -> u32 {
         self.handle.index()
     }
@@ -150,8 +151,8 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         self.query.get().query_limit()
     }
 
-    /// Calls `question` with the geometry of the shape and returns its result. Does not load a ball
-    /// or a box, of which the body has a copy.
+    /// Calls `question` with the geometry of the shape and returns the result of `question`. The
+    /// geometry of a ball or a box is read from the copy in the body, without loading the shape.
     #[inline(always)]
     pub(crate) fn ask<R>(&self, question: impl FnOnce(Geometry<'_, N, D>) -> R) -> R {
         self.solid.ask(&self.shape, question)
@@ -162,13 +163,13 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         self.state & PREDICTED != 0
     }
 
-    /// Marks an object as fixed that is restored from a saved world.
+    /// Marks the object as fixed, while a saved world is restored.
     #[cfg(feature = "serde")]
     pub(super) const fn restore_fixed(&mut self) {
         self.state |= FIXED;
     }
 
-    /// Marks an object as having a predicted pose that is restored from a saved world.
+    /// Marks the object as having a predicted pose, while a saved world is restored.
     #[cfg(feature = "serde")]
     pub(super) const fn restore_predicted(&mut self) {
         self.state |= PREDICTED;
@@ -185,8 +186,8 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
     }
 
     /// Moves the object and clears its prediction. Fails if a number of the isometry is not finite,
-    /// or its rotation is not of unit length. An object without a prediction that is already at
-    /// `isometry` is not marked as changed.
+    /// or its rotation is not of unit length. If the object has no prediction and `isometry` equals
+    /// its present isometry, the object is not marked as changed.
     pub(crate) fn set_isometry(
         &mut self,
         list: &mut ChangeList<N, D>,
@@ -273,9 +274,9 @@ fn usable<N: Real, const D: usize>(aabb: Aabb<N, D>) -> Aabb<N, D> {
 }
 
 /// Returns the box grown by `limit` and by a slack for rounding: a few units in the last place of
-/// the largest finite coordinate or of `limit`. Two grown boxes overlap whenever the distance of
-/// the solids is at most the sum of both limits. The slack covers the rounding of the boxes, of the
-/// sum, and of the compared distance.
+/// `limit` or of the largest finite coordinate, whichever is larger. Two grown boxes overlap
+/// whenever the distance of the solids is at most the sum of both limits. The slack covers the
+/// rounding of the boxes, of the sum, and of the compared distance.
 pub(super) fn grown<N: Real, const D: usize>(aabb: &Aabb<N, D>, limit: N) -> Aabb<N, D> {
     let mut largest = limit;
     for axis in 0..D {

@@ -47,7 +47,8 @@ pub(crate) struct BodyEntry<N: Real, const D: usize> {
     aabb: Aabb<N, D>,
 }
 
-/// The objects that changed since the last update, each once.
+/// The objects that changed since the last update, each once, with the predicted poses and the
+/// skins of all objects.
 #[derive(Debug)]
 pub(crate) struct ChangeList<N: Space<D>, const D: usize> {
     entries: Vec<BodyEntry<N, D>>,
@@ -399,7 +400,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         }
     }
 
-    /// Checks that the entry at the body's index in the list belongs to that object.
+    /// Checks that the entry at the body's index in the list belongs to the body's object.
     pub(crate) fn validate(&self, body: &WorldBody<N, D>) -> Result<(), String> {
         match body.change_index().map(|change_index| self.entries.get(change_index as usize)) {
             Some(entry) if entry.map(|entry| entry.index) != Some(body.index()) => {

@@ -55,21 +55,22 @@ pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
     pub(super) objects: CollisionObjects<N, D, T>,
     pub(super) broad_phase: Box<WorldBroadPhase<N, D>>,
     pub(super) narrow_phase: Box<dyn WorldsNarrowPhase<N, D, T>>,
-    /// The phases that replace the present phases at the next update; `None` if a phase is not
-    /// replaced.
+    /// The broad phase and, in the next field, the narrow phase that take over at the next update;
+    /// `None` for a phase that is not replaced.
     pub(super) next_broad_phase: Option<Box<WorldBroadPhase<N, D>>>,
     pub(super) next_narrow_phase: Option<Box<dyn WorldsNarrowPhase<N, D, T>>>,
     pub(super) filters: Filters<N, D, T>,
     /// The events of the last update.
     pub(super) events: Events,
-    /// Events of removals and [`Self::update_pair`] since the last update, which the next one
+    /// Events of removals and [`Self::update_pair`] since the last update, which the next update
     /// delivers.
     pub(super) queued: Events,
     /// Whether the next update keeps the events of the last one.
     pub(super) keeps_events: bool,
     /// Removed objects whose handles are in events.
     pub(super) removed: RemovedObjects<N, D, T>,
-    /// Scratch: handle indices of objects whose pairs need other algorithms.
+    /// Scratch: handle indices of objects whose shape, query type or skin changed, so that the
+    /// algorithms of their pairs must be chosen again.
     pub(super) algorithms: Vec<u32>,
     /// Scratch: pairs that started or stopped in an update.
     pub(super) interactions: Vec<Interaction>,

@@ -65,9 +65,9 @@ type PairRule<'a, N, const D: usize, T> =
     dyn Fn(&CollisionObject<N, D, T>, &CollisionObject<N, D, T>) -> bool + 'a;
 
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Checks the invariants, and that the narrow phase has every pair whose boxes overlap and that
-    /// groups and filters allow. Tests every pair of objects, so it is slow. Valid right after an
-    /// update.
+    /// Checks the invariants, and that the narrow phase has every pair that groups and filters
+    /// allow and whose volumes overlap. The volume of an object is its box grown by query limit and
+    /// skin. Tests every pair of objects, so it is slow. Valid right after an update.
     ///
     /// # Errors
     /// Returns a sentence that names the violated invariant.
@@ -102,7 +102,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
     }
 
-    /// Returns the pairs that groups and filters allow and whose loosened volumes overlap.
+    /// Returns the pairs that must exist: each object with itself if it has that pair, and every
+    /// two objects that groups and filters allow and whose volumes overlap. Volumes do not include
+    /// the margin of the broad phase.
     fn expected_pairs(
         &self,
         update_filter: &PairRule<'_, N, D, T>,
@@ -122,7 +124,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         pairs
     }
 
-    /// Returns `true` if groups and filters allow the pair.
+    /// Returns `true` if fixed marks, groups and filters allow the pair. For an object with itself,
+    /// returns [`WorldBody::wants_self_pair`].
     fn is_allowed(
         &self,
         handle1: CollisionObjectHandle,

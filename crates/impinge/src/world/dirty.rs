@@ -65,7 +65,7 @@ impl<const D: usize> DirtyTree<D> {
         self.changes_left == 0
     }
 
-    /// Returns the id of the object in the tree, which may be absent from it. `None` for an object
+    /// Returns the id that the object has in the tree if the tree contains it; `None` for an object
     /// that certainly is not in the tree.
     pub(crate) fn id_of<N: Space<D>>(&self, body: &WorldBody<N, D>) -> Option<u32> {
         if self.has_all { Some(body.index()) } else { body.change_index() }
@@ -94,8 +94,8 @@ impl<const D: usize> DirtyTree<D> {
         }
     }
 
-    /// Calls `found` with groups of ids whose boxes the moving box may touch by `limit`, each with
-    /// a lower bound of the time.
+    /// Calls `found` with groups of ids whose boxes the moving box may touch by the time `limit`,
+    /// each with a lower bound of the time of contact.
     pub(crate) fn by_time<N: Real>(
         &self,
         sweep: &Sweep<N, D>,

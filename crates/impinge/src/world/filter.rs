@@ -11,9 +11,10 @@ use crate::narrow_phase::CollisionObjectHandle;
 
 /// Decides which pairs may exist.
 ///
-/// A filter is called only for pairs that the groups allow, and only when a pair is about to start.
-/// All filters of a world must return `true` for the pair to start. The result for a pair must not
-/// change until the filter is registered again or the pairs are filtered again
+/// An update calls a filter only for pairs whose boxes overlap and that fixed marks and groups
+/// allow: when the boxes begin to overlap, and when the pair is filtered again. All filters of a
+/// world must return `true` for the pair to exist. The result for a pair must not change until the
+/// filter is registered again or the pairs are filtered again
 /// ([`CollisionWorld::refilter_pairs_of`]).
 ///
 /// Implement the trait of the same name in [`crate::dim2::world`] or [`crate::dim3::world`], which
@@ -97,7 +98,7 @@ impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
         self.filters.iter().map(|(name, _)| name.as_str())
     }
 
-    /// Records that an update has called the filters.
+    /// Clears the flag of changed filters, at the end of an update.
     pub(super) const fn note_update(&mut self) {
         self.have_changed = false;
     }

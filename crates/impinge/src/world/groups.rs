@@ -334,7 +334,7 @@ impl CollisionGroups {
             && other.membership & self.whitelist != 0
     }
 
-    /// Returns `true` if the object is tested against itself.
+    /// Returns `true` if self-collision is enabled.
     #[must_use]
     pub const fn can_interact_with_self(&self) -> bool {
         self.membership & SELF_COLLISION != 0

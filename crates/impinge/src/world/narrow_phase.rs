@@ -43,8 +43,8 @@ pub type ContactViewPiece<'a, N, const D: usize> = Box<
 /// In each update a world calls [`Self::handle_interactions`] for objects whose pair with
 /// themselves starts or stops, then [`Self::handle_change`] for each object whose shape, query type
 /// or skin changed. Then it calls [`Self::handle_interactions`] with the pairs of two objects that
-/// started or stopped, and [`Self::update`]. In all calls `handle1 < handle2`; they are equal for
-/// an object that is tested against itself. During a call [`CollisionObjects::table`] has the
+/// started or stopped, and [`Self::update`]. In all calls `handle1 < handle2`, or both are equal
+/// for an object that is tested against itself. During a call [`CollisionObjects::table`] has the
 /// poses, shapes and query types of the objects in the call, and of all objects with pairs.
 ///
 /// ```
@@ -64,9 +64,9 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
     /// `events`.
     fn update(&mut self, objects: &CollisionObjects<N, D, T>, events: &mut Events);
 
-    /// Computes a pair between two updates. During this call [`CollisionObjects::table`] has the
-    /// present poses of the pair's objects instead of those of the last update. Appends the
-    /// resulting events; returns `false` if there is no such pair.
+    /// Computes the contacts or the proximity of a pair between two updates. During this call
+    /// [`CollisionObjects::table`] has the present poses of the pair's objects instead of those of
+    /// the last update. Appends the resulting events; returns `false` if there is no such pair.
     ///
     /// The default does not support this and returns `false`.
     fn update_pair(
@@ -105,8 +105,8 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         }
     }
 
-    /// Stops a pair because one of its objects is being removed. Appends at most one event, which
-    /// ends the pair's status of the last update.
+    /// Stops a pair because one of its objects is being removed. Appends at most one event: the end
+    /// of the contact or of the proximity that the pair had at its last computation.
     fn handle_removal(
         &mut self,
         events: &mut Events,

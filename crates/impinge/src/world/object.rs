@@ -10,8 +10,8 @@ use crate::shape::ShapeHandle;
 
 /// An object of a world, with the user's data.
 ///
-/// Only the user's data can be changed through it; everything else is changed through the world, by
-/// handle.
+/// Only the user's data can be changed through a reference to an object. Everything else is changed
+/// through the world, by handle.
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;

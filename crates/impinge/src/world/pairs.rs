@@ -198,9 +198,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         views.collect()
     }
 
-    /// Replaces the contents of `stream` by all contacts of the last update, in dense lists,
-    /// each with its index in the lists before. The contacts and their order are those of
-    /// [`Self::contact_views`]; see [`ContactStream`] for an example.
+    /// Replaces the contents of `stream` by all contacts of the last update, in dense lists. Each
+    /// contact has its index in the lists that `stream` had before the call. The contacts and their
+    /// order are those of [`Self::contact_views`]; see [`ContactStream`] for an example.
     pub fn read_contacts(&self, stream: &mut ContactStream<N, D>) {
         self.narrow_phase.read_contacts(&self.objects, stream);
     }

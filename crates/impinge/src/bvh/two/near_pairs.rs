@@ -1,10 +1,10 @@
-//! Pairs of objects of two trees, each in its own frame, near ones first.
+//! Searches for pairs of objects of two trees, each tree in its own frame, nearer pairs first.
 //!
 //! The search is best first over pairs of blocks, one of each tree (Hjaltason and Samet,
-//! "Incremental distance join algorithms for spatial databases", 1998). It begins with a descent
-//! straight to two objects, whose distance rejects other pairs. The lanes of both blocks are
-//! compared with each other, or only the lanes of the wider block if it is much wider. A box of one
-//! tree is transformed into the frame of the other, so that the axes of both frames separate
+//! "Incremental distance join algorithms for spatial databases", 1998). The search begins with a
+//! descent straight to two objects, whose distance rejects other pairs. The lanes of both blocks
+//! are compared with each other, or only the lanes of the wider block if it is much wider. A box of
+//! one tree is transformed into the frame of the other, so that the axes of both frames separate
 //! blocks. Other directions separate further blocks: along these, the extent of a block is bounded
 //! by its box and its slab.
 //!
@@ -36,18 +36,18 @@ const EXPECTED: usize = 64;
 /// that block is opened.
 const MUCH_WIDER: f64 = 8.0;
 
-/// A direction toward the other tree: a unit vector in the frame of each tree. In one frame, the
-/// two vectors are opposite.
+/// The direction from each tree toward the other tree: a unit vector in the frame of the first
+/// tree, and one in the frame of the second. Rotated into one frame, the two vectors are opposite.
 pub(crate) type Toward<N, const D: usize> = [Vector<N, D>; 2];
 
 /// The relative pose of two trees, and the receiver of pairs of their objects.
 pub(crate) trait TreePair<N: Real, const D: usize> {
     /// Transforms a box from the frame of the first (0) or the second (1) tree into the frame of
-    /// the other; the result encloses it.
+    /// the other tree; the result encloses the transformed box.
     fn in_other(&self, which: usize, aabb: &Aabb<N, D>) -> Aabb<N, D>;
 
     /// Returns a box around an object of the first (0) or the second (1) tree, in the frame of the
-    /// other.
+    /// other tree.
     fn object_in_other(&self, which: usize, id: u32) -> Aabb<N, D>;
 
     /// Returns the largest distance between boxes of pairs to visit; a negative distance ends the
@@ -61,8 +61,8 @@ pub(crate) trait TreePair<N: Real, const D: usize> {
     /// objects within [`Self::limit`].
     fn depth(&self) -> N;
 
-    /// Returns the direction along which the nearest objects so far are separated; `None` before
-    /// two objects have been compared.
+    /// Returns the direction along which the nearest two objects compared so far are separated;
+    /// `None` before two objects have been compared.
     fn best(&self) -> Option<Toward<N, D>>;
 
     /// Returns the direction for a unit vector in the frame of the first (0) or the second (1)
@@ -70,7 +70,7 @@ pub(crate) trait TreePair<N: Real, const D: usize> {
     fn toward(&self, which: usize, along: &Vector<N, D>) -> Option<Toward<N, D>>;
 
     /// Returns the direction from a point of the first tree to a point of the second, each in its
-    /// tree's frame; `None` if there is none.
+    /// tree's frame; `None` if the points coincide, or if [`Self::toward`] returns `None`.
     fn between(&self, points: [Point<N, D>; 2]) -> Option<Toward<N, D>>;
 
     /// Returns an upper bound of the extent of an object of the first (0) or the second (1) tree
@@ -90,7 +90,8 @@ pub(crate) trait TreePair<N: Real, const D: usize> {
     fn visit(&mut self, which: usize, own: u32, others: &[u32]);
 }
 
-/// A pair of blocks, one of each tree. At equal distances, pairs in low layers come first.
+/// A pair of blocks, one of each tree. At equal distances, pairs whose first blocks are in lower
+/// layers come first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct BlockPair {
     /// Bits of a lower bound of the distance of two objects, one in each block. It is zero or more,
@@ -100,7 +101,8 @@ struct BlockPair {
     blocks: [u32; 2],
     /// Whether the boxes of the two blocks are disjoint.
     are_apart: bool,
-    /// Whether the distance is only that of the boxes or of the parent pair, and can be raised.
+    /// Whether `distance` is only the distance of the boxes or of the parent pair, so that
+    /// [`PairSearch::gap`] may raise it.
     is_rough: bool,
 }
 
@@ -115,7 +117,7 @@ struct PairSearch<'a, 'q, N: Real, const D: usize> {
 type NearLanes<N> = SmallVec<[(N, u32); LANES]>;
 
 /// Visits the pairs of objects of two trees that may be within the bound and limit of `question`,
-/// near ones roughly first.
+/// nearer pairs roughly first.
 pub(crate) fn visit_pairs<N: Real, const D: usize>(
     trees: [&Tree<D>; 2],
     question: &mut dyn TreePair<N, D>,
@@ -169,7 +171,8 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
     }
 
     /// Raises the lower bound of a pair, and returns the pair if it is still first. `None` if the
-    /// pair is beyond the limit, or if another pair is now first: then the pair is queued again.
+    /// pair is beyond the limit, or if another pair is now first; in the latter case the pair is
+    /// queued again.
     fn first(&mut self, mut pair: BlockPair) -> Option<BlockPair> {
         let gap = if pair.is_rough { self.gap(&pair) } else { self.best_gap(&pair) };
         let is_beyond = gap > self.question.limit();
@@ -201,16 +204,17 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         self.question.gap(toward, extents)
     }
 
-    /// Returns the gap along the direction of the nearest objects so far, if the boxes of the two
-    /// blocks are disjoint; else minus infinity.
+    /// Returns the gap along the direction of [`TreePair::best`], if that is known and the boxes of
+    /// the two blocks are disjoint; else minus infinity.
     fn best_gap(&self, pair: &BlockPair) -> N {
         let best = self.question.best().filter(|_| pair.are_apart);
         best.map_or(-N::INFINITY, |toward| self.gap_along(&toward, pair))
     }
 
     /// Returns the largest gap along directions that are likely to separate the contents of two
-    /// blocks. These are the direction of the nearest objects so far and the direction between the
-    /// block centres if their boxes are disjoint, else the normals of their slabs.
+    /// blocks. If the boxes of the blocks are disjoint, these are the direction of
+    /// [`TreePair::best`] and the direction between the centres of the boxes; else the normals of
+    /// the blocks' slabs.
     fn gap(&self, pair: &BlockPair) -> N {
         let gap = self.best_gap(pair);
         if gap > self.question.limit() {
@@ -245,8 +249,8 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         }
     }
 
-    /// Queues the children of block `which`, each paired with the other block, unless
-    /// [`Self::best_gap`] exceeds the limit.
+    /// Queues the children of block `which` that are near the other block, each paired with the
+    /// other block, unless [`Self::best_gap`] of the new pair exceeds the limit.
     fn open_one(&mut self, which: usize, pair: &BlockPair) {
         for below in self.near_below(which, pair) {
             let is_beyond = self.best_gap(&below) > self.question.limit();
@@ -296,9 +300,9 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
     }
 
     /// Returns directions that may separate single objects from all of leaf block `which`, each
-    /// with the extent of the block along it. They are the two normals of its slab and, if the
-    /// limit is positive, the direction of the nearest objects so far, with the extent of the
-    /// block's objects.
+    /// with the extent of the block along it. The directions are the two normals of the block's
+    /// slab and, if the limit is positive, the direction of [`TreePair::best`], with the extent of
+    /// the block's objects.
     fn sides(&self, which: usize, pair: &BlockPair) -> SmallVec<[(Toward<N, D>, N); 3]> {
         let block = self.slab_box(which, pair);
         let across = block.slab.and_then(|slab| Some(unit(&slab.across::<N>())?.0));
@@ -320,7 +324,7 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
     }
 
     /// Iterates over the children of block `which` that are near the other block, each paired with
-    /// the other block; near ones first.
+    /// the other block; nearer children first.
     fn near_below(
         &self,
         which: usize,
@@ -332,9 +336,9 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         near.into_iter().map(move |(distance, block)| below(&pair, which, block, distance))
     }
 
-    /// Returns the lanes of a block whose boxes are within the bound of `aabb` and overlap it by at
-    /// least `depth`. `aabb` is in the frame of the block's tree. Near lanes come first; at equal
-    /// distances the lowest lane. Distances are rounded down.
+    /// Returns the lanes of a block whose boxes are within the bound of `aabb`, shrunk by
+    /// [`TreePair::depth`] on each side. `aabb` is in the frame of the block's tree. Near lanes
+    /// come first; at equal distances the lowest lane. Distances are rounded down.
     fn near(&self, which: usize, layer: u8, block: u32, aabb: &Aabb<N, D>) -> NearLanes<N> {
         let (tree, layer) = (self.trees[which], usize::from(layer));
         let gaps = Gaps::new(aabb, tree.size()).within(self.question.depth());

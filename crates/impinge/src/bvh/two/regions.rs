@@ -31,7 +31,7 @@ pub(super) struct TreePose<const D: usize> {
 }
 
 /// A convex region in the frame of the blocks that it is tested against: the intersection of a box
-/// and slabs. All are widened by the maximum distance and the rounding error.
+/// and slabs. Box and slabs are widened by the maximum distance and the rounding error.
 pub(super) struct RotatedBox<const D: usize> {
     bounds: Bounds<D>,
     /// Slabs along the axes of the region's own frame, and its block's slab.
@@ -131,7 +131,7 @@ impl<const D: usize> RotatedBox<D> {
         Self { bounds, slabs: SmallVec::new(), extent }
     }
 
-    /// Tests all boxes in a block, and returns the mask of those that the region may touch.
+    /// Tests all boxes in a block, and returns the mask of the boxes that the region may touch.
     pub(super) fn held(&self, level: Level, block: &Block<D>) -> Held {
         let mut held = Held { mask: 0, gaps: [0.0; LANES] };
         for first in [0, HALF] {

@@ -1,11 +1,11 @@
 //! Pairs of objects of two trees that may touch, each tree in its own frame.
 //!
 //! The search is depth first over pairs of blocks. The box of one block is transformed once into
-//! the frame of the other tree, and compared with all boxes in the other block. It is compared
-//! along the axes of both frames and across its slab. The axes of both frames separate most
-//! disjoint boxes (Gottschalk, Lin and Manocha, "`OBBTree`", 1996, also test the cross products of
-//! edges). The larger of two blocks is opened, and the child with the deepest overlap comes next,
-//! without a queue.
+//! the frame of the other tree, and compared with all boxes in the other block. The boxes are
+//! compared along the axes of both frames and across the slab of the first block. The axes of both
+//! frames separate most disjoint boxes (Gottschalk, Lin and Manocha, "`OBBTree`", 1996, also test
+//! the cross products of edges). The larger of two blocks is opened; its children go on a stack,
+//! and the child with the deepest overlap comes next.
 //!
 //! A search for the nearest pair is best first (Hjaltason and Samet, "Incremental distance join
 //! algorithms for spatial databases", 1998), after a descent straight to two objects. The direction
@@ -30,9 +30,10 @@ use crate::math::order::sort_few;
 use crate::math::simd::Level;
 use crate::math::{Mapped, Pose, Real, Vector, filled, max_component, unit};
 
-/// Rounding error of heights, as a multiple of the `f32` epsilon times the sum of all lengths: 3
-/// for a rotation, 3 for a scalar product and 2 for directions that are not exactly of unit length,
-/// on up to three axes. The rest is reserve.
+/// Rounding error of gaps, as a multiple of the `f32` epsilon times the sum of the sizes of both
+/// trees and the components of the translations between their frames: 3 for a rotation, 3 for a
+/// scalar product and 2 for directions that are not exactly of unit length, on up to three axes.
+/// The rest is reserve.
 const ROUNDING: f32 = 64.0;
 
 /// The relative pose of two trees, and the receiver of pairs of their objects.
@@ -45,8 +46,8 @@ pub(crate) trait TouchQuery<N: Real, const D: usize> {
     /// search.
     fn max_distance(&self) -> Option<N>;
 
-    /// Returns `true` if the maximum distance shrinks to the best distance so far. Pairs of blocks
-    /// are then opened by ascending gap, instead of depth first.
+    /// Returns `true` if the maximum distance shrinks to the least distance found so far. Pairs of
+    /// blocks are then opened by ascending gap, instead of depth first.
     fn is_for_nearest(&self) -> bool {
         false
     }
@@ -55,19 +56,19 @@ pub(crate) trait TouchQuery<N: Real, const D: usize> {
     /// visit them again.
     fn guess(&mut self, _objects: [u32; 2]) {}
 
-    /// Returns the direction along which the nearest objects so far are separated, as a unit vector
-    /// toward the other tree in the frame of each tree; `None` if unknown.
+    /// Returns the direction along which the nearest two objects compared so far are separated, as
+    /// a unit vector toward the other tree in the frame of each tree; `None` if unknown.
     fn best(&self) -> Option<Toward<N, D>> {
         None
     }
 
     /// Returns a box around an object of the first (0) or the second (1) tree, in the frame of the
-    /// other tree, up to rounding errors. If any objects are near the box, the next call is
-    /// [`Self::visit`] for this object.
+    /// other tree, up to rounding errors. If objects of the other tree are near the box, the next
+    /// call (after [`Self::corners`]) is [`Self::visit`] for this object.
     fn object_in_other(&mut self, which: usize, id: u32) -> Aabb<N, D>;
 
     /// Returns the corners of the object of the last call of [`Self::object_in_other`], in the
-    /// frame of the other tree; `None` if it has none.
+    /// frame of the other tree; `None` if the object has no corners.
     fn corners(&self) -> Option<[Vector<N, D>; 3]> {
         None
     }
@@ -143,9 +144,9 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
     }
 
     /// Returns `true` if the contents of two blocks are beyond the maximum distance, along the
-    /// direction of the nearest objects so far or the direction between the centres of the blocks.
-    /// The gaps are computed in the scalar type, which resolves more than `f32` between distant
-    /// blocks.
+    /// direction of [`TouchQuery::best`] or the direction between the centres of the blocks.
+    /// Returns `false` if [`TouchQuery::best`] returns `None`. The gaps are computed in the scalar
+    /// type, which resolves more than `f32` between distant blocks.
     fn is_beyond(&self, pair: &OpenPair) -> bool {
         let Some((best, max_distance)) = self.question.best().zip(self.question.max_distance())
         else {
@@ -210,8 +211,8 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
         region.held(self.level, &self.trees[which].layers[layer].blocks[block])
     }
 
-    /// Queues the children of block `which`, each paired with the other block. The deepest overlap
-    /// is put last, and a stack takes it next.
+    /// Queues the children of block `which`, each paired with the other block. The child with the
+    /// least gap is put last, so that a stack takes it next.
     fn open(&self, which: usize, pair: &OpenPair, margin: f32, agenda: &mut impl Agenda) {
         let Held { mask, gaps } = self.held(which, pair, margin);
         let (layer, first) = (pair.layers[which] - 1, pair.blocks[which] * small(LANES));
@@ -233,8 +234,8 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
         }
     }
 
-    /// Visits near objects of two leaf blocks: each near object of the block that has fewer, with
-    /// the near objects of the other block.
+    /// Visits near objects of two leaf blocks: each near object of the block with fewer near
+    /// objects, paired with the near objects of the other block.
     fn meet(&mut self, pair: &OpenPair, mut margin: f32) {
         let mut masks = [0; 2];
         for which in [0, 1] {

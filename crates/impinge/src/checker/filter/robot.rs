@@ -68,14 +68,14 @@ struct Covered<N: Real, const D: usize> {
 /// A bound of the region that a group can occupy in all configurations whose slides are zero: a
 /// ball around `anchor`.
 pub(super) struct NodePath<N: Real, const D: usize> {
-    /// The position of the first revolute joint of the chain, or the centre of the group if there
-    /// is none, with all slides at zero.
+    /// The position of the first revolute joint of the chain, or the centre of the group if the
+    /// chain has no revolute joint, with all slides at zero.
     pub(super) anchor: Vector<N, D>,
     /// An upper bound of the distance from `anchor` to any point of the group's bounding ball,
     /// without slides.
     pub(super) length: f64,
     /// The position of the first joint of the chain, or the centre of the group on the world.
-    /// `from_first` is the length of the chain from there. Both determine the margins.
+    /// `from_first` is the length of the chain from that position. Both determine the margins.
     first: Vector<N, D>,
     from_first: f64,
     joints: usize,
@@ -123,7 +123,7 @@ impl<const D: usize> RobotFilter<D> {
 }
 
 /// Returns the origin of the `f32` coordinates in the world frame: the position of the first joint
-/// on the world, or zero if there is none.
+/// whose parent is the world, or zero if there is no such joint.
 pub(super) fn shift_of<N: Real, const D: usize>(tree: &FrameTree<N, D>) -> Vector<N, D> {
     let first = tree.nodes.iter().find(|node| node.parent == 0);
     first.map_or_else(Vector::<N, D>::zeros, |node| node.origin)
@@ -190,7 +190,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
         let axis = longest_axis(&bodies);
         let key = |body: &Covered<N, D>| (order_of(body.balls[0].center[axis]), body.number);
         sort_few(&mut bodies, |one, other| key(one) < key(other));
-        // Splits at a multiple of 8, so that fewer groups are needed.
+        // Splits at a multiple of 8 if that leaves a second part, so that fewer groups are needed.
         let half = bodies.len().div_ceil(2);
         let full = half.next_multiple_of(LANES);
         let back = bodies.split_off(if full < bodies.len() { full } else { half });

@@ -175,7 +175,8 @@ impl<const D: usize> Scan<'_, D> {
     }
 
     /// Tests the pairs of groups against each other: first their bounding balls in all
-    /// configurations, then their balls where these are near.
+    /// configurations, then their balls in the configurations in which the bounding balls are near
+    /// each other.
     #[inline(always)]
     fn meet_itself<S: Simd, V: Wide<S, Scalar = f32>>(
         self,

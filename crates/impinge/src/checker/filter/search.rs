@@ -92,8 +92,8 @@ pub(super) struct Distances<V> {
     /// The sums of the two radii of each pair. `margin` is the error margin of the pairs.
     pub(super) radius: V,
     pub(super) margin: f32,
-    /// A bit mask of the balls to test. `exact` is a bit mask of the balls for which the computed
-    /// distance is that of the bodies.
+    /// A bit mask of the balls to test. `exact` is a bit mask of the balls whose computed distance
+    /// equals the distance of the bodies.
     pub(super) wanted: u8,
     pub(super) exact: u8,
 }

@@ -1,6 +1,6 @@
 //! Ball against ball for several pairs at a time; see `collide/separation/balls/ball_ball.rs`.
 //!
-//! Reads these fields of [`Inputs`]: both `translations` and both `radii`.
+//! Reads these fields of [`Inputs`]: both `translations`, both `radii` and `prediction`.
 
 use super::closed_form::{Form, LaneContacts};
 use super::gather::Inputs;
@@ -10,8 +10,8 @@ use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 use crate::shape::FeatureId;
 
-/// Kernel for balls whose centres do not coincide. Coinciding centres have no direction and fall
-/// back.
+/// Kernel for two balls. The pair falls back if the square of the distance of the centres is near
+/// underflow (so also if they coincide) or overflow.
 pub(super) struct BallBall;
 
 impl<N: Real, const D: usize> Form<N, D> for BallBall {

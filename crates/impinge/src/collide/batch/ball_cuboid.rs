@@ -1,7 +1,7 @@
 //! Ball against box for several pairs at a time; see `collide/separation/balls/ball_cuboid.rs`.
 //!
 //! Reads these fields of [`Inputs`]: both `translations`, the box's rotation, the ball's
-//! `radii[0]`, and the half extents in `ends[1][0]`.
+//! `radii[0]`, `prediction`, and the half extents in `ends[1][0]`.
 
 use super::closed_form::{Form, LaneContacts};
 use super::gather::Inputs;
@@ -11,7 +11,8 @@ use crate::math::simd::Simd;
 use crate::math::{Real, Wide, filled};
 use crate::shape::{Cuboid, FeatureId};
 
-/// Kernel for a ball whose centre lies outside the box.
+/// Kernel for a ball and a box. The pair falls back if the centre of the ball lies in the box, or
+/// if a half extent is at most four times the rounding error.
 pub(super) struct BallCuboid;
 
 impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
@@ -37,8 +38,8 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
         let (pose12, half) = (inputs.beside_ball::<S, V>(simd), inputs.end(simd, 1, 0));
         let radius = inputs.radius(simd, 0);
         let center = pose12.inverse_origin(simd);
-        // Nearest point of the box to the centre. For a centre inside the box both coincide, and
-        // the pair falls back.
+        // Point of the box nearest to the centre of the ball. If the centre is inside the box, both
+        // are the same point, and the pair falls back.
         let clamped = filled(
             #[inline(always)]
             |axis| center[axis].smaller(half[axis]).larger(-half[axis]),
@@ -48,8 +49,8 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
         let point1 = times(&normal, radius);
         let (reach, is_box) = length_of(simd, &half);
         let rounding_error = rounding_of::<S, N, V>(simd, radius + reach + pose12.apart());
-        // Transforms to the ball's frame and back, so that rounding equals that of the builder for
-        // one pair.
+        // Transforms the point to the ball's frame and back, so that it is rounded as in the
+        // builder for one pair.
         let touched = pose12.inverse_point(&pose12.point(&clamped));
         radius.smaller(reach).store(&mut found.size);
         let is_thick = found.put_part(simd, [&touched, &half], rounding_error);
@@ -64,10 +65,10 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
 }
 
 impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
-    /// Stores the features of the boxes that contain `point`, as `Cuboid::part_at` does: a mask for
-    /// each axis of the lanes where the feature extends along the axis, then a mask for each axis
-    /// of the lanes where the coordinate is not negative. Returns the lanes where the box is thick
-    /// enough and the point is not inside.
+    /// Stores the features of the boxes that contain `point`, as `Cuboid::part_at` does: for each
+    /// axis, a mask of the lanes where the feature extends along the axis; then for each axis, a
+    /// mask of the lanes where the coordinate of `point` is not negative. Returns the lanes where
+    /// all half extents exceed four times `rounding_error` and `point` is not inside the box.
     #[inline(always)]
     fn put_part<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,

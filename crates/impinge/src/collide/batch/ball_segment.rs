@@ -1,8 +1,8 @@
 //! Ball against segment or capsule for several pairs at a time; see
 //! `collide/separation/balls/ball_segment.rs`.
 //!
-//! Reads these fields of [`Inputs`]: both `translations`, the segment's rotation, both `radii`, and
-//! the ends of the core in `ends[1]`.
+//! Reads these fields of [`Inputs`]: both `translations`, the segment's rotation, both `radii`,
+//! `prediction`, and the ends of the core in `ends[1]`.
 
 use super::closed_form::{Form, LaneContacts};
 use super::gather::Inputs;
@@ -14,7 +14,8 @@ use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 use crate::shape::FeatureId;
 
-/// Kernel for a ball whose centre is not on the core, a segment of positive length.
+/// Kernel for a ball and a segment or capsule. The pair falls back if the centre of the ball lies
+/// on the core, or if the core has no length.
 pub(super) struct BallSegment;
 
 impl<N: Real, const D: usize> Form<N, D> for BallSegment {
@@ -44,8 +45,8 @@ impl<N: Real, const D: usize> Form<N, D> for BallSegment {
         let offset = minus(&center, &near.point);
         let (direct, away, is_off) = unit(simd, &offset);
         let (axis, length, is_long) = unit(simd, &near.along);
-        // Near the inside of the core the offset may be mostly rounding error, so the normal is
-        // made perpendicular to the core.
+        // If the nearest point is between the ends of the core and close to the centre of the ball,
+        // the offset may be mostly rounding error. So the normal is made perpendicular to the core.
         let (sideways, is_beside) = made_perpendicular(simd, (&direct, is_off), &axis);
         let outward = either(near.is_inside, &sideways, &direct);
         let normal = negated(&pose12.vector(&outward));
@@ -72,7 +73,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallSegment {
 }
 
 /// Makes a unit vector `v` perpendicular to the unit vector `d`, as the scalar `made_perpendicular`
-/// does. `is_off` are the lanes where `v` is known; the returned mask has the lanes where the
+/// does. `is_off` are the lanes where `v` is valid; the returned mask has the lanes where the
 /// result is accurate.
 #[inline(always)]
 fn made_perpendicular<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(

@@ -1,13 +1,14 @@
-//! Pairs whose separation is one closed form: a ball against a ball, a box, a segment or a capsule,
-//! and segments and capsules against each other. The manifold is one point, for segments in 2D up
-//! to two.
+//! Manifolds of pairs whose separation has a closed form: a ball with a ball, a box, a segment or a
+//! capsule, and two segments or capsules. The manifold has one point; for two segments or capsules
+//! in 2D, up to two.
 //!
 //! ```text
-//!   row of `LaneContacts::parts`   ball, box      ball, segment   segments
-//!     0, 1                         D free axes    at first end,   solid 1: at first, last end
-//!                                                 at last end
-//!     2, 3                         then D signs                   solid 2: at first, last end
-//!     4 .. 8                                                      second contact: as rows 0 .. 4
+//!   rows of `LaneContacts::parts`, each a mask over the lanes
+//!     ball, box      i < D: the feature of the box extends along axis i
+//!                    D + i: coordinate i of the point on the box is not negative
+//!     ball, segment  0, 1: the point is at the first, at the last end of the segment
+//!     two segments   0, 1: at the first, last end of segment 1;  2, 3: of segment 2
+//!                    4 .. 8: rows 0 .. 4 of the second contact
 //!
 //!   `per_pair`: row r, bit lane  -->  byte lane, bit r, which `Form::features` decodes
 //! ```
@@ -34,7 +35,7 @@ pub(super) trait Form<N: Real, const D: usize> {
         pair: &PairQuestion<'_, N, D>,
     ) -> bool;
 
-    /// Computes the contacts of all lanes, with [`LaneContacts::put`] or field by field.
+    /// Computes the contacts of all lanes and stores them in `found`.
     fn find<S: Simd, V: Wide<S, Scalar = N>, const L: usize>(
         simd: S,
         inputs: &Inputs<N, D, L>,
@@ -97,16 +98,18 @@ pub(super) struct LaneContacts<N: Real, const D: usize, const L: usize> {
     pub(super) size: [N; L],
     /// Points of the first and second contact, on the first solid and in its frame.
     pub(super) points1: [[[N; L]; D]; 2],
-    /// Signed distances of both contacts; unused with one contact, whose distance is `gap`.
+    /// Signed distances of both contacts; unused in lanes with one contact, whose distance is
+    /// `gap`.
     pub(super) distances: [[N; L]; 2],
-    /// Lengths up to this are rounding errors; used only with two contacts.
+    /// Lengths up to this are rounding errors. Zero in kernels that never find two contacts.
     pub(super) tolerance: [N; L],
-    /// Masks of the parts that the points lie on, after transposition one byte per pair; the form
-    /// defines the bits. With two contacts, the low four bits belong to the first.
+    /// Before transposition, masks of the parts that the points lie on (see the figure); after it,
+    /// one byte per pair, which [`Form::features`] decodes. With two contacts, the low four bits of
+    /// a byte belong to the first contact.
     pub(super) parts: [u8; 8],
     /// Bits of the lanes beyond the prediction, which have no contact.
     pub(super) is_apart: u8,
-    /// Bits of the lanes with a contact. Lanes that are neither apart nor found fall back.
+    /// Bits of the lanes with a contact. Lanes in neither `is_apart` nor `is_found` fall back.
     pub(super) is_found: u8,
     /// Bits of the lanes with two contacts.
     pub(super) is_two: u8,
@@ -130,8 +133,9 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
         }
     }
 
-    /// Stores the distances, normals and points on the first solid, and sets the masks. The
-    /// arguments are valid only in the lanes of `is_certain`; the other lanes fall back.
+    /// Stores the distances, normals and points on the first solid, and sets `is_apart` and
+    /// `is_found`. The arguments are valid only in the lanes of `is_certain`; the other lanes fall
+    /// back.
     #[inline(always)]
     pub(super) fn put<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
@@ -151,7 +155,7 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
         }
     }
 
-    /// Replaces the manifold of the pair in `lane`; returns `false` if it has to fall back.
+    /// Replaces the manifold of the pair in `lane`; returns `false` if the pair has to fall back.
     #[inline(always)]
     fn write_manifold<F: Form<N, D>>(&self, lane: usize, raw: &mut RawManifold<N, D>) -> bool {
         let [is_found, is_apart, is_two] =
@@ -163,7 +167,8 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
             return is_apart;
         }
         let (features, point1) = (F::features(self.parts[lane]), vector(&self.points1[0], lane));
-        // A single point on unchanged features keeps its id and is updated in place.
+        // A single point on unchanged features keeps its id and is updated in place, unless it is a
+        // crossing of two edges that jumped.
         let is_same = |old: &RawPoint<N, D>| {
             [old.feature1, old.feature2] == features
                 && is_same_point(features, &(point1 - old.point1.coords), || self.size[lane])

@@ -1,15 +1,15 @@
-//! Distances and separations of many pairs of convex solids, 8 at a time for kinds with a
-//! kernel.
+//! Computes distances and separations of many pairs of convex solids. In 3D, kinds with a kernel
+//! are computed 8 pairs at a time.
 //!
 //! ```text
-//!   pairs in 3D, sorted by kinds   [bb bb bb | cc cc ... cc cc | ss ...]
-//!   packets of 8, of the same kinds           [0 .. 7] [8 .. ]
-//!   out[slot]                                 `slot` is stored with each pair, so order is free
+//!   pairs in 3D, sorted by kinds   [bb bb bb | ss ss ... ss ss | cc ...]    b ball, s segment,
+//!   packets of 8, of the same kinds           [0 .. 7] [8 .. ]              c box
+//!   out[slot]                                 each pair has its `slot`, so it may be moved
 //! ```
 //!
-//! A packet at least half full runs in a kernel: segments here, faceted solids in
-//! `collide/separation/apart/`. All other pairs are computed one by one. Both ways give
-//! bit-identical results.
+//! A packet that is at least half full runs in a kernel: pairs of segments or capsules in this
+//! module, pairs of faceted solids in `collide/separation/apart/`. All other pairs are computed one
+//! by one. The results of kernels and of single pairs are bit-identical.
 
 use super::LANES;
 use super::gather::put;
@@ -43,8 +43,8 @@ impl<N: Real, const D: usize> ConvexPair<'_, N, D> {
     }
 }
 
-/// Writes the distances of all pairs in 2D, bit-identical to those of single pairs: zero or
-/// negative for overlaps, `None` beyond `limit`, which is zero or more.
+/// Writes the distance of each pair in 2D to its `slot` of `out`, bit-identical to that of a single
+/// pair: zero or negative for an overlap, `None` beyond `limit`, which must be zero or more.
 pub(crate) fn distances2<N: Real>(
     pairs: &mut [ConvexPair<'_, N, 2>],
     limit: N,
@@ -55,8 +55,8 @@ pub(crate) fn distances2<N: Real>(
     }
 }
 
-/// Writes the separations of all pairs in 2D, bit-identical to those of single pairs: `None` beyond
-/// `limit`.
+/// Writes the separation of each pair in 2D to its `slot` of `out`, bit-identical to that of a
+/// single pair: `None` beyond `limit`.
 pub(crate) fn separations2<N: Real>(
     pairs: &mut [ConvexPair<'_, N, 2>],
     limit: N,
@@ -67,8 +67,8 @@ pub(crate) fn separations2<N: Real>(
     }
 }
 
-/// Writes the distances of all pairs in 3D, with the values that [`distances2`] writes in 2D. Sorts
-/// the pairs by kinds.
+/// Writes the distance of each pair in 3D to its `slot` of `out`, by the rules of [`distances2`].
+/// Sorts the pairs by kinds.
 pub(crate) fn distances3<N: Real>(
     pairs: &mut [ConvexPair<'_, N, 3>],
     limit: N,
@@ -86,8 +86,8 @@ pub(crate) fn distances3<N: Real>(
     });
 }
 
-/// Writes the separations of all pairs in 3D, with the values that [`separations2`] writes in 2D.
-/// Sorts the pairs by kinds.
+/// Writes the separation of each pair in 3D to its `slot` of `out`, by the rules of
+/// [`separations2`]. Sorts the pairs by kinds.
 pub(crate) fn separations3<N: Real>(
     pairs: &mut [ConvexPair<'_, N, 3>],
     limit: N,
@@ -118,9 +118,9 @@ fn each_packet<'a, N: Real>(
     }
 }
 
-/// Returns the SIMD vectors for a packet. `None` if the machine has none, if a solid is not of the
-/// wanted kinds, or if the packet is less than half full: a packet costs as much as three or four
-/// single pairs.
+/// Returns the SIMD vectors for a packet of pairs of the same kinds. `None` if kernels do not use
+/// vectors on this machine, if `is_one` is `false` for one of the two kinds, or if the packet is
+/// less than half full: a packet costs as much as three or four single pairs.
 fn lanes_for<N: Real>(
     packet: &[ConvexPair<'_, N, 3>],
     is_one: fn(&Kind<'_, N, 3>) -> bool,
@@ -134,7 +134,8 @@ const fn is_segment<N: Real>(kind: &Kind<'_, N, 3>) -> bool {
     matches!(kind, Kind::Segment(_) | Kind::Capsule(_))
 }
 
-/// Writes the results of a packet. Lanes whose `found` is `None` are computed by `lone`.
+/// Writes the results of a packet to `out`. Pairs whose entry of `found` is `None` are computed by
+/// `lone`.
 #[inline]
 fn fill<'a, N: Real, T>(
     packet: &[ConvexPair<'a, N, 3>],
@@ -157,7 +158,8 @@ struct SegmentPacket<N: Real> {
     points: [[[N; LANES]; 3]; 2],
     /// Distances of the cores; the radii are not subtracted.
     distances: [N; LANES],
-    /// Bits of the lanes with known nearest points; other lanes are computed alone.
+    /// Bits of the lanes with known nearest points; the pairs in other lanes are computed one by
+    /// one.
     is_known: u8,
 }
 
@@ -206,7 +208,7 @@ impl<N: Real> SegmentPacket<N> {
                 coordinate.store(row);
             }
         }
-        // Lanes whose squared distance is close to underflow or overflow are computed alone.
+        // Lanes whose squared distance is close to underflow or overflow are computed one by one.
         self.is_known = bits(has_scale & is_square_in_range(simd, squared));
     }
 

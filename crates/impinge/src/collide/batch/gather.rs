@@ -60,8 +60,8 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         }
     }
 
-    /// Begins up to `L` pairs from index `first` and gathers their inputs. Lanes beyond them keep
-    /// their old values.
+    /// Begins up to `L` pairs from index `first` and gathers their inputs. Lanes without a pair
+    /// keep their old values.
     #[inline(always)]
     pub(super) fn gather<B: Batch<N, D>, P: KeptPairs<N, D>>(
         &mut self,
@@ -118,7 +118,8 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         self.sine[lane & (L - 1)] = sine;
     }
 
-    /// Copies an end of a solid's core, or the half extents of a box (`number` 0), into a lane.
+    /// Copies a vector of the solid `solid` (0 or 1) into a lane: end `number` (0 or 1) of its
+    /// core, or the half extents of a box as `number` 0.
     #[inline(always)]
     pub(super) fn put_end(&mut self, lane: usize, solid: usize, number: usize, end: &Vector<N, D>) {
         put(&mut self.ends[solid][number], lane, end);
@@ -139,7 +140,8 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         V::load(simd, &self.sine)
     }
 
-    /// Loads an end of the core of a solid (`number` 0 or 1), or the half extents of a box (0).
+    /// Loads a vector of the solid `solid` (0 or 1): end `number` (0 or 1) of its core, or the half
+    /// extents of a box as `number` 0.
     #[inline(always)]
     pub(super) fn end<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -150,8 +152,8 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         load(simd, &self.ends[solid][number])
     }
 
-    /// Returns the translation from the first solid to the second, in world axes. A ball's frame
-    /// has the same axes.
+    /// Returns the vector from the origin of the first solid to the origin of the second, in world
+    /// axes, which are also the axes of a ball's frame.
     #[inline(always)]
     pub(super) fn away<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> [V; D] {
         minus(&load(simd, &self.translations[1]), &load(simd, &self.translations[0]))

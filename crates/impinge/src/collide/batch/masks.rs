@@ -10,8 +10,9 @@ pub(super) const fn per_pair(rows: [u8; 8]) -> [u8; 8] {
     transposed(u64::from_le_bytes(rows)).to_le_bytes()
 }
 
-/// Transposes a matrix of 8 by 8 bits (H. S. Warren, "Hacker's Delight", 7-3): swaps bits
-/// in blocks of 2 by 2, then these blocks in 4 by 4, then those in 8 by 8.
+/// Transposes a matrix of 8 by 8 bits (H. S. Warren, "Hacker's Delight", 7-3): transposes each
+/// block of 2 by 2 bits, then swaps blocks of 2 by 2 bits within 4 by 4, then blocks of 4 by 4
+/// within 8 by 8.
 #[inline(always)]
 const fn transposed(mut x: u64) -> u64 {
     let swapped = (x ^ x >> 7) & 0x00aa_00aa_00aa_00aa;

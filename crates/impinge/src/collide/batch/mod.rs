@@ -1,4 +1,5 @@
-//! Pairs of boxes, balls, segments and capsules, 8 at a time; a single pair is a batch of one.
+//! Contact kernels for pairs of balls, segments, capsules and boxes: 8 pairs at a time, or a single
+//! pair.
 //!
 //! ```text
 //!   kept pairs i .. i + L      gather      find (kernel)      write_manifold, lane by lane
@@ -10,21 +11,22 @@
 //!   ball, ball                           `BallBall`     `BallBall`
 //!   ball, segment or capsule             `BallSegment`  `BallSegment`
 //!   ball, box                            `BallCuboid`   `BallCuboid`
-//!   two of segment or capsule            `Segments2`    `Segments3`
+//!   two segments or capsules             `Segments2`    `Segments3`
 //!   box, box                             `Boxes2`       `Boxes3`
 //! ```
 //!
 //! Each lane of a vector holds one pair and never depends on other lanes, so the result of a pair
 //! is bit-identical in any batch. [`gather`] copies the numbers of `L` pairs into rows, a kernel
 //! ([`Batch`]) computes everything that needs no branches, then the manifolds are replaced one by
-//! one. `L` is 8 if the machine has SIMD vectors wide enough to pay off, else 1, computed by
-//! [`OneLane`]. A query of a single pair is a batch of one lane on every machine. Degenerate pairs
-//! fall back to the builder for one pair: a centre inside a box, cores that cross, sizes whose
-//! squares underflow or overflow, NaN.
+//! one. `L` is 8 if [`Level::vectors`] returns vectors; else it is 1, and [`OneLane`] computes with
+//! scalars. A query of a single pair is a batch of one lane on every machine. Pairs that a kernel
+//! does not support fall back to the builder for one pair ([`PairQuestion::fall_back`]): for
+//! example a ball with its centre inside a box, segments that cross, sizes whose squares underflow
+//! or overflow, and NaN.
 //!
 //! Each mask is a byte whose bit `lane` belongs to the pair in that lane. [`masks`] transposes 8
-//! masks into one byte per pair. `boxes/` defines the slots of box pairs and the codes of their
-//! contact points.
+//! masks into one byte per pair. `boxes/` defines the slots of box pairs (one slot for each
+//! possible contact point) and the codes of their contact points.
 //!
 //! The idea of one pair per lane comes from bepuphysics (R. Nordby).
 
@@ -63,20 +65,20 @@ use crate::math::{Mapped, Pose, Real, Space, Wide};
 use crate::shape::Geometry;
 use crate::tables::ByDimension;
 
-/// Number of pairs in one batch if the machine has SIMD vectors; also the number of bits in a mask.
+/// Number of pairs in one batch if the kernels use SIMD vectors; also the number of bits in a mask.
 const LANES: usize = 8;
 
 /// A pair of solids in canonical order and the request for its manifold.
 pub(crate) struct PairQuestion<'a, N: Real, const D: usize> {
-    /// Poses of both solids in the world.
+    /// Poses of both solids in a common frame, usually the world.
     pub(crate) poses: [&'a Pose<N, D>; 2],
-    /// Both solids, copied when the pair began.
+    /// Copies of both solids, in canonical order.
     pub(crate) solids: [&'a Solid<N, D>; 2],
     pub(crate) request: &'a ManifoldRequest<N>,
 }
 
 impl<N: Space<D>, const D: usize> PairQuestion<'_, N, D> {
-    /// Builds the manifold of an unsupported pair by the builder for one pair.
+    /// Builds the manifold of an unsupported pair from its separation, by the builder for one pair.
     #[inline(never)]
     fn fall_back(&self, raw: &mut RawManifold<N, D>) {
         let pair = Pair::new(self.solids.mapped(|solid| Geometry(solid.kind())), self.poses);
@@ -95,11 +97,12 @@ pub(crate) trait KeptPairs<N: Real, const D: usize> {
     /// Begins the update of the pair at `index` and returns its inputs. Called once for each pair.
     fn begin(&mut self, index: usize) -> PairQuestion<'_, N, D>;
 
-    /// Returns the inputs of a begun pair again, and the manifold of its last update, which is
-    /// replaced.
+    /// Returns the inputs of the pair at `index`, which has begun, and its manifold. The manifold
+    /// is that of the last update; the caller replaces it.
     fn parts(&mut self, index: usize) -> (PairQuestion<'_, N, D>, &mut RawManifold<N, D>);
 
-    /// Returns the manifold of the pair's last update, which is replaced.
+    /// Returns the manifold of the pair at `index`: that of its last update, which the caller
+    /// replaces.
     fn raw(&mut self, index: usize) -> &mut RawManifold<N, D>;
 
     /// Ends the update of the pair at `index`: its manifold is complete.
@@ -192,7 +195,8 @@ pub(crate) fn contacts_in_lanes<N: Space<D>, const D: usize>(
     <N::Algorithms>::update_pair(&question, raw)
 }
 
-/// Runs a task with the algorithm for two solids in 2D; `false` if there is none or the task fails.
+/// Runs a task with the algorithm for two solids in 2D; returns `false` if their kinds have no
+/// algorithm or the task fails.
 fn run2<N: Space<2>>([one, other]: [&Solid<N, 2>; 2], task: impl Task<N, 2>) -> bool {
     match (one, other) {
         (Solid::Cuboid(_), Solid::Cuboid(_)) => task.run::<Boxes2>(),
@@ -201,7 +205,8 @@ fn run2<N: Space<2>>([one, other]: [&Solid<N, 2>; 2], task: impl Task<N, 2>) -> 
     }
 }
 
-/// Runs a task with the algorithm for two solids in 3D; `false` if there is none or the task fails.
+/// Runs a task with the algorithm for two solids in 3D; returns `false` if their kinds have no
+/// algorithm or the task fails.
 fn run3<N: Space<3>>([one, other]: [&Solid<N, 3>; 2], task: impl Task<N, 3>) -> bool {
     match (one, other) {
         (Solid::Cuboid(_), Solid::Cuboid(_)) => task.run::<Boxes3>(),
@@ -210,8 +215,8 @@ fn run3<N: Space<3>>([one, other]: [&Solid<N, 3>; 2], task: impl Task<N, 3>) -> 
     }
 }
 
-/// Runs a task with the algorithm for a ball and another solid; `false` if there is none or the
-/// task fails.
+/// Runs a task with the algorithm for a ball and another solid; returns `false` if no solid is a
+/// ball or the task fails.
 fn run_with_ball<N: Space<D>, const D: usize>(
     solids: [&Solid<N, D>; 2],
     task: impl Task<N, D>,
@@ -259,7 +264,7 @@ impl<N: Space<D>, P: KeptPairs<N, D>, const D: usize> Task<N, D> for Many<'_, P>
     }
 }
 
-/// Way to compute `L` lanes: SIMD vectors or scalar arithmetic.
+/// A way to compute `L` lanes: with SIMD vectors or with scalars.
 trait BatchLanes<const L: usize>: Copy {
     /// Runs [`Batch::find`]; compiled once for all implementations of [`KeptPairs`].
     fn find<B: Batch<N, D>, N: Real, const D: usize>(
@@ -308,7 +313,7 @@ fn update<B: Batch<N, D>, P: KeptPairs<N, D>, N: Space<D>, const D: usize, const
 ) {
     let (mut now, mut next) = (&mut Inputs::<N, D, L>::new(), &mut Inputs::new());
     let mut found = B::blank::<L>();
-    // Two buffers: the kernel reads `now` while `next` is already gathered.
+    // Two buffers: the inputs of the next batch are already in `next` when the kernel reads `now`.
     now.gather::<B, P>(pairs, 0);
     while now.count > 0 {
         next.gather::<B, P>(pairs, now.first + now.count);

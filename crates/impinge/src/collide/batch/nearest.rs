@@ -1,4 +1,5 @@
-//! Copies the cores of segments into lanes, and names the features of their ends and sides.
+//! Inputs of pairs with segments and capsules (their cores in lanes, and lengths of the cores), and
+//! the features of a segment.
 
 use super::gather::Inputs;
 use super::vectors::{length_of, lit, minus, norm};
@@ -7,8 +8,9 @@ use crate::math::simd::Simd;
 use crate::math::{Real, Vector, Wide};
 use crate::shape::FeatureId;
 
-/// Features of a segment, indexed by two bits: bit 0 if the point is at the first end, bit 1 if at
-/// the last.
+/// Feature of a segment that a point lies on, indexed by two bits: bit 0 is set if the point is at
+/// the first end, bit 1 if it is at the last. With neither or both, the feature is the segment
+/// itself.
 pub(super) const END_OR_SIDE: [FeatureId; 4] =
     [FeatureId::Edge(0), FeatureId::Vertex(0), FeatureId::Vertex(1), FeatureId::Edge(0)];
 
@@ -39,8 +41,8 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
     }
 }
 
-/// Returns the larger distance of two points from the origin. The mask has the lanes where each
-/// distance is zero or its square far from underflow and overflow.
+/// Returns the larger of the distances of two points from the origin. The mask has the lanes where
+/// each distance is zero or has a square far from underflow and overflow.
 #[inline(always)]
 pub(super) fn farther<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,

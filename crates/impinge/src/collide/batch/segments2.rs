@@ -10,10 +10,10 @@
 //!               *========*-------b        first
 //! ```
 //!
-//! `from` is the larger of the lower coordinates, `to` the smaller of the upper ones. Each gives a
-//! contact. Reads these fields of [`Inputs`]: both poses, both `radii`, the ends of both cores,
-//! `prediction` and `sine`. Lanes whose contacts depend on rounding, and requests for a single
-//! point, fall back.
+//! `from` is the larger of the lower coordinates of both cores, `to` the smaller of the upper
+//! coordinates. Each gives a contact if the request admits it. Reads these fields of [`Inputs`]:
+//! both poses, both `radii`, the ends of both cores, `prediction` and `sine`. Lanes whose contacts
+//! depend on rounding, and requests for a single point, fall back.
 
 use super::PairQuestion;
 use super::closed_form::{Form, LaneContacts};
@@ -25,8 +25,8 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
 use crate::shape::FeatureId;
 
-/// Kernel for segments and capsules whose cores are apart, if neither core is parallel to the
-/// normal.
+/// Kernel for two segments or capsules. The pair falls back if the cores cross or touch, or if a
+/// core is parallel to the normal.
 pub(super) struct Segments2;
 
 impl<N: Real> Form<N, 2> for Segments2 {
@@ -118,9 +118,11 @@ impl<V> ContactLine<V> {
         dot(&self.tangent, &minus(point, &self.point1))
     }
 
-    /// Returns the distance of a pair of points at the coordinate `flat`, raised to the pair's
-    /// distance. The mask has the lanes where it is within the prediction, or where a rotation
-    /// about the nearest point brings it within.
+    /// Returns the distance to store for two points at the coordinate `flat`. It is at least the
+    /// distance of the solids; if it exceeds the prediction by at most the tolerance, it is lowered
+    /// to the prediction. The mask has the lanes where the request admits the points: the distance
+    /// is within the prediction, up to the tolerance, or a rotation about the nearest point brings
+    /// it within.
     #[inline(always)]
     fn admit<S: Simd>(&self, distance: V, flat: V) -> (V, V::Mask)
     where
@@ -143,7 +145,7 @@ struct LaneSide<V, M> {
     ends: [PlaneLanes<V>; 2],
     /// Coordinates of `ends` along the tangent.
     coordinates: [V; 2],
-    /// Lanes where the order of `ends` is the reverse of the segment's.
+    /// Lanes where the order of `ends` is the reverse of their order in the segment.
     is_reversed: M,
     /// Radius around the segment.
     radius: V,
@@ -152,7 +154,8 @@ struct LaneSide<V, M> {
     /// Depth below the solid's nearest point, along the normal, of the core's end nearest to the
     /// other solid; then the coordinate of that end along the tangent.
     top: (V, V),
-    /// Lanes where the segment is tilted so far that only its nearest end is used.
+    /// Lanes where the segment is tilted against the tangent by more than 60°, so that only its end
+    /// nearest to the other solid is used.
     is_point: M,
     /// Lanes where the coordinates of both ends differ by more than rounding.
     is_wide: M,
@@ -184,8 +187,8 @@ impl<V, M> LaneSide<V, M> {
         let heights = [dot(&line.normal, first), dot(&line.normal, last)];
         let is_higher = heights[1].simd_gt(heights[0]);
         let is_last_near = if is_first { is_higher } else { heights[1].simd_lt(heights[0]) };
-        // An end is at the witness if it is within twice the tolerance; if both ends are, the first
-        // counts.
+        // An end is at the nearest point if its coordinate is at most twice the tolerance; if both
+        // ends are, only the first counts.
         let near = lit::<S, N, V>(simd, 2.0) * line.tolerance;
         let is_at = [flats[0].abs().simd_le(near), flats[1].abs().simd_le(near)];
         let mut side = Self {
@@ -341,13 +344,13 @@ struct SegmentContacts<V, M> {
     second: LaneContact<V, M>,
     /// Lanes with a second contact; elsewhere `second` is unused.
     is_two: M,
-    /// Lanes where these contacts are complete; the others fall back.
+    /// Lanes where these contacts are complete; the other lanes fall back.
     is_known: M,
 }
 
 impl<V, M> SegmentContacts<V, M> {
-    /// Computes the contacts: the admitted ends of the overlap interval, or the nearest points if
-    /// neither end is admitted.
+    /// Computes the contacts: the ends of the overlap interval that the request admits, or the
+    /// nearest points of the solids if it admits neither end.
     ///
     /// A lane is not known if its result depends on rounding, or if it needs the nearest points in
     /// addition to an end.
@@ -372,8 +375,8 @@ impl<V, M> SegmentContacts<V, M> {
         high.is_admitted &= is_shared;
         let is_two = low.is_admitted & high.is_admitted;
         let is_any = low.is_admitted | high.is_admitted;
-        // If neither end is as near as the pair, the nearest points are needed as well, and the
-        // lane falls back.
+        // If ends are admitted but neither has the distance of the pair, up to the tolerance, the
+        // nearest points are needed as well, and the lane falls back.
         let level = line.distance + line.tolerance;
         let is_level = (low.is_admitted & low.distance.simd_le(level))
             | (high.is_admitted & high.distance.simd_le(level));

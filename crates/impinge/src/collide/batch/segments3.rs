@@ -1,10 +1,10 @@
 //! Segments and capsules in 3D for several pairs at a time; see
 //! `collide/separation/segments/segment_segment.rs`.
 //!
-//! Reads these fields of [`Inputs`]: both poses, both `radii`, the ends of both cores, and `sine`.
-//! Lanes in which the code for one pair takes another branch fall back: if the normal is not the
-//! direction between the nearest points, if the cores are nearly parallel, or if lengths are
-//! outside 2⁻¹⁶ to 2¹⁶.
+//! Reads these fields of [`Inputs`]: both poses, both `radii`, the ends of both cores, `prediction`
+//! and `sine`. Lanes in which the code for one pair takes another branch fall back: if the normal
+//! is not the direction between the nearest points, if the cores are nearly parallel, or if the
+//! vector between the ends of a core has a largest component outside 2⁻¹⁶ to 2¹⁶.
 
 use super::PairQuestion;
 use super::closed_form::{Form, LaneContacts};
@@ -16,8 +16,8 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 use crate::shape::FeatureId;
 
-/// Kernel for segments and capsules whose cores are apart and cross when projected along the
-/// normal.
+/// Kernel for segments and capsules whose cores are apart and, projected along the normal, not
+/// nearly parallel.
 pub(super) struct Segments3;
 
 /// Ends of a segment in each lane.
@@ -94,8 +94,8 @@ impl<V> SegmentPoints<V> {
         Self { points, squared: dot(&between, &between) }
     }
 
-    /// Selects `other` in the lanes where it is nearer and in `is_admitted`; `None` admits all
-    /// lanes.
+    /// Selects `other` in the lanes of `is_admitted` where its points are nearer to each other than
+    /// those of `self`. `None` admits all lanes.
     #[inline(always)]
     fn or_nearer<S: Simd>(&self, other: &Self, is_admitted: Option<V::Mask>) -> Self
     where
@@ -115,7 +115,7 @@ impl<V> SegmentPoints<V> {
 }
 
 /// Computes the nearest points of two segments, as the scalar `nearest_of_segments` does. The mask
-/// has the lanes whose lengths are in range.
+/// has the lanes whose lengths are in the range of [`scaled`].
 #[inline(always)]
 pub(super) fn nearest_of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -138,8 +138,8 @@ pub(super) fn nearest_of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     (best.or_nearer(&SegmentPoints::new(common), Some(is_common)).points, has_scale)
 }
 
-/// Returns the power of two at or below a number from 2⁻¹⁶ to 2¹⁶; the mask has the lanes in that
-/// range.
+/// Returns the largest power of two that does not exceed `number`, if `number` is at least 2⁻¹⁶ and
+/// less than 2¹⁶; the mask has the lanes where it is.
 #[inline(always)]
 fn power_of_two_below<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -154,8 +154,9 @@ fn power_of_two_below<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     (power, number.simd_ge(least) & number.simd_lt(most))
 }
 
-/// Divides a vector by the power of two at or below its largest component by magnitude. Also
-/// returns the reciprocal of that power, which is exact, and the lanes where it is in range.
+/// Divides a vector by the largest power of two that does not exceed its largest component by
+/// magnitude. Also returns the reciprocal of that power, which is exact, and the lanes where the
+/// component is in the range of [`power_of_two_below`].
 #[inline(always)]
 fn scaled<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, v: &[V; 3]) -> ([V; 3], V, V::Mask) {
     let largest = v[2].abs().larger(v[1].abs().larger(v[0].abs()));
@@ -165,8 +166,8 @@ fn scaled<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, v: &[V; 3]) -> ([V;
 }
 
 /// Computes the ends of the common perpendicular of two lines, as the scalar `common_perpendicular`
-/// does. The masks have the lanes where these ends lie on both segments, and the lanes whose
-/// lengths are in range.
+/// does. The first mask has the lanes where the lines are not parallel and both ends lie on the
+/// segments, the second the lanes whose lengths are in the range of [`scaled`].
 #[inline(always)]
 fn common_perpendicular<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -213,7 +214,8 @@ fn best_normal<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     (normal, distance, is_best & is_in_range)
 }
 
-/// Returns the lanes whose segments, projected along the normal, are not nearly parallel.
+/// Returns the lanes where the angle between the segments, projected along the normal, has a sine
+/// of more than twice `sine` and more than 32 epsilons.
 #[inline(always)]
 fn is_crossing<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -229,7 +231,7 @@ fn is_crossing<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     (turn * turn).simd_gt(least * least * flat1 * flat2)
 }
 
-/// Returns the squared length of a vector projected along a normal.
+/// Returns the squared length of the vector `along`, projected along a unit normal.
 #[inline(always)]
 fn flat<S: Simd, V: Wide<S>>(along: &[V; 3], normal: &[V; 3]) -> V {
     let high = dot(normal, along);
@@ -237,8 +239,9 @@ fn flat<S: Simd, V: Wide<S>>(along: &[V; 3], normal: &[V; 3]) -> V {
 }
 
 impl<N: Real, const L: usize> LaneContacts<N, 3, L> {
-    /// Stores the part of a segment that a point lies on, as `part_at` does, as two masks: lanes at
-    /// the first end, lanes at the last end. Returns the lanes where the point is not at both ends.
+    /// Stores the part of a segment that a point lies on, as `part_of` of `manifold/ring.rs` does,
+    /// in two masks from row `slot` of `parts`: the lanes where the point is at the first end, and
+    /// those where it is at the last end. Returns the lanes where the point is not at both ends.
     #[inline(always)]
     fn put_end_or_side<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,

@@ -1,12 +1,13 @@
 //! Copies of the solids that the batch kernels support.
 //!
-//! A copy is made when a pair begins or its shape is replaced, and is kept with the pair.
+//! The narrow phase copies the solids of a pair when the pair begins or a shape is replaced, and
+//! keeps the copies with the pair. Queries of a single pair copy the solids for the call.
 
 use crate::math::Real;
 use crate::shape::{Ball, Capsule, Cuboid, Geometry, Kind, Segment};
 
-/// A ball, segment, capsule or box, by value. It is kept with a pair, so that an update of the pair
-/// does not read the shapes.
+/// A ball, segment, capsule or box, by value. With a copy, the update of a pair does not read the
+/// shapes of its objects.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Solid<N: Real, const D: usize> {
     Ball(Ball<N>),
@@ -16,7 +17,7 @@ pub(crate) enum Solid<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Solid<N, D> {
-    /// Copies a solid; `None` for other kinds.
+    /// Copies a ball, segment, capsule or box; returns `None` for other kinds.
     pub(crate) fn of(geometry: Geometry<'_, N, D>) -> Option<Self> {
         Some(match geometry.0 {
             Kind::Ball(ball) => Self::Ball(*ball),

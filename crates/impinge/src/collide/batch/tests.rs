@@ -1,4 +1,5 @@
-//! Compares batches of 8 pairs with batches of one, bit for bit, on every instruction set.
+//! Compares batches of 8 pairs with batches of one and with the builder for one pair, bit for bit,
+//! on every instruction set.
 
 use super::{
     BallBall, BallCuboid, BallSegment, Batch, Boxes2, Boxes3, ClosedForm, KeptPairs, Many,
@@ -41,7 +42,7 @@ struct Kept<'a, N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Kept<'_, N, D> {
-    /// Returns whether the pair has no points.
+    /// Returns whether the pair at `index` has no points.
     fn is_new(&self, index: usize) -> bool {
         self.raws[self.pending[index]].points.is_empty()
     }
@@ -78,7 +79,7 @@ fn bits<N: Real>(value: N) -> u64 {
     if value.partial_cmp(&value).is_some() { value.bits() } else { u64::MAX }
 }
 
-/// Lists all values of a manifold, as bits.
+/// Lists the values of a manifold as bits, without the codes of the points.
 fn facts<N: Real, const D: usize>(raw: &RawManifold<N, D>) -> Vec<u64> {
     let mut facts: Vec<u64> = Vec::new();
     for point in &raw.points {
@@ -99,9 +100,10 @@ fn are_same<N: Real, const D: usize>(one: &RawManifold<N, D>, other: &RawManifol
     one.normal == other.normal && one.points == other.points || facts(one) == facts(other)
 }
 
-/// Computes the manifold of a case twice: as a batch of one, and by the builder for one pair, which
-/// is bit-identical to the kernels except for boxes and for segments in 2D. These pairs are
-/// computed as a batch of one again, in the frame of the first solid.
+/// Computes the manifold of a case twice: in `lone` as a batch of one, with its fallback, and in
+/// `other` by the builder for one pair. That builder is bit-identical to the kernels except for
+/// boxes and for segments in 2D; for these, `other` is computed as a batch of one in the frame of
+/// the first solid.
 fn compute_alone<N: Space<D>, const D: usize>(
     case: &Case<N, D>,
     [lone, other]: [&mut RawManifold<N, D>; 2],
@@ -121,8 +123,8 @@ fn compute_alone<N: Space<D>, const D: usize>(
 }
 
 /// Updates the same pairs in several steps, so that points inherit ids, in batches and alone, and
-/// asserts that the bits agree. Returns the numbers of points, of pairs that fell back, and of
-/// pairs.
+/// asserts that the bits agree. Returns the number of points, then the numbers of pairs without
+/// points that fell back and that began.
 fn compare<F: Batch<N, D>, N: Space<D>, const D: usize>(
     steps: &[Vec<Case<N, D>>],
     what: &str,
@@ -260,9 +262,10 @@ fn request<N: Real>(prediction: f64, sine: f64) -> ManifoldRequest<N> {
     ManifoldRequest { prediction: N::lit(prediction), sine: N::lit(sine), max_points: 4 }
 }
 
-/// Makes a case degenerate or invalid; `number` selects how. One pose gets a number that is not
-/// finite or extreme or equals the other pose, a solid gets an extreme length, or the request
-/// changes.
+/// Makes a case degenerate or invalid; `number` selects how. A translation gets an entry that is
+/// NaN, infinite, extreme or zero, a rotation an entry that is NaN or infinite, or a solid an
+/// extreme length or a length of zero; or the second pose becomes equal to the first; or the
+/// request changes.
 fn spoiled<N: Real, const D: usize>(case: &mut Case<N, D>, number: usize) {
     let strange = [N::lit(f64::NAN), N::INFINITY, -N::INFINITY, N::MAX, N::ZERO, N::MIN_POSITIVE];
     let value = strange[number / 7 % strange.len()];
@@ -375,7 +378,9 @@ fn boxes<F: Batch<N, D>, N: Scene<D> + Space<D>, const D: usize>() {
     check::<F, N, D>([Sort::Cuboid, Sort::Cuboid]);
 }
 
-/// Draws boxes with faces close together, in three steps.
+/// Draws 203 pairs of boxes with facing faces, at most 0.1 deep and 0.2 apart before rotation, in
+/// three steps. The components of the rotation vector of each box are at most `tilt` radians in the
+/// first step.
 fn faced<N: Scene<D>, const D: usize>(
     seed: u64,
     tilt: f64,

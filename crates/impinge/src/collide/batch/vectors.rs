@@ -1,4 +1,5 @@
-//! Vector operations in lanes, each in the order of operations of its scalar counterpart in `math`.
+//! Vector operations in lanes, each with the order of operations of its scalar counterpart, so that
+//! results are bit-identical.
 
 use crate::collide::manifold::frame::ROUNDING_ERRORS;
 use crate::collide::separation::is_square_in_range;
@@ -9,15 +10,16 @@ pub(super) use crate::math::lanes::{
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 
-/// Returns the length up to which differences are rounding error for a pair of size `size`, as
-/// `rounding` of `frame.rs` does.
+/// Returns the length up to which differences are rounding errors, as `rounding` of `frame.rs`
+/// does. `size` is the sum of the bounding radii of both solids and the distance of their origins.
 #[inline(always)]
 pub(super) fn rounding_of<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, size: V) -> V {
     V::all(simd, N::lit(ROUNDING_ERRORS) * N::EPSILON) * size
 }
 
 /// Returns direction and length of a vector, as the scalar `unit` does. The mask has the lanes
-/// whose squared length is far from underflow and overflow; elsewhere both may be wrong.
+/// whose squared length is far from underflow and overflow; in the other lanes, direction and
+/// length may be wrong.
 #[inline(always)]
 pub(super) fn unit<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -28,8 +30,8 @@ pub(super) fn unit<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     (over(v, length), length, is_square_in_range(simd, squared))
 }
 
-/// Returns the length of a vector. The mask has the lanes where it is zero, or its square is far
-/// from underflow and overflow.
+/// Returns the length of a vector. The mask has the lanes where the length is zero, or its square
+/// is far from underflow and overflow.
 #[inline(always)]
 pub(super) fn length_of<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,

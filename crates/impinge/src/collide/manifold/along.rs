@@ -1,8 +1,9 @@
-//! Manifold of two solids along a given normal: contacts with a face of a surface, for which the
-//! edges of that face are not separate features.
+//! Manifold of two solids along a given normal: the contacts with one face of a surface along the
+//! face's normal, even where the nearest points have another normal.
 //!
-//! The supporting features along the normal are clipped as for a separation, but no point has to be
-//! the witness. If the features do not overlap in projection, there is no point.
+//! The supporting features along the normal are clipped as for a separation, but the nearest points
+//! need not be among the contacts. If the features do not overlap in projection, there is no
+//! contact.
 
 use super::clip;
 use super::frame::{Candidates, ContactFrame};
@@ -22,9 +23,9 @@ where
     /// Unit vector from the first solid to the second, in the frame of the first.
     pub(crate) normal: Vector<N, D>,
     /// Lower bound of the signed distance of the solids. A candidate that is nearer by more than
-    /// rounding lies below the face's surface and beside it, and is dropped.
+    /// rounding lies below the plane of the face and beside the face, and is dropped.
     pub(crate) least: N,
-    /// Lengths below this are rounding errors of the pair.
+    /// Lengths up to this are rounding errors of the pair.
     pub(crate) tolerance: N,
 }
 
@@ -32,14 +33,14 @@ where
 pub(crate) struct OnFace<N: Real, const D: usize> {
     /// Normal of the face: unit vector from the first solid to the second.
     pub(crate) normal: Vector<N, D>,
-    /// Points nearer than this by more than rounding are dropped; the distances of the others are
-    /// raised to at least this.
+    /// Points nearer than this by more than rounding are dropped; the distances of the other points
+    /// are raised to at least this.
     pub(crate) least: N,
     /// Smallest distance of the solids along the normal, if it is known.
     pub(crate) nearest: Option<N>,
     /// Points farther than this are dropped.
     pub(crate) prediction: N,
-    /// Lengths below this are rounding errors of the pair.
+    /// Lengths up to this are rounding errors of the pair.
     pub(crate) tolerance: N,
 }
 
@@ -57,7 +58,7 @@ pub(crate) fn build_along<N: Space<D>, const D: usize>(
 }
 
 /// Builds the manifold of a pair whose signed distance along the normal of a face of a surface is
-/// `distance`, up to rounding; returns `false`, if [`build_between`] has to build it.
+/// `distance`, up to rounding. Returns `false` if the caller has to use [`build_between`] instead.
 pub(crate) fn build_on_face<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     normal: &Vector<N, D>,
@@ -82,8 +83,8 @@ pub(crate) fn build_between<N: Space<D>, const D: usize>(
 }
 
 /// Computes the contacts of two solids in 2D along a normal. Returns `false` if `nearest` is known,
-/// because [`build_between`] then gives the contacts. Also `false` with a half-space, and if a
-/// supporting feature is neither a side nor a corner.
+/// because [`build_between`] then gives the contacts; also for half-spaces, and if a supporting
+/// feature is neither a side nor a corner.
 pub(crate) fn on_face2<N: Real>(
     pair: &Pair<'_, N, 2>,
     query: &OnFace<N, 2>,
@@ -100,9 +101,10 @@ pub(crate) fn on_face2<N: Real>(
     sides.along(&along, |point| out.points.push(point)).is_some()
 }
 
-/// Computes the contacts of two solids in 3D along the normal of a face of one of them. Returns
-/// `false` if `nearest` is known and no contact is that near, or the kinds are not those of
-/// `is_served`: then [`build_between`] gives the contacts. Also `false` with a half-space.
+/// Computes the contacts of two solids in 3D along the normal of a face of one of them. If
+/// `nearest` is known, returns `false` for kinds other than those of `is_served`, and if no contact
+/// is that near, up to the tolerance: then [`build_between`] gives the contacts. Always returns
+/// `false` for half-spaces.
 pub(crate) fn on_face3<N: Real>(
     pair: &Pair<'_, N, 3>,
     query: &OnFace<N, 3>,
@@ -144,8 +146,9 @@ pub(crate) fn on_face3<N: Real>(
 }
 
 /// Returns the supporting planes of both solids along a normal, as a separation. `point1` is an
-/// extreme point of the first solid, and `point2` is opposite to it on the plane of the second; it
-/// need not be on the second solid. `None` with a half-space.
+/// extreme point of the first solid, and `point2` is opposite to it on the plane of the second
+/// solid; it need not be on the second solid. The distance is `nearest` if it is known. `None` with
+/// a half-space.
 pub(in crate::collide) fn extremes<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     normal: &Vector<N, D>,

@@ -1,7 +1,8 @@
-//! Contacts of a segment of a chain and a 2D solid, without intermediate lists.
+//! Contacts of a segment of a chain and a 2D solid, passed to a closure one by one instead of
+//! stored in a manifold.
 //!
-//! The results are equal, bit for bit, to those of [`build_between`](super::build_between) and
-//! [`build_along`](super::build_along), which define them. The separations come from
+//! The contacts equal, bit for bit, those of [`build_between`](super::build_between), without its
+//! limit on their number, and of [`build_along`](super::build_along). The separations come from
 //! `collide/separation/chain/`.
 
 use super::along::extremes;
@@ -14,20 +15,20 @@ use crate::convex::Separation;
 use crate::math::{Real, Space, max};
 use crate::shape::{FeatureId, Kind};
 
-/// A segment of a chain and a solid other than a half-space, in the order of kinds: the solid comes
+/// A segment of a chain and a solid other than a half-space, in canonical order: the solid comes
 /// first if it is a ball or a segment.
 pub(crate) struct SegmentPair<'a, N: Real> {
-    /// The solids in canonical order, in the frame of the first.
+    /// The two solids, in the frame of the first.
     pub(crate) pair: Pair<'a, N, 2>,
-    /// Lengths below this are rounding errors.
+    /// Lengths up to this are rounding errors.
     pub(crate) tolerance: N,
     /// Points beyond this distance are not visited.
     pub(crate) prediction: N,
 }
 
 impl<N: Real> SegmentPair<'_, N> {
-    /// Returns the feature of the chain's segment that the separation's point lies on; `None` if
-    /// the solid's supporting feature is neither a side nor a corner.
+    /// Returns the feature of the chain's segment that the separation's point lies on. `None` with
+    /// a ball if the point is at both ends of the segment, up to rounding.
     pub(crate) fn touched(&self, found: &Separation<N, 2>) -> Option<FeatureId> {
         if let Kind::Ball(_) = self.pair.first {
             return beside_ball(&self.pair, found);
@@ -40,8 +41,9 @@ impl<N: Real> SegmentPair<'_, N> {
         Some(own.at_witness(&frame))
     }
 
-    /// Visits the contacts of the two solids, whose separation is `witness`. `None` for solids
-    /// whose supporting feature is neither a corner nor a side.
+    /// Visits the contacts of the two solids, whose separation is `witness`; there are none beyond
+    /// the prediction. Returns `None` if a supporting feature is neither a corner nor a side, or if
+    /// [`Self::touched`] returns `None` for a ball.
     pub(crate) fn between(
         &self,
         witness: &Separation<N, 2>,
@@ -73,8 +75,8 @@ impl<N: Real> SegmentPair<'_, N> {
         Some(())
     }
 
-    /// Visits the contacts along the normal of `along`. `None` for solids whose supporting feature
-    /// is neither a corner nor a side.
+    /// Visits the contacts along the normal of `along`. Returns `None` if a supporting feature is
+    /// neither a corner nor a side.
     pub(crate) fn along(
         &self,
         along: &Along<N, 2>,

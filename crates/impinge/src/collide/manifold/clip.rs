@@ -6,9 +6,9 @@
 //!      |     c-----x---.           inside < -tolerance   beyond
 //!      |     |     | 2 |           otherwise             touched
 //!      '-----x-----c   |
-//!            |         |         c: corner inside the other ring (no side beyond)
-//!            '---------'         x: side of 1 with one end within and one beyond a side of 2, and
-//!                                   that side of 2 likewise against it
+//!            |         |         c: corner inside the other ring (beyond no side)
+//!            '---------'         x: a side of 1 and a side of 2, each with one end within and one
+//!                                   end beyond the other
 //! ```
 //!
 //! Both features are [rings](super::ring) projected along the normal. Both solids are treated
@@ -25,7 +25,7 @@
 //! the pair's own normal or the normal of a face. Boxes, segments and capsules also have SIMD
 //! kernels (`collide/batch/`), and so have boxes and hulls against triangles
 //! ([`face_lanes`](super::face_lanes)). Rotation of the solids enters through the sine in
-//! [`ContactFrame::admit`].
+//! [`ContactFrame::admit`] and [`RingClip::are_parallel`].
 
 use smallvec::SmallVec;
 
@@ -126,8 +126,8 @@ struct SideRow<N: Real> {
     touched: u8,
 }
 
-/// Positions relative to the sides of one ring: of the corners of the other ring, and last of the
-/// nearest point.
+/// Positions of the corners of one ring, and last of the nearest point, relative to the sides of
+/// the other ring.
 struct Insides<N: Real> {
     /// Number of rows for each point: one for each block of 8 sides.
     width: usize,
@@ -190,8 +190,9 @@ const fn first_bits(count: usize) -> u8 {
     if count < LANES { (1 << count) - 1 } else { u8::MAX }
 }
 
-/// Returns the smallest part of a ring that contains the point with these rows: a corner, a side or
-/// the whole ring. `None` if the point is outside; a segment contains only points on its line.
+/// Returns the smallest part of a ring that contains the point `flat`, whose positions relative to
+/// the sides are `rows`: a corner, a side or the whole ring. `None` if the point is outside; a
+/// segment contains only points on its line.
 fn ring_part<N: Real>(
     ring: &SupportRing<'_, N>,
     rows: &[SideRow<N>],
@@ -291,7 +292,8 @@ impl<'a, N: Real> RingClip<'a, N> {
     fn corners(&self, out: &mut Candidates<N, 3>) {
         for (which, ring) in self.rings.iter().enumerate() {
             let other = &self.rings[1 - which];
-            // No point lies inside a point; its own corner is found when the rings are exchanged.
+            // A ring that is a point contains no corner. Its own corner is found against the other
+            // ring.
             let count = if other.is_point() { 0 } else { ring.count };
             for at in 0..count {
                 let flat = ring.flat(at);
@@ -305,8 +307,8 @@ impl<'a, N: Real> RingClip<'a, N> {
         }
     }
 
-    /// Adds a contact of a corner of one ring (0 or 1) and the point `under` of the other ring,
-    /// opposite along the normal and on the part `on`.
+    /// Adds a contact of a corner of ring `which` (0 or 1) and the point `under` of the other ring,
+    /// which is opposite along the normal and lies on the part `on`.
     fn push_corner(
         &self,
         which: usize,
@@ -323,8 +325,8 @@ impl<'a, N: Real> RingClip<'a, N> {
     }
 
     /// Adds the crossings of sides whose ends are farther than the tolerance from each other's
-    /// lines. If a side ends on a line, its corner lies on the other ring or outside, so there is
-    /// no crossing.
+    /// lines. If a side ends on the line of another, this end is a corner on the other ring or
+    /// outside it, so there is no crossing.
     fn crossings(&self, out: &mut Candidates<N, 3>) {
         let (one, in_other) = (&self.rings[0], &self.insides[1]);
         for side1 in 0..one.side_count() {
@@ -342,8 +344,8 @@ impl<'a, N: Real> RingClip<'a, N> {
         }
     }
 
-    /// Adds the crossing of two sides, if `side2` also crosses the line of `side1`. `side1` crosses
-    /// the line of `side2` at the parameter `share1`.
+    /// Adds the crossing of two sides, if `side2` crosses the line of `side1`. Precondition:
+    /// `side1` crosses the line of `side2`, at the parameter `share1`.
     fn push_crossing(&self, side1: usize, side2: usize, share1: N, out: &mut Candidates<N, 3>) {
         let ([one, other], in_one) = (&self.rings, &self.insides[0]);
         let (block1, lane1) = (side1 / LANES, side1 % LANES);
@@ -364,9 +366,10 @@ impl<'a, N: Real> RingClip<'a, N> {
     }
 
     /// Adds the ends of the overlap interval of two nearly parallel segments. Each contact is an
-    /// end of one segment and the point beside it on the other segment. Both are moved halfway
-    /// towards each other, perpendicular to the normal: they meet there if the solids rotate. The
-    /// moved points are off their segments by at most half the lever arm times the sine.
+    /// end of one segment and the point beside it on the other segment. Both points are moved
+    /// halfway towards each other, perpendicular to the normal, because they meet there if the
+    /// solids rotate. The moved points are off their segments by at most half the lever arm times
+    /// the sine.
     fn common_interval(&self, out: &mut Candidates<N, 3>) {
         for (which, ring) in self.rings.iter().enumerate() {
             let other = &self.rings[1 - which];
@@ -391,9 +394,9 @@ impl<'a, N: Real> RingClip<'a, N> {
         part_beside(along, length, tolerance, ends, segment.id)
     }
 
-    /// Adds the surface points over two points of the cores, unless they are a duplicate: corners
-    /// that coincide are found from both rings. Different points on round rims may have the same
-    /// ids.
+    /// Adds the surface points over two points of the cores, unless `out` already has this contact:
+    /// corners that coincide are found from both rings. Different points on round rims may have the
+    /// same ids.
     fn push(
         &self,
         [core1, core2]: [Point<N, 3>; 2],

@@ -16,11 +16,12 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, max, max_component, min};
 use crate::shape::{FeatureId, Geometry, Kind, SupportMap};
 
-/// Rounding tolerance of lengths, in units of epsilon times the size of the pair.
+/// Rounding tolerance of lengths, in units of epsilon times the size of the pair: the sum of the
+/// bounding radii of both solids and the distance of their origins.
 pub(in crate::collide) const ROUNDING_ERRORS: f64 = 16.0;
 
-/// Cosine of 60°. A feature tilted against the contact plane by a larger angle is reduced to its
-/// nearest point.
+/// Cosine of 60°. A feature that is tilted against the contact plane by a larger angle is reduced
+/// to its corner nearest to the other solid.
 pub(in crate::collide) const MIN_COSINE: f64 = 0.5;
 
 /// Candidates of a manifold.
@@ -65,12 +66,12 @@ impl Which {
 /// Returns the height of a rounded surface above a point of the flat feature that it surrounds at
 /// `radius`, along the normal.
 ///
-/// `cosine` is the cosine of the feature's tilt. `depth` and `top` are the depths of the point and
-/// of the feature's nearest corner below the supporting plane; `away_squared` is the squared
-/// distance of the two perpendicular to the normal. Above the flat part the height is `radius /
-/// cosine`; above the corner it is the height of the ball around the corner; nothing rises above
-/// the supporting plane. Exact for capsules, and where the surface is parallel to the feature;
-/// elsewhere a rounded polygon may be slightly lower.
+/// `cosine` is the cosine of the feature's tilt. `depth` and `top` are the depths, below the
+/// supporting plane, of the point and of the feature's corner nearest to the other solid;
+/// `away_squared` is the squared distance between the point and that corner, perpendicular to the
+/// normal. Above the flat part the height is `radius / cosine`; above the corner it is the height
+/// of the ball around the corner; nothing rises above the supporting plane. Exact for capsules, and
+/// where the surface is parallel to the feature; elsewhere a rounded polygon may be slightly lower.
 #[inline]
 pub(in crate::collide) fn lifted<N: Real>(
     radius: N,
@@ -93,12 +94,12 @@ pub(in crate::collide) fn lifted<N: Real>(
 /// the frame of the first solid.
 ///
 /// `flat` coordinates are along the tangents, zero at the witness point of the first solid; in 2D
-/// the second is always zero.
+/// the second coordinate is always zero.
 pub(in crate::collide) struct ContactFrame<N: Real, const D: usize> {
     /// Nearest points, normal and signed distance of the pair.
     pub(in crate::collide) witness: Separation<N, D>,
     tangents: [Vector<N, D>; 2],
-    /// Lengths below this are rounding errors.
+    /// Lengths up to this are rounding errors.
     pub(in crate::collide) tolerance: N,
     /// Largest distance of a contact point.
     prediction: N,
@@ -116,7 +117,7 @@ pub(in crate::collide) struct Candidate<N: Real, const D: usize> {
     pub(in crate::collide) distance: N,
     /// Coordinates along the tangents of the frame.
     pub(in crate::collide) flat: Vector<N, 2>,
-    /// Feature of each solid that the point lies on.
+    /// The feature of each solid that the point lies on.
     pub(in crate::collide) features: [FeatureId; 2],
     /// Id inherited from the previous manifold; `None` for a new point.
     pub(in crate::collide) kept: Option<Inherited>,
@@ -129,7 +130,7 @@ impl<N: Real, const D: usize> Candidate<N, D> {
         Self { point1, distance, flat: Vector::<N, 2>::zeros(), features, kept: None }
     }
 
-    /// Returns whether the previous manifold had this point at this position.
+    /// Returns whether the candidate continues a point of the previous manifold that is near it.
     pub(in crate::collide) fn is_old(&self) -> bool {
         self.kept.is_some_and(|kept| kept.is_old)
     }
@@ -142,7 +143,7 @@ impl<N: Real, const D: usize> Candidate<N, D> {
 
 impl<N: Real, const D: usize> ContactFrame<N, D> {
     /// Creates a frame. `tangents` complete the witness' normal to a right-handed basis; in 2D the
-    /// second is zero.
+    /// second tangent is zero.
     pub(in crate::collide) fn new(
         pair: &Pair<'_, N, D>,
         witness: &Separation<N, D>,
@@ -196,8 +197,8 @@ impl<N: Real, const D: usize> ContactFrame<N, D> {
     /// Returns the distance to store for a pair of points with the tangent coordinates `flat`;
     /// `None` if the request excludes the pair.
     ///
-    /// The witness has the smallest distance, so a smaller one is a rounding error and is raised; a
-    /// distance that exceeds the prediction by no more than the tolerance is lowered to the
+    /// The witness has the smallest distance, so a smaller one is a rounding error and is raised to
+    /// it. A distance that exceeds the prediction by no more than the tolerance is lowered to the
     /// prediction. A point beyond the prediction is admitted if a rotation about the witness brings
     /// it within the prediction.
     #[inline]
@@ -232,8 +233,9 @@ impl<N: Real, const D: usize> ContactFrame<N, D> {
         Some(Candidate { point1, distance, flat, features, kept: None })
     }
 
-    /// Adds the candidate that [`Self::candidate`] returns, unless `out` has one with the same
-    /// features at the same position: corners that coincide are found from both solids.
+    /// Adds the candidate that [`Self::candidate`] returns, if any, unless `out` has a candidate
+    /// with the same features within four tolerances of it: corners that coincide are found from
+    /// both solids.
     #[inline]
     pub(in crate::collide) fn push_new(
         &self,
@@ -255,7 +257,8 @@ impl<N: Real, const D: usize> ContactFrame<N, D> {
 }
 
 /// Returns the part of a segment at the coordinate `along`, measured from its first end: an end
-/// within `tolerance`, the last if both are, else the segment; `None` beyond the ends.
+/// within `tolerance`, the last end if both are, else the segment. `None` beyond an end by more
+/// than `tolerance`.
 #[inline]
 pub(in crate::collide) fn part_beside<N: Real>(
     along: N,
@@ -271,7 +274,8 @@ pub(in crate::collide) fn part_beside<N: Real>(
     Some(if along >= length - tolerance { ends[1] } else { nearest })
 }
 
-/// Returns the length below which differences are rounding errors for a pair of this size.
+/// Returns the length up to which differences are rounding errors for a pair: [`ROUNDING_ERRORS`]
+/// epsilons of its size.
 #[inline]
 pub(in crate::collide) fn rounding<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
     let size = size(pair.first) + size(pair.second) + pair.pose12.translation.norm();

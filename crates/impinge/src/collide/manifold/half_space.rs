@@ -1,4 +1,5 @@
-//! A solid against a half-space: the corners of the solid near the boundary, which is unbounded.
+//! A solid against a half-space, whose boundary is unbounded: the corners of the solid near the
+//! boundary.
 //!
 //! For flat-faced solids every vertex is a candidate, not only those of the supporting feature: if
 //! no face is parallel to the boundary, the near vertices need not belong to one face. For other
@@ -15,7 +16,7 @@ use crate::shape::{Cuboid, Feature, FeatureId, Geometry, Kind, Polytope, Support
 /// The only feature of a half-space.
 const BOUNDARY: FeatureId = FeatureId::Face(0);
 
-/// Vertices of a hull in one block.
+/// Number of vertices of a hull in one block.
 const LANES: usize = 8;
 
 /// Builds the manifold of a solid and a half-space, the second solid, within the prediction.
@@ -33,14 +34,14 @@ pub(super) fn build<N: Real, const D: usize>(
     choose_in_frame(pair, frame, &mut candidates, limit, out);
 }
 
-/// Adds the corners of the first solid above the boundary as candidates.
+/// Frame of a solid above a half-space; the methods add the corners of the solid as candidates.
 struct Above<'a, N: Real, const D: usize> {
     frame: &'a ContactFrame<N, D>,
 }
 
 impl<N: Real, const D: usize> Above<'_, N, D> {
     /// Adds the corners that the request admits. Returns the feature of the nearest point, for use
-    /// if none is admitted.
+    /// if no corner is admitted.
     fn corners(&self, kind: Kind<'_, N, D>, out: &mut Candidates<N, D>) -> FeatureId {
         match kind {
             Kind::Cuboid(cuboid) => self.vertices_of_box(cuboid, out),
@@ -75,8 +76,8 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
         }
     }
 
-    /// Adds the vertices of a box. On a flat box, whose vertices coincide, only the one with the
-    /// lowest index of each group is added.
+    /// Adds the vertices of a box. Vertices of a flat box coincide in groups; of each group, only
+    /// the vertex with the lowest index is added.
     fn vertices_of_box(&self, cuboid: &Cuboid<N, D>, out: &mut Candidates<N, D>) {
         let half = cuboid.half_extents();
         let has = |vertex: u32, axis: usize| vertex >> axis & 1 == 1;
@@ -118,8 +119,8 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
     }
 
     /// Adds the corners of the core's supporting feature, on the rounded surface. Adds none for a
-    /// point, and for a feature tilted too far. Returns the id of the lowest corner if the feature
-    /// is tilted too far, else the id of the feature.
+    /// point, for a segment along the normal, and for a feature tilted by more than 60°. In the
+    /// last case, returns the id of the corner nearest to the boundary; else the id of the feature.
     fn feature_corners(&self, map: &dyn SupportMap<N, D>, out: &mut Candidates<N, D>) -> FeatureId {
         let (frame, radius, mut feature) = (self.frame, map.rounding(), Feature::default());
         let extra = contact_feature(map, &frame.normal(), &mut feature);

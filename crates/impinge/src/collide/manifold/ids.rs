@@ -4,19 +4,19 @@
 //! first:
 //!
 //! 1. points on the same pair of features, within [`SHARE`] of the pair's size;
-//! 2. points on other features within that length: features flicker where edges coincide, and a
+//! 2. points on other features within the same length: features flicker where edges coincide, and a
 //!    corner that slides over the triangles of a mesh meets another triangle in each step;
 //! 3. points on the same pair of features at any distance; a crossing of two edges only within
 //!    [`REACH`] of the size.
 //!
 //! The distance of a match is the smaller of two: how far the point moved on the first solid, in
 //! that solid's frame, and how far it moved on the second, in the second's frame. It is zero for a
-//! point that stays on a vertex of either solid. If the normal turned by more than 45°, it is
-//! infinite, because a solid that fell on another side begins new contacts. Pairs of the same
-//! features with a vertex among them are exempt, because they have only one point. The kernels of
-//! `batch` keep no old pose, so they compare positions on the first solid only. A corner that
-//! slides over a floor thus counts as unmoved, and so does a point of the floor that a solid slides
-//! over.
+//! point that stays on a vertex of either solid. If the normal turned by more than 45°, the
+//! distance is infinite, because a solid that fell on another side begins new contacts. Pairs of
+//! the same features with a vertex among them are exempt, because they have only one point. The
+//! kernels of `batch` keep no old pose, so they compare positions on the first solid only. A corner
+//! that slides over a floor thus counts as unmoved, and so does a point of the floor that a solid
+//! slides over.
 //!
 //! ```text
 //!           ┌─────────┐            ┌─────────┐
@@ -41,7 +41,7 @@ use crate::math::{Point, Pose, Real, Vector, max_component};
 use crate::shape::FeatureId;
 
 /// Largest distance that a contact may move in one step and stay the same contact, as a fraction of
-/// the pair's size: half the diagonal of the smaller box.
+/// the pair's size: half the diagonal of the local box of the smaller solid.
 pub(super) const SHARE: f64 = 1.0 / 16.0;
 
 /// Largest distance, along each axis and as a fraction of the pair's size, between crossings of the
@@ -55,7 +55,8 @@ pub(super) fn are_edges(features: [FeatureId; 2]) -> bool {
 }
 
 /// Returns whether a point with these features that moved by `moved` on the first solid is still
-/// the same contact; `size` computes the size of the pair.
+/// the same contact; always `true` unless both features are edges. `size` computes the size of the
+/// pair.
 #[inline(always)]
 pub(in crate::collide) fn is_same_point<N: Real, const D: usize>(
     features: [FeatureId; 2],
@@ -96,7 +97,7 @@ pub(in crate::collide) struct PairPose<'a, N: Real, const D: usize> {
 
 impl<N: Real, const D: usize> PairPose<'_, N, D> {
     /// Returns the anchors of a contact, from its point on the first solid in the first solid's
-    /// frame.
+    /// frame. If `pose12` is `None`, the position on the second solid is infinite.
     #[inline]
     pub(in crate::collide) fn anchors(
         &self,
@@ -119,12 +120,13 @@ pub(in crate::collide) type AnchorList<N, const D: usize> = SmallVec<[Anchors<N,
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::collide) struct Inherited {
     pub(in crate::collide) id: u32,
-    /// Whether the point is where the old one was. If not, it moved far and gets no preference in
+    /// Whether the new point is near the old point. If not, it moved far and gets no preference in
     /// the choice of points.
     pub(in crate::collide) is_old: bool,
 }
 
-/// Returns whether two points are close enough to be the same contact.
+/// Returns whether an old and a new point are close enough to be the same contact. `size` is the
+/// size of the pair.
 pub(in crate::collide) fn are_near<N: Real, const D: usize>(
     old: &Anchors<N, D>,
     new: &Anchors<N, D>,
@@ -134,7 +136,8 @@ pub(in crate::collide) fn are_near<N: Real, const D: usize>(
 }
 
 /// Returns the squared distance that a point moved, on the solid where it is smaller, times `scale`
-/// squared. Zero on a vertex of either solid, infinite if the normals do not agree.
+/// squared. Zero if both points are on the same vertex of either solid. If the normals do not
+/// agree, zero for the same features with a vertex among them, else infinite.
 #[inline]
 pub(super) fn moved<N: Real, const D: usize>(
     old: &Anchors<N, D>,
@@ -155,7 +158,7 @@ pub(super) fn moved<N: Real, const D: usize>(
     }
     let on = |solid: usize| ((new.positions[solid] - old.positions[solid]) * scale).norm_squared();
     let [on1, on2] = [on(0), on(1)];
-    // Written so that a NaN, an unknown position on the second solid, is not chosen.
+    // Written so that NaN, the result for unknown positions on the second solid, is not chosen.
     if on2 < on1 { on2 } else { on1 }
 }
 
@@ -172,14 +175,14 @@ pub(in crate::collide) fn normals_agree<N: Real, const D: usize>(
     old.dot(new) >= N::lit(TURN)
 }
 
-/// Returns whether a pair of features has only one point: whether a vertex is among them. Edges may
-/// be round rims, with many points.
+/// Returns whether a pair of features has only one point: whether one of them is a vertex. Two
+/// edges may be round rims, with many points.
 pub(in crate::collide) fn is_one_point(features: [FeatureId; 2]) -> bool {
     features.iter().any(|id| matches!(id, FeatureId::Vertex(_)))
 }
 
-/// Gives a candidate the id of the old point with the same features, if one of these is a vertex
-/// and no other candidate has them.
+/// Gives a candidate without an id the id of the old point with the same features, if one of these
+/// features is a vertex and no other candidate has the same two.
 pub(in crate::collide) fn inherit_by_features<N: Real, const D: usize>(
     old: &RawManifold<N, D>,
     candidates: &mut [Candidate<N, D>],
@@ -197,8 +200,8 @@ pub(in crate::collide) fn inherit_by_features<N: Real, const D: usize>(
     }
 }
 
-/// Matches the candidates with indices `some` that have no id with the old points whose ids no
-/// candidate has, by [`each_match`], and passes on the ids. `pose` is the new pose; `size` computes
+/// Matches the candidates with indices `some` that have no id with the old points whose id none of
+/// `some` has, by [`each_match`], and passes on the ids. `pose` is the new pose; `size` computes
 /// the size of the pair.
 pub(in crate::collide) fn inherit_by_position<N: Real, const D: usize>(
     old: &RawManifold<N, D>,
@@ -239,8 +242,8 @@ impl<N: Real, const D: usize> RawManifold<N, D> {
 
 /// Moves the points of a manifold to the candidates, if these have the same features in the same
 /// order, each pair of features occurs once, and no crossing of edges jumped ([`is_same_point`]).
-/// Returns whether it did; otherwise nothing changes. The nearest point gets exactly `distance`,
-/// that of the separation. `size` computes the size of the pair.
+/// Returns `true` if it moved the points; else `false`, with nothing changed. The nearest point
+/// gets exactly `distance`, the distance of the separation. `size` computes the size of the pair.
 pub(in crate::collide) fn renew<N: Real, const D: usize>(
     candidates: &[Candidate<N, D>],
     distance: N,
@@ -255,7 +258,7 @@ pub(in crate::collide) fn renew<N: Real, const D: usize>(
     if old.len() != candidates.len() || !old.iter().zip(candidates).all(is_same) {
         return false;
     }
-    // Points that share their features, as on round rims, are matched by position instead.
+    // Points that share their features, as on round rims, are matched by position by the caller.
     let is_twin = |(at, new): (usize, &Candidate<N, D>)| {
         candidates[..at].iter().any(|other| other.features == new.features)
     };
@@ -275,8 +278,9 @@ pub(in crate::collide) fn renew<N: Real, const D: usize>(
     true
 }
 
-/// Returns new points in the order in which they get ids: their coordinates along an [`askew`]
-/// direction, ascending, and their indices. Input: their indices and positions on the first solid.
+/// Sorts new points into the order in which they get ids: by ascending coordinate along an
+/// [`askew`] direction. Takes the index and the position on the first solid of each point; returns
+/// the coordinate and the index of each.
 ///
 /// The direction is fixed in the frame of the first solid. If the points are the four corners of a
 /// rectangle, the last is opposite to the first. In a solver that visits contacts in this order, as

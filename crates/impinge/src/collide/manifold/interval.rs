@@ -14,7 +14,8 @@
 //! ```
 //!
 //! The contacts are the ends of the overlap interval that the request admits, including by rotation
-//! ([`ContactFrame::admit`]), and the witness if neither end is as near.
+//! ([`ContactFrame::admit`]). The witness (the nearest points) is added if no admitted end has its
+//! distance, up to rounding.
 
 use super::frame::{Candidates, ContactFrame, MIN_COSINE, Which, lifted, part_beside};
 use super::{Pair, RawManifold, add_witness, choose_in_frame};
@@ -77,8 +78,8 @@ pub(super) struct FeatureInterval<N: Real> {
 }
 
 impl<N: Real> FeatureInterval<N> {
-    /// Returns the supporting feature of a solid, with `pose` in the frame of the first solid;
-    /// `None` if it is neither a side nor a corner.
+    /// Returns the supporting feature of a solid at `pose` in the frame of the first solid; `None`
+    /// if the feature is neither a side nor a corner.
     #[inline(always)]
     pub(super) fn of(
         which: Which,
@@ -129,8 +130,9 @@ impl<N: Real> FeatureInterval<N> {
         interval
     }
 
-    /// Reduces a side to a corner if needed: a side without length to its first corner, with the
-    /// side's id; a side that is tilted too far, or lies along the normal, to its nearest corner.
+    /// Reduces a side to a corner if needed. A side without length becomes its first corner, with
+    /// the id of the side. A side that lies along the normal or is tilted by more than 60° becomes
+    /// its corner nearest to the other solid.
     #[inline(always)]
     fn simplify(&mut self, outward: &Vector<N, 2>, tolerance: N) {
         let [from, to] = &self.corners;
@@ -164,7 +166,8 @@ impl<N: Real> FeatureInterval<N> {
         }
     }
 
-    /// Returns the id of the part that the witness lies on: an end or the side.
+    /// Returns the id of the part that the nearest point lies on: an end within twice the
+    /// tolerance, else the feature itself.
     pub(super) fn at_witness(&self, frame: &ContactFrame<N, 2>) -> FeatureId {
         let near = |corner: &Corner<N, 2>| corner.flat.norm() <= N::TWO * frame.tolerance;
         match &self.corners {
@@ -245,8 +248,8 @@ pub(super) struct Shared<'a, N: Real> {
 }
 
 impl<N: Real> Shared<'_, N> {
-    /// Adds the ends of the overlap interval. Each is an end of one side, paired with the point at
-    /// its coordinate on the other side.
+    /// Adds the ends of the overlap interval. Each is an end of one side, paired with the point of
+    /// the other side at the same coordinate.
     pub(super) fn candidates(&self, out: &mut Candidates<N, 2>) {
         for corner in &self.first.corners {
             if let Some(on) = self.second.beside(corner.flat.x, self.frame.tolerance) {
@@ -262,8 +265,8 @@ impl<N: Real> Shared<'_, N> {
         }
     }
 
-    /// Adds a pair of points unless it is a duplicate. First moves each point by half their offset
-    /// along the tangent.
+    /// Adds a pair of points unless it is a duplicate. First moves each point by half the offset
+    /// between the points along the tangent.
     fn push(
         &self,
         core1: &Point<N, 2>,

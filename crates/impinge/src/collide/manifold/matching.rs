@@ -17,7 +17,8 @@ use crate::math::order::{order_of, sort_keyed};
 use crate::math::{Mapped, Real};
 use crate::shape::FeatureId;
 
-/// Class of a pair: same features and near.
+/// Class of a pair: the same features, and near: at most the near length (`SHARE` of the pair's
+/// size) apart.
 const SAME: u64 = 0;
 /// Class of a pair: other features, but near.
 const NEAR: u64 = 1;
@@ -26,8 +27,8 @@ const FAR: u64 = 2;
 /// Position of the class in a key.
 const CLASS_AT: u32 = 62;
 
-/// Largest squared distance of a crossing of two edges in the class `FAR`, in units of the squared
-/// near length.
+/// Largest squared distance of two crossings of the same two edges in the class `FAR`, in units of
+/// the squared near length.
 const FARTHEST: f64 = (REACH / SHARE) * (REACH / SHARE);
 
 /// Key of pairs that do not match.
@@ -68,7 +69,7 @@ fn match_few<N: Real, const D: usize>(
     });
 }
 
-/// Returns the mask of the first `count` points.
+/// Returns the mask with the lowest `count` bits set.
 #[inline(always)]
 fn all(count: usize) -> u32 {
     u32::MAX.unbounded_shr(u32::try_from(FEW - count).unwrap_or(0))
@@ -88,9 +89,10 @@ fn least<K: PartialOrd>(among: u32, never: K, key: impl Fn(usize) -> K) -> (K, u
     least
 }
 
-/// Visits pairs of old and new points, given by masks, in the order of their keys, smallest first;
-/// each point occurs at most once. Ties go to the old point with the lower index, then to the new
-/// point with the lower index. Pairs with a key not below `never` are skipped.
+/// Visits pairs of old and new points in the order of their keys, smallest first; each point occurs
+/// at most once. `old` and `new` are masks of points. Ties go to the old point with the lower
+/// index, then to the new point with the lower index. Pairs with a key not below `never` are
+/// skipped.
 ///
 /// `nearest` returns the [`least`] key of an old point among the new points in a mask.
 #[inline(always)]
@@ -106,7 +108,7 @@ fn nearest_first<K: PartialOrd + Copy>(
         for at in Ones::<FEW>(pending) {
             (keys[at], others[at]) = nearest(at, new);
             let has_one = keys[at] < never;
-            // A point without a match now has none later either.
+            // An old point without a match now has none later either.
             old &= !(u32::from(!has_one) << at);
         }
         // New points that are nearest to at least one old point.
@@ -154,9 +156,9 @@ fn match_many<N: Real, const D: usize>(
 /// Visits matches by position alone. Precondition: no new point has the features of an old one.
 /// `old` and `new` are masks of points.
 ///
-/// `moved` returns the squared distance of an old and a new point in units of the near length.
-/// `same_vertex` returns, for an old point and a mask of new points, the new points on the same
-/// vertex of the second solid; they count as not moved.
+/// `moved` returns the squared distance of an old and a new point in units of the squared near
+/// length. `same_vertex` returns, for an old point and a mask of new points, the new points on the
+/// same vertex of the second solid; they count as not moved.
 #[inline(always)]
 pub(in crate::collide) fn each_near<N: Real>(
     [old, new]: [u32; 2],
@@ -177,8 +179,8 @@ const fn is_near(key: u64) -> bool {
     key >> CLASS_AT < FAR
 }
 
-/// Returns the key of a pair; [`NEVER`] if the two do not match. `scale` is the reciprocal of the
-/// near length.
+/// Returns the key of a pair; [`NEVER`] if the points do not match. `scale` is the reciprocal of
+/// the near length.
 #[inline]
 fn key_of<N: Real, const D: usize>(old: &Anchors<N, D>, new: &Anchors<N, D>, scale: N) -> u64 {
     // The first coordinates exclude most pairs. Written so that NaN counts as far.

@@ -109,7 +109,7 @@ pub(crate) fn build3<N: Real>(
 }
 
 /// Builds the manifold if the pair is beyond the prediction, the first solid is a ball, or the
-/// second a half-space; returns `false`, with nothing changed, for other pairs.
+/// second solid is a half-space; returns `false`, with nothing changed, for other pairs.
 fn build_one_sided<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -192,10 +192,11 @@ pub(crate) fn contacts_of_separation2<N: Real>(
     }
 }
 
-/// An old point may stand for the deepest one if its distance exceeds the smallest by at most this
-/// fraction of the pair's size (half the diagonal of the smaller box). So a solid that vibrates at
-/// rest keeps its points although the deepest corner changes in each step. Such a point gets the
-/// distance of the pair; it is off the surfaces by at most that length.
+/// An old point (a point of the previous manifold) may stand for the deepest point if its distance
+/// exceeds the smallest distance by at most this fraction of the pair's size (half the diagonal of
+/// the smaller solid's box). So a solid that vibrates at rest keeps its points although the deepest
+/// corner changes in each step. Such an old point gets the distance of the pair; it is off the
+/// surfaces by at most the difference.
 const SLACK: f64 = 1.0 / 512.0;
 
 /// Number of candidates up to which all are kept, if the limit allows. Among more candidates, some
@@ -211,13 +212,13 @@ pub(in crate::collide) struct PointChoice<'a, N: Real, const D: usize> {
     pub(in crate::collide) size: &'a dyn Fn() -> N,
     /// Signed distance of the pair; one of the deepest points gets exactly this distance.
     pub(in crate::collide) distance: N,
-    /// Lengths below this are rounding errors.
+    /// Lengths up to this are rounding errors.
     pub(in crate::collide) tolerance: N,
     /// Largest number of points; at least one is kept.
     pub(in crate::collide) limit: usize,
 }
 
-/// Returns the distance up to which an old point may stand for the deepest one: `distance` plus
+/// Returns the distance up to which an old point may stand for the deepest point: `distance` plus
 /// `SLACK` times `size`, or plus `tolerance` if that is larger. `distance` and `size` are those of
 /// the pair.
 pub(in crate::collide) fn slack_level<N: Real>(distance: N, size: N, tolerance: N) -> N {
@@ -256,8 +257,8 @@ fn keeps_pose<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
 }
 
 /// Replaces the points of a manifold by at least one and at most `limit` candidates, and sets its
-/// normal. One of the deepest points gets the distance of the pair; its own distance differs from
-/// that by rounding, or by up to `SLACK` times the size.
+/// normal. One of the deepest points gets exactly the distance of the pair; the distance computed
+/// for that point differs from it by rounding, or by up to `SLACK` times the size.
 pub(in crate::collide) fn choose<N: Real, const D: usize>(
     candidates: &mut [Candidate<N, D>],
     choice: &PointChoice<'_, N, D>,
@@ -306,8 +307,9 @@ fn chosen<N: Real, const D: usize>(
     reduce::chosen(&mut reduce::projected(flattened, levels), limit, tolerance)
 }
 
-/// Adds the nearest points as a candidate. It replaces the only candidate with the same features.
-/// If there are several, as on round rims, or both features are faces, all of them stay.
+/// Adds the nearest points as a candidate. If exactly one candidate has the same features and these
+/// are not two faces, the new one replaces it. Several candidates with the same features, as on
+/// round rims, all stay.
 fn add_witness<N: Real, const D: usize>(
     witness: &Separation<N, D>,
     features: [FeatureId; 2],
@@ -321,7 +323,7 @@ fn add_witness<N: Real, const D: usize>(
     out.push(Candidate::alone(witness, features));
 }
 
-/// Returns the index of the candidate that gets the distance of the pair; see [`deepest_of`].
+/// Returns the index of the candidate that gets the distance of the pair, by [`deepest_of`].
 fn deepest<N: Real, const D: usize>(candidates: &[Candidate<N, D>], limit: N) -> usize {
     deepest_of(candidates.len(), limit, |index| {
         let candidate = &candidates[index];
@@ -329,9 +331,10 @@ fn deepest<N: Real, const D: usize>(candidates: &[Candidate<N, D>], limit: N) ->
     })
 }
 
-/// Returns the index of the candidate that gets the distance of the pair: one that continues an old
-/// point and has a distance of at most `limit`, else the deepest. `what` returns, for each
-/// candidate, whether it continues an old point, and its distance.
+/// Returns the index of the candidate that gets the distance of the pair: the lowest of the
+/// candidates that continue an old point and have a distance of at most `limit`; if there are none,
+/// the lowest of all. The first wins a tie. `what` returns, for each candidate, whether it
+/// continues an old point, and its distance.
 #[inline]
 pub(in crate::collide) fn deepest_of<N: Real>(
     count: usize,

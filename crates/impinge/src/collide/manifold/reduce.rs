@@ -6,12 +6,12 @@
 //!        '- right --'
 //! ```
 //!
-//! The best four of a few candidates come from trying all such diagonals. If more than four points
-//! are wanted, or there are many candidates, they are corners of the convex hull (A. M. Andrew,
-//! "Another efficient algorithm for convex hulls in two dimensions", 1979), found by dynamic
-//! programming (J. E. Boyce, D. P. Dobkin, R. L. Drysdale and L. J. Guibas, "Finding extremal
-//! polygons", 1985). Both are exact up to [`FEW`] candidates; a longer hull first loses the corners
-//! that add least.
+//! The best four of a few candidates come from trying all such diagonals. Of more than [`FEW`]
+//! candidates, only corners of the convex hull are tried (A. M. Andrew, "Another efficient
+//! algorithm for convex hulls in two dimensions", 1979). More than four points come from dynamic
+//! programming over these corners (J. E. Boyce, D. P. Dobkin, R. L. Drysdale and L. J. Guibas,
+//! "Finding extremal polygons", 1985). Both are exact up to [`FEW`] candidates; a longer hull is
+//! first reduced ([`coarsen`]).
 //!
 //! Old points, those of the previous manifold, are all kept if they span [`ENOUGH`] of the best
 //! choice and include a deepest one; otherwise each weighs slightly more than a new one. So solids
@@ -45,7 +45,7 @@ pub(in crate::collide) struct Projected<N: Real> {
     pub(in crate::collide) at: Vector<N, 2>,
     /// Index of the candidate.
     pub(in crate::collide) index: usize,
-    /// Whether its distance is the smallest, up to rounding or the slack of an old point.
+    /// Whether the candidate's distance is the smallest, up to rounding or, if old, the slack.
     pub(in crate::collide) is_deepest: bool,
     /// Whether the previous manifold had the candidate.
     pub(in crate::collide) is_kept: bool,
@@ -58,8 +58,8 @@ pub(in crate::collide) type Projections<N> = SmallVec<[Projected<N>; FEW]>;
 pub(in crate::collide) type Indices = SmallVec<[usize; 8]>;
 
 /// Lists candidates from (tangent coordinates, distance, whether the previous manifold had it). A
-/// candidate is deepest if its distance is at most `level` or is the smallest. If none of these is
-/// old, old candidates with a distance up to `slack` count as deepest too.
+/// candidate is deepest if its distance is at most `level` or is the smallest. If no old candidate
+/// is deepest in this sense, old candidates with a distance up to `slack` are deepest, too.
 #[inline]
 pub(in crate::collide) fn projected<N: Real>(
     candidates: impl Iterator<Item = (Vector<N, 2>, N, bool)> + Clone,
@@ -81,7 +81,7 @@ pub(in crate::collide) fn projected<N: Real>(
 /// Returns the indices, ascending, of at most `limit` candidates that span the largest area, at
 /// least one of them deepest.
 ///
-/// Lengths below `tolerance` are rounding errors. Scaling by a power of two changes no choice.
+/// Lengths up to `tolerance` are rounding errors. Scaling by a power of two changes no choice.
 #[inline]
 pub(in crate::collide) fn chosen<N: Real>(
     points: &mut Projections<N>,
@@ -130,8 +130,8 @@ fn span<N: Real>(points: &Projections<N>) -> [N; 2] {
     [area, longest]
 }
 
-/// Computes [`chosen`] from the corners of the convex hull alone, even if the candidates are no
-/// more than `limit`. Cost: O(n log n) for n candidates.
+/// Computes [`chosen`] from the corners of the convex hull, and a deepest candidate if no corner is
+/// deepest, even for at most `limit` candidates. Cost: O(n log n) for n candidates.
 #[inline(never)]
 pub(in crate::collide) fn spanning<N: Real>(
     points: &mut Projections<N>,
@@ -211,7 +211,7 @@ fn best_four<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> In
 }
 
 /// Returns the positions of a deepest point, of the point farthest from it and, if the deepest
-/// point is inside a row, of the other end of the row.
+/// point is inside a row and `limit` is above 2, of the other end of the row.
 fn farthest<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> Indices {
     let mut chosen = Indices::from_slice(&[a_deepest(points)]);
     let mut most = tolerance;
@@ -317,7 +317,7 @@ fn best_diagonal<N: Real>(points: &[Projected<N>], is_four: bool, tolerance: N) 
 }
 
 /// Returns the ends of a diagonal and the points farthest from it on both sides, or on one side
-/// unless `is_four`; `None` if these are within the tolerance.
+/// unless `is_four`; `None` if no point is farther from the diagonal than the tolerance.
 fn with_sides<N: Real>(
     points: &[Projected<N>],
     ends: [usize; 2],
@@ -381,7 +381,7 @@ fn twice_area<N: Real>(a: &Projected<N>, b: &Projected<N>, c: &Projected<N>) -> 
     cross2(&(b.at - a.at), &(c.at - a.at))
 }
 
-/// Removes corners that lie between their neighbours, up to rounding; deepest and old ones last.
+/// Removes corners between their neighbours, up to rounding; deepest and old corners last.
 fn thin<N: Real>(ring: &mut Projections<N>, tolerance: N) {
     for rank in 0..4 {
         let mut at = 0;
@@ -408,7 +408,7 @@ fn is_between<N: Real>(own: &Projected<N>, ends: [&Projected<N>; 2], tolerance: 
     is_in_row && along >= -slack && along <= length * length + slack
 }
 
-/// Reduces a hull to at most `count` corners: a deepest one, old ones, and others that add most.
+/// Reduces a hull to at most `count` corners: a deepest, the old, and those that add most area.
 fn coarsen<N: Real>(ring: &mut Projections<N>, count: usize) {
     if ring.len() <= count {
         return;
@@ -466,8 +466,8 @@ fn largest_polygon<N: Real>(mut ring: Projections<N>, count: usize) -> Projectio
 }
 
 /// Returns twice the largest area, with bonuses, of a polygon of `count` corners that has corner 0,
-/// and that polygon. Dynamic programming: the best paths to each corner over `number` others give
-/// the best ones over `number + 1`.
+/// and that polygon. Dynamic programming: the best paths of `number` sides from corner 0 give the
+/// best paths of `number + 1` sides.
 fn largest_with_first<N: Real>(
     ring: &[Projected<N>],
     count: usize,

@@ -8,13 +8,13 @@
 //!     corner 3 <---side 2--- corner 2
 //! ```
 //!
-//! A point has one corner, a segment two corners and one side, a face three or more corners and as
-//! many sides. Most rings need one block of [`LANES`] corners; a tilted round cap needs two.
+//! A point has one corner, a segment two corners and one side, a face three or more corners and the
+//! same number of sides. Most rings need one block of [`LANES`] corners; a round cap may need two.
 //! [`LANES`] is the capacity of `FaceRing`, which `supporting` fills; `clip` measures corners
 //! against whole blocks of sides. Ids are those of
 //! [`SupportMap::core_feature`](crate::shape::SupportMap::core_feature). Corners that coincide in
 //! projection are merged. A face without area becomes a segment, and a feature that is tilted by
-//! more than 60° becomes its nearest corner.
+//! more than 60° becomes its corner nearest to the other solid.
 
 use smallvec::{SmallVec, smallvec};
 
@@ -49,7 +49,7 @@ pub(super) struct RingBlock<N: Real> {
     pub(super) inward: [[N; LANES]; 2],
 }
 
-/// A supporting feature with the radius around it.
+/// A supporting feature, with the radius of the solid's surface around it.
 pub(super) struct SupportRing<'a, N: Real> {
     which: Which,
     /// Pose of the solid in the frame of the first solid; `None` for the first solid.
@@ -167,8 +167,8 @@ impl<'a, N: Real> SupportRing<'a, N> {
         from + (to - from) * share
     }
 
-    /// Returns the point of a segment or face that projects to the same tangent coordinates `flat`
-    /// as `point`.
+    /// Returns the point of a face with the tangent coordinates `flat` of `point`; for a segment,
+    /// its point nearest to `flat` in projection.
     pub(super) fn under(
         &self,
         point: &Point<N, 3>,
@@ -184,8 +184,8 @@ impl<'a, N: Real> SupportRing<'a, N> {
         point + frame.normal() * along
     }
 
-    /// Returns the part of a side that contains a point on its line: one of its corners or the
-    /// side; `None` if the point is beyond both corners.
+    /// Returns the part of a side that contains a point on the side's line: a corner within twice
+    /// the tolerance, else the side; `None` if the point is outside the side.
     pub(super) fn on_side(
         &self,
         at: usize,
@@ -267,7 +267,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
         }
     }
 
-    /// Simplifies a feature that has no extent in projection, or is tilted too far.
+    /// Simplifies a feature that has no extent in projection, or is tilted by more than 60°.
     fn simplify(&mut self, frame: &ContactFrame<N, 3>) {
         let (outward, tolerance) = (self.which.outward(frame), frame.tolerance);
         // Coinciding corners make the extent unknown; once they are merged, the face may have an
@@ -326,8 +326,8 @@ impl<'a, N: Real> SupportRing<'a, N> {
         Some((area, longest))
     }
 
-    /// Merges each corner with the following ones that coincide with it; the merged corner gets the
-    /// side of the last of them.
+    /// Merges each corner with the following corners that coincide with it; the merged corner gets
+    /// the side of the last of these.
     fn merge_coincident(&mut self, tolerance: N) {
         let is_apart =
             |a: &RingCorner<N>, b: &RingCorner<N>| max_component(&(a.flat - b.flat)) > tolerance;
@@ -378,7 +378,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
         self.replace(&[farthest]);
     }
 
-    /// Replaces the corners by a subset.
+    /// Replaces the corners by some of them, in the order of `corners`.
     fn replace(&mut self, corners: &[RingCorner<N>]) {
         for (at, corner) in corners.iter().enumerate() {
             let (face, lane) = (&mut self.faces[at / LANES], at % LANES);

@@ -1,7 +1,8 @@
-//! Supporting features of the kinds in 3D as rings of corners, in the frames of their solids.
+//! Supporting features of 3D solids as rings of corners, in the frames of the solids.
 //!
-//! The features equal those of [`SupportMap::core_feature`], which serves all other kinds. A ring
-//! is one `FaceRing` for up to 8 corners; a round cap may fill two.
+//! The features equal those of [`SupportMap::core_feature`], which computes the features of all
+//! kinds without a function here. Only the corners of round caps are chosen otherwise
+//! ([`contact_feature`]). A ring is one `FaceRing` for up to 8 corners; a round cap may fill two.
 
 use smallvec::SmallVec;
 
@@ -84,7 +85,7 @@ pub(super) fn supporting_part<N: Real>(
 }
 
 /// Fills a blank ring with a part of a box or hull; returns `false` for a face with more than 8
-/// corners.
+/// corners, and for other kinds.
 pub(super) fn fill_part<N: Real>(
     kind: Kind<'_, N, 3>,
     part: FeatureId,
@@ -104,7 +105,7 @@ pub(super) fn fill_part<N: Real>(
 }
 
 /// Fills a ring with the part of a triangle that faces a direction; returns `false` for thin
-/// triangles and close cases.
+/// triangles, and where rounding may decide which part it is.
 fn fill_triangle<N: Real>(
     triangle: &Triangle<N, 3>,
     direction: &Vector<N, 3>,
@@ -133,11 +134,12 @@ fn fill_round<N: Real>(part: Option<RoundPart<N>>, face: &mut FaceRing<N>) -> bo
 /// Fills `out` with the part of a core that faces a direction, in the form used for contacts. May
 /// return one more corner, which precedes the first.
 ///
-/// The corners of a round cap are fixed on the solid: they are the corners for the cap's own
-/// normal. So a solid that vibrates on its cap touches with the same points at any small tilt. If
-/// the lowest point of the rim lies between two of these corners, it is returned as the additional
-/// corner. If the tilt is so large that no old corner may stand for the lowest point (`SLACK`), the
-/// corners are placed around the lowest point: the cap rolls on its rim.
+/// The corners of a round cap are fixed on the solid: they are the corners that `core_feature`
+/// returns for the cap's own normal. So a solid that vibrates on its cap touches with the same
+/// points at any small tilt. If the lowest point of the rim lies between two of these corners, it
+/// is returned as the additional corner. If the tilt is so large that no old corner may stand for
+/// the lowest point (`SLACK`), the corners are placed around the lowest point: the cap rolls on its
+/// rim.
 pub(super) fn contact_feature<N: Real, const D: usize>(
     map: &dyn SupportMap<N, D>,
     direction: &Vector<N, D>,
@@ -173,8 +175,8 @@ fn start_after<N: Real, const D: usize>(point: &Point<N, D>, out: &mut Feature<N
     out.vertices.rotate_left((before + 1) % count);
 }
 
-/// Fills the rings with the supporting feature of any solid. A feature without corners, as
-/// user-defined solids may have, becomes the support point.
+/// Fills the rings with the supporting feature of any solid, in the form used for contacts. A
+/// feature without corners, as user-defined solids may have, becomes the support point.
 fn fill_feature<N: Real>(
     map: &dyn SupportMap<N, 3>,
     direction: &Vector<N, 3>,

@@ -24,8 +24,9 @@ pub(crate) fn features3<N: Real>(
     features(pair, separation, supporting_part3)
 }
 
-/// Returns the feature of one solid in 2D that its point of the separation lies on; of the second
-/// solid if `is_second`. The result equals the entry of that solid in [`features2`].
+/// Returns the feature of one solid in 2D that its point of the separation lies on: of the second
+/// solid if `is_second`, else of the first. The result equals the entry of that solid in
+/// [`features2`], except within rounding of another feature.
 pub(crate) fn feature2<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
@@ -35,8 +36,9 @@ pub(crate) fn feature2<N: Real>(
     feature(pair, separation, tolerance, supporting_part2, is_second)
 }
 
-/// Returns the feature of one solid in 3D that its point of the separation lies on; of the second
-/// solid if `is_second`. The result equals the entry of that solid in [`features3`].
+/// Returns the feature of one solid in 3D that its point of the separation lies on: of the second
+/// solid if `is_second`, else of the first. The result equals the entry of that solid in
+/// [`features3`], except within rounding of another feature.
 pub(crate) fn feature3<N: Real>(
     pair: &Pair<'_, N, 3>,
     separation: &Separation<N, 3>,
@@ -47,11 +49,11 @@ pub(crate) fn feature3<N: Real>(
 }
 
 /// Function that returns the smallest part of one solid's supporting feature that contains the
-/// solid's point of the separation; of the second solid if the flag is set.
+/// solid's point of the separation. The flag selects the second solid.
 type SupportingPartFn<N, const D: usize> =
     fn(&Pair<'_, N, D>, &Separation<N, D>, bool) -> FeatureId;
 
-/// Creates a frame of which only the witness is used.
+/// Creates a frame for finding features; its prediction is the distance of the pair.
 fn frame<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -61,8 +63,8 @@ fn frame<N: Real, const D: usize>(
     ContactFrame::new(pair, separation, &request, tangents)
 }
 
-/// Returns both features: from the position of the point if that decides, else from the supporting
-/// feature.
+/// Returns both features: each from the position of the point if that decides, else from the
+/// supporting feature.
 fn features<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -73,7 +75,7 @@ fn features<N: Real, const D: usize>(
     }
     let (tolerance, normal) = (rounding(pair), separation.normal);
     let first = by_position(pair.first, &separation.point1, &normal, tolerance);
-    // In the frame of the second solid.
+    // The position on the second solid is computed in the frame of that solid.
     let second = || {
         let point = pair.pose12.inverse_point(&separation.point2);
         by_position(pair.second, &point, &-pair.pose12.inverse_vector(&normal), tolerance)
@@ -111,8 +113,8 @@ fn by_position<N: Real, const D: usize>(
     }
 }
 
-/// Returns one feature: from the position of the point if a ball or a triangle allows it, else from
-/// the supporting feature.
+/// Returns one feature: from the position of the point if [`of_ball`] or [`on_seam`] decides, else
+/// from the supporting feature.
 fn feature<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -129,8 +131,9 @@ fn feature<N: Real, const D: usize>(
     seam.unwrap_or_else(|| supporting_part(pair, separation, is_second))
 }
 
-/// Returns the side or corner of a triangle that a flat-faced solid or the core of a capsule
-/// touches. Their nearest points are exact, so the position decides. `None` for other pairs and if
+/// Returns the side or corner of a triangle that a box, a hull, a segment or a capsule touches;
+/// `is_second` must select the triangle. The nearest points of these pairs are accurate to
+/// rounding, so the position decides. `None` for other pairs, for the other solid of a pair, and if
 /// the point is inside the triangle.
 fn on_seam<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -165,8 +168,8 @@ fn of_ball<N: Real, const D: usize>(
 }
 
 /// Returns the feature of the second solid that a ball, the first solid, touches; `None` if the
-/// second solid's kind does not give it directly. The result equals the part that the supporting
-/// feature gives, except within rounding of another part.
+/// position of the point does not decide for the kind of the second solid. The result equals the
+/// part that the supporting feature gives, except within rounding of another part.
 #[inline]
 pub(in crate::collide) fn beside_ball<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -213,7 +216,7 @@ fn supporting_part3<N: Real>(
 ) -> FeatureId {
     let frame = frame(pair, separation, tangents3(&separation.normal));
     let (which, kind, pose) = solid(pair, is_second);
-    // The only feature of a ball or a half-space.
+    // Balls and half-spaces have only this feature; composites have no supporting feature.
     if let Kind::Ball(_) | Kind::Plane(_) | Kind::Composite(_) = kind {
         return FeatureId::Face(0);
     }

@@ -1,6 +1,7 @@
-//! Contacts of a ball and a surface of triangles in 3D, bit for bit equal to those of the generic
-//! path, which defines the results. Quantities that all triangles share are computed once, and
-//! triangles that others hide are skipped.
+//! Contacts of a ball and a surface of triangles in 3D, bit for bit equal to the contacts of the
+//! generic path (`update_in_general`), which defines the results. Quantities that all triangles
+//! share are computed once, and triangles that other triangles hide ([`CandidateTriangles::masks`])
+//! are skipped.
 
 use super::normal_filter::{Case, FilteredNormal, faces, filter_normal};
 use super::over::over3;
@@ -26,8 +27,8 @@ use crate::shape::{Ball, CompositeShape, FeatureId, Kind, SupportMap, SurfaceAcc
 
 /// Rounding error of lengths, in units of epsilon times the sum of all sizes.
 const ROUNDING: f64 = 16.0;
-/// Number of parts that the cache may hold with its large margin. It is large because a part
-/// outside the ball's box costs only a box test.
+/// Number of parts that the cache may hold with its large margin. The number is large because a
+/// part outside the ball's box costs only a box test.
 const MAX_ROOMY: usize = 5 * LANES;
 
 /// Updates the contacts of a ball and a surface. Returns `false`, with nothing changed but the part
@@ -57,7 +58,7 @@ pub(crate) fn update_on_surface<N: Real>(
 /// A ball and the surface that it may touch.
 struct Rolling<'b, 'a, N: Real> {
     between: &'b Between<'a, N, 3>,
-    /// Request for each triangle.
+    /// Request for the contact with each triangle; see [`of_parts`].
     request: ManifoldRequest<N>,
     ball: &'a Ball<N>,
     parts: &'a dyn CompositeShape<N, 3>,
@@ -66,21 +67,23 @@ struct Rolling<'b, 'a, N: Real> {
     turn: Pose<N, 3>,
     /// Centre of the ball, in the frame of the surface.
     center: Point<N, 3>,
-    /// Reference point of the ball, which decides sides, in the frame of the surface.
+    /// Reference point of the ball, which decides on which side of a triangle the ball is, in the
+    /// frame of the surface.
     from: Point<N, 3>,
 }
 
 /// A triangle relative to the centre of the ball, in the axes of the surface.
 struct CenteredTriangle<N: Real> {
     part: u32,
-    /// Relative to the centre of the ball.
+    /// The triangle, with the centre of the ball as the origin.
     triangle: Triangle<N, 3>,
-    /// Bound of the rounding errors of lengths of the triangle and the ball.
+    /// Bound of the rounding errors of lengths computed for the triangle and the ball.
     tolerance: N,
 }
 
 impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
-    /// Returns `None` for solids other than balls, and for composites without a surface.
+    /// Makes the input for a ball and a surface; `None` if the first shape is not a ball, or the
+    /// second is not a composite with a surface.
     fn new(between: &'b Between<'a, N, 3>, request: &ManifoldRequest<N>) -> Option<Self> {
         let Kind::Ball(ball) = between.pair.first else { return None };
         let [_, parts] = between.composites();
@@ -103,7 +106,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     }
 
     /// Finds the contacts of the triangles that are not hidden, and updates the reference point
-    /// `from`. Returns the rounding error of the hidden triangles; `None` if the pair needs the
+    /// `from`. Returns the result of [`Self::rounding_of_hidden`]; `None` if the pair needs the
     /// generic path.
     fn find(
         &mut self,
@@ -139,8 +142,9 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         self.rounding_of_hidden(&candidates, around, part_contacts)
     }
 
-    /// Returns the largest rounding error of the hidden triangles, or zero if no contact depends on
-    /// it. `None` if a hidden triangle may be nearer than all contacts.
+    /// Returns the largest `tolerance` of the hidden triangles that the ball may touch; zero with
+    /// at most one contact, because nothing is merged then. `None`, so that the generic path is
+    /// used, if a hidden triangle may be nearer than all contacts or its coordinates overflow.
     fn rounding_of_hidden(
         &self,
         candidates: &CandidateTriangles<N>,
@@ -171,7 +175,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         Some(most)
     }
 
-    /// Returns a cached triangle; `None` if its coordinates overflow.
+    /// Returns the triangle at `index` in the cache; `None` if its coordinates overflow.
     fn centered_triangle(
         &self,
         around: &PartCache<N, 3>,
@@ -212,7 +216,8 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     }
 
     /// Computes the contact of a triangle without the generic path. `Some(None)` if there is no
-    /// contact, `None` if rounding decides and the generic path has to.
+    /// contact; `None` if the result depends on rounding or needs points along a face's normal, so
+    /// that the generic path must compute it.
     #[expect(clippy::option_option, reason = "no answer is not the answer that there is none")]
     fn certain_contact(
         &self,
@@ -253,7 +258,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         Some(Some(PartContact { distance, normal, piece, lowest, status, face, tolerance }))
     }
 
-    /// Filters the normal of the ball's separation from a triangle by the surface.
+    /// Filters the normal of the separation `found` of the ball and a triangle by the surface.
     fn filtered_normal(
         &self,
         centered: &CenteredTriangle<N>,
@@ -272,8 +277,9 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     }
 }
 
-/// Visits the indices of some triangles in ascending order. `bits` selects the triangles of a
-/// packet from its masks, near and hidden. Stops and returns `None` if `visit` returns it.
+/// Calls `visit` with the indices of some triangles in ascending order. `bits` selects the
+/// triangles of a packet from its two masks, near and hidden. If `visit` returns `None`, stops and
+/// returns `None`.
 fn each_lane<N>(
     candidates: &CandidateTriangles<N>,
     bits: impl Fn([u8; 2]) -> u8,

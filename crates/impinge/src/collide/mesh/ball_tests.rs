@@ -1,5 +1,6 @@
-//! Tests contacts of balls, boxes and hulls on surfaces over several updates: balls against the
-//! generic path, which defines the results, and all against the contact of a query.
+//! Tests contacts of balls, boxes and hulls on surfaces over several updates: the contacts of balls
+//! with those of the generic path, which defines them, and the deepest contact of each solid with
+//! the contact of a query.
 
 use super::CompositeContacts;
 use super::ball::update_on_surface;
@@ -32,8 +33,9 @@ fn heights<N: Real>(random: &mut Random, kind: usize) -> Vec<N> {
     (0..POINTS * POINTS).map(&mut next).collect()
 }
 
-/// Returns a mesh over a grid. Its triangles may share corners or not. Some triangles are left out
-/// or have no area, and some vertices are moved, one of them to the position of another.
+/// Returns a mesh over a grid. In some meshes, each triangle has its own vertices; some triangles
+/// are left out, turned over or without area; or two vertices are moved, one of them to the
+/// position of another vertex.
 fn mesh_of<N: Space<3>>(random: &mut Random, heights: &[N]) -> TriMesh<N, 3> {
     let vertex_at = |at: u32| {
         let [x, z] = [at % POINTS, at / POINTS].map(|n| N::lit(f64::from(n) * 0.5 - 2.0));
@@ -82,7 +84,7 @@ fn ground_of<N: Space<3>>(random: &mut Random, round: usize) -> Box<dyn Shape<N,
     Box::new(if is_one_sided { field.one_sided() } else { field })
 }
 
-/// A solid, and the height of its centre when it lies on flat terrain.
+/// A solid, and the height of its centre above flat terrain on which it lies.
 type Solid<N> = (Box<dyn Shape<N, 3>>, N);
 
 fn ball_of<N: Space<3>>(random: &mut Random) -> Solid<N> {
@@ -114,8 +116,9 @@ fn flat_of<N: Space<3>>(random: &mut Random) -> Solid<N> {
     (Box::new(ConvexHull::from_points(&corners)), height)
 }
 
-/// Moves one solid and asserts that both paths have the same contacts. Returns the number of
-/// updates by the quick path, and the number of contact points.
+/// Moves one solid and asserts, at each step, that the contacts do not depend on whether
+/// [`update_on_surface`] is tried before the generic path. Returns the number of updates by
+/// [`update_on_surface`], and the number of contact points.
 fn follow<N: Space<3>>(
     (solid, height): Solid<N>,
     random: &mut Random,
@@ -128,7 +131,7 @@ fn follow<N: Space<3>>(
     position.y =
         height * N::lit([1.0, 0.9, -1.0][random.pick(3)]) + random.vector::<N>().y * N::lit(0.2);
     if random.pick(4) == 0 {
-        // Over a vertex or an edge of the grid.
+        // Moves the solid over a vertex or an edge of the grid.
         position.x = N::HALF;
     }
     let mut tilt = [Pose::identity(), random.turn::<N>()][random.pick(2)];

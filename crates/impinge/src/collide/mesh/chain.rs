@@ -1,6 +1,6 @@
-//! Contacts of a convex solid and a chain of segments in 2D, bit for bit equal to those of the
-//! generic path, which defines the results. Quantities that all segments share are computed once,
-//! and segments beyond the prediction are skipped.
+//! Contacts of a convex solid and a chain of segments in 2D, bit for bit equal to the contacts of
+//! the generic path (`update_in_general`), which defines the results. Quantities that all segments
+//! share are computed once, and segments beyond the prediction are skipped.
 
 use super::cull::relative_slack;
 use super::gather::{depth_in, search_box};
@@ -63,32 +63,35 @@ pub(crate) fn update_chain<N: Real>(
 /// A convex solid and the chain that it may touch.
 struct Chain<'b, 'a, N: Real> {
     between: &'b Between<'a, N, 2>,
-    /// Request for each segment.
+    /// Request for the contact with each segment; see [`of_parts`].
     request: ManifoldRequest<N>,
     solid: Kind<'a, N, 2>,
     parts: &'a dyn CompositeShape<N, 2>,
     surface: SurfaceAccess<'a, N, 2>,
-    /// How sides of the chain decide contacts; `None` if only the surface itself can decide.
+    /// Properties that all segments of the chain share; `None` if the surface must be called for
+    /// each segment.
     sidedness: Option<Sidedness>,
     /// Rotation from the frame of the chain to the frame of the solid; its translation is zero.
     turn: Pose<N, 2>,
-    /// Relative pose of a segment and the solid, in the order of kinds: the pose of the second in
-    /// the frame of the first.
+    /// Relative pose of a segment and the solid, in the order of kinds: the pose of the second of
+    /// these two in the frame of the first.
     pose12: Pose<N, 2>,
     /// Whether the solid comes before a segment of the chain in the order of kinds. True for balls,
     /// and for segments, because the solid is the first shape.
     comes_first: bool,
-    /// Origin of the solid in the frame of the chain. Segments are computed relative to it.
+    /// Origin of the solid in the frame of the chain. Segments are translated so that this point is
+    /// their origin.
     origin: Point<N, 2>,
     /// Centre of the solid, in the frame of the chain.
     center: Point<N, 2>,
-    /// Reference point of the solid, which decides sides, in the frame of the chain.
+    /// Reference point of the solid, which decides on which side of a segment the solid is, in the
+    /// frame of the chain.
     from: Point<N, 2>,
     /// Bounding radius of the solid around its origin.
     size: N,
 }
 
-/// The cached segments: all segments of the chain that overlap the box `within`.
+/// The cached segments, which include all segments of the chain that overlap the box `within`.
 struct KeptLinks<'t, N: Real> {
     tiles: &'t [PartPacket<N, 2>],
     parts: &'t [u32],
@@ -120,7 +123,7 @@ impl<N: Real> KnownSegments<N> for KeptLinks<'_, N> {
             while ending != 0 {
                 let index = block * LANES + ending.trailing_zeros() as usize;
                 ending &= ending - 1;
-                // Lanes after the last part hold copies of it.
+                // Lanes after the last part hold copies of that part.
                 if let Some(&part) = self.parts.get(index) {
                     visit(part, self.ends(index));
                 }
@@ -136,16 +139,17 @@ struct ChainLink<'c, 'b, 'a, N: Real> {
     parts: [u32; 2],
     /// The segment relative to the origin of the solid.
     segment: Segment<N, 2>,
-    /// The segment as a surface.
+    /// The segment as part of the surface: filters the normals of its contacts.
     known: KnownSegment<'c, N>,
     /// Separation of the segment and the solid, in the order of kinds.
     found: Separation<N, 2>,
-    /// Bound of the rounding errors of lengths of the segment and the solid.
+    /// Bound of the rounding errors of lengths computed for the segment and the solid.
     tolerance: N,
 }
 
 impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
-    /// Returns `None` for solids without a kernel here, and for composites without a surface.
+    /// Makes the input for a solid and a chain; `None` for solids other than balls, segments,
+    /// capsules, triangles, boxes and polygons, and if the second shape has no surface.
     fn new(between: &'b Between<'a, N, 2>, request: &ManifoldRequest<N>) -> Option<Self> {
         let solid = between.pair.first;
         let comes_first = matches!(solid, Kind::Ball(_) | Kind::Segment(_));
@@ -195,8 +199,8 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         (around.covers(self.parts, &aabb) && around.has_segments_alone()).then_some(aabb)
     }
 
-    /// Finds the contacts of the segments within the prediction; `None` if the generic path must do
-    /// it.
+    /// Finds the contacts of the segments within the prediction, and updates the reference point
+    /// `from`. `None` if the generic path must find them.
     fn find(
         &mut self,
         contacts: &mut CompositeContacts<N, 2>,
@@ -229,8 +233,8 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         Some(())
     }
 
-    /// Returns a cached segment within the prediction; `None` if it cannot be touched from the
-    /// reference point or its distance is not finite.
+    /// Returns the segment at `index` in the cache, with its separation `found`. `None` if it
+    /// cannot be touched from the reference point, or if its distance is not finite.
     fn link<'c>(
         &'c self,
         kept: &'c KeptLinks<'_, N>,
@@ -252,20 +256,21 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         Some(ChainLink { chain: self, parts, segment, known, found: *found, tolerance })
     }
 
-    /// Converts a direction from the first of a pair to the second, in the frame of the first, into
-    /// the direction from the solid to the chain, in the frame of the solid.
+    /// Converts a direction of [`ChainLink::pair`], from its first solid to its second in the frame
+    /// of the first, into the direction from the solid to the chain, in the frame of the solid.
     fn outward(&self, normal: &Vector<N, 2>) -> Vector<N, 2> {
         if self.comes_first { *normal } else { -self.turn.vector(normal) }
     }
 
-    /// Converts a direction from the solid to the chain, in the frame of the solid, into the
-    /// direction from the first of a pair to the second, in the frame of the first.
+    /// Converts a direction from the solid to the chain, in the frame of the solid, into a
+    /// direction of [`ChainLink::pair`]: from its first solid to its second, in the frame of the
+    /// first.
     fn inward(&self, normal: &Vector<N, 2>) -> Vector<N, 2> {
         if self.comes_first { *normal } else { -self.turn.inverse_vector(normal) }
     }
 
-    /// Converts a point of a pair's manifold with this `normal` into the frame of the solid, with
-    /// the solid as the first.
+    /// Converts a contact point of [`ChainLink::pair`], in a manifold with this `normal`, into the
+    /// frame of the solid, with the solid as the first shape.
     fn placed(&self, point: RawPoint<N, 2>, normal: &Vector<N, 2>) -> RawPoint<N, 2> {
         if self.comes_first {
             return point;
@@ -277,8 +282,8 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
 }
 
 impl<N: Real> ChainLink<'_, '_, '_, N> {
-    /// Appends the contact of the segment, if there is one; `None` if the generic path must compute
-    /// it.
+    /// Appends the contact of the segment to `part_contacts`, if there is one; `None` if the
+    /// generic path must compute it.
     fn find(
         &self,
         part_contacts: &mut PartContacts<N, 2>,
@@ -304,7 +309,8 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
         };
         let Self { found: Separation { distance, .. }, tolerance, parts, .. } = *self;
         let mut lowest = points[start..].iter().fold(N::INFINITY, |low, p| min(low, p.distance));
-        // Points along the face's normal may be missing, or be apart although the parts overlap.
+        // There may be no points along the face's normal, or all may be apart although the parts
+        // overlap.
         let highest = if distance <= N::ZERO { tolerance } else { N::INFINITY };
         if !points[start..].iter().any(|point| point.distance <= highest) {
             points.truncate(start);
@@ -346,7 +352,8 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
     }
 
     /// Appends the contact points at the nearest points, for a normal in the frame of the solid.
-    /// Returns the normal, rounded as in a piece of the generic path.
+    /// Returns the normal, rounded as in a piece of the generic path; `None` if the generic path
+    /// must find the points.
     fn between(&self, normal: &Vector<N, 2>, points: &mut ChainPoints<N>) -> Option<Vector<N, 2>> {
         let inward = self.chain.inward(normal);
         let witness = Separation { normal: inward, ..self.found };
@@ -354,8 +361,9 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
         Some(self.chain.outward(&inward))
     }
 
-    /// Appends the contact points along a normal in the frame of the solid. Returns the normal,
-    /// rounded as in a piece of the generic path.
+    /// Appends the contact points along the normal of a face, in the frame of the solid. Returns
+    /// the normal, rounded as in a piece of the generic path; `None` if the generic path must find
+    /// the points.
     fn along(&self, normal: &Vector<N, 2>, points: &mut ChainPoints<N>) -> Option<Vector<N, 2>> {
         let inward = self.chain.inward(normal);
         let distance = self.found.distance;

@@ -1,5 +1,5 @@
-//! Compares contacts of chains with the generic path, which defines them: each update must have the
-//! same bits.
+//! Compares the contacts that [`update_chain`] computes with the contacts of the generic path,
+//! which defines them. They must be equal bit for bit after each update.
 
 use super::chain::update_chain;
 use super::{
@@ -37,7 +37,8 @@ fn heights<N: Real>(random: &mut Random, kind: usize) -> Vec<N> {
     (0..13).map(&mut next).collect()
 }
 
-/// Returns a terrain around the origin: mirrored or not, one-sided or two-sided.
+/// Returns a terrain around the origin: a height field or a polyline, in either direction along x,
+/// one-sided or two-sided.
 fn ground_of<N: Space<2>>(random: &mut Random, round: usize) -> Box<dyn Shape<N, 2>> {
     let heights = heights::<N>(random, round % 3);
     let is_one_sided = random.pick(3) == 0;
@@ -88,7 +89,7 @@ fn pose_of<N: Real>(position: Vector<N, 2>, angle: N) -> Pose<N, 2> {
     Pose { rotation: Matrix::<N, 2>::new(cosine, -sine, sine, cosine), translation: position }
 }
 
-/// Asserts that the contacts of both paths are equal bit for bit, ids included.
+/// Asserts that the two sets of contacts are equal bit for bit, ids included.
 pub(super) fn assert_same<N: Real, const D: usize>(
     quick: &CompositeContacts<N, D>,
     slow: &CompositeContacts<N, D>,
@@ -105,8 +106,9 @@ pub(super) fn assert_same<N: Real, const D: usize>(
     }
 }
 
-/// Asserts that the contact within `limit` depends neither on the path nor on whether the nearest
-/// part is searched first.
+/// Asserts that the deepest contact within `limit` depends neither on the path, specialised or
+/// generic, nor on whether the distance of the shapes is computed first; in the latter case up to
+/// rounding.
 pub(super) fn assert_one_contact<N: Space<D>, const D: usize>(
     [placed1, placed2]: [&Placed<'_, N, D>; 2],
     limit: N,
@@ -124,15 +126,16 @@ pub(super) fn assert_one_contact<N: Space<D>, const D: usize>(
     let distance = |found: Option<Separation<N, D>>| found.map(|found| found.distance);
     assert_eq!(distance(at_once), distance(general), "{}", what());
     match [at_once, expected].map(distance) {
-        // The contact of a query gets the distance of the solids if the two differ only by
-        // rounding.
+        // [`deepest`] gives the contact the distance of the solids if the two distances differ only
+        // by rounding.
         [Some(a), Some(b)] => assert!((a - b).abs() <= rounding(&between), "{a}, {b}: {}", what()),
         [a, b] => assert_eq!(a, b, "{}", what()),
     }
 }
 
-/// Moves one solid and asserts that both paths have the same contacts. Returns the number of
-/// updates by the quick path, and the number of contact points.
+/// Moves one solid and asserts, at each step, that the contacts do not depend on whether
+/// [`update_chain`] is tried before the generic path. Returns the number of updates by
+/// [`update_chain`], and the number of contact points.
 fn follow<N: Space<2>>(random: &mut Random, round: usize) -> (usize, usize) {
     let (solid, terrain) = (solid_of::<N>(random), ground_of::<N>(random, round));
     let far = N::lit([0.0, 40.0][random.pick(2)]);

@@ -1,9 +1,10 @@
 //! Lower bounds of the distances from a convex solid to 8 parts of a surface at a time.
 //!
-//! Most parts whose boxes are near the solid are themselves farther than the limit. A plane
+//! Of the parts whose boxes are near the solid, most are farther than the limit. A plane
 //! perpendicular to the shortest segment from the part to the solid's centre rejects such parts at
 //! the cost of a few products. Any plane gives a valid lower bound of the distance, so only
-//! rounding needs care. The core of the solid enters as a box, by its extents along its own axes.
+//! rounding needs care. The core of the solid is replaced by a box: its half extents along the axes
+//! of the solid.
 //!
 //! ```text
 //!   part                          solid
@@ -35,13 +36,14 @@ pub(super) fn relative_slack<N: Real>() -> N {
     max(N::lit(ROUNDING) * N::EPSILON, N::lit(CURVED))
 }
 
-/// Returns the magnitude below which underflow may have made a product inexact.
+/// Returns the magnitude below which a sum of products may be inexact because a product
+/// underflowed.
 #[inline]
 fn least_length<N: Real>() -> N {
     N::MIN_POSITIVE / N::EPSILON
 }
 
-/// A convex solid in the frame of a composite, and the limit of the search.
+/// A convex solid in the frame of a composite, and the limits of the search for near parts.
 pub(super) struct LowerBoundQuery<N: Real, const D: usize> {
     /// Centre of the solid, in the frame of the composite.
     pub(super) center: Vector<N, D>,
@@ -61,7 +63,7 @@ pub(super) struct LowerBoundQuery<N: Real, const D: usize> {
     pub(super) size: N,
 }
 
-/// Results for 8 parts.
+/// Results of a [`LowerBoundQuery`] for 8 parts.
 pub(super) struct LowerBounds<N> {
     /// Bits of the parts that may be within `max_distance`.
     pub(super) mask: u8,
@@ -71,9 +73,9 @@ pub(super) struct LowerBounds<N> {
 }
 
 impl<N: Space<D>, const D: usize> LowerBoundQuery<N, D> {
-    /// Makes the query for a convex first shape, and the parts of the second in the box `within`.
-    /// The extents of the solid are cached in `around`. `None` if the first shape has no support
-    /// map: composites and half-spaces.
+    /// Makes the query for a convex first shape and the parts of the second shape in the box
+    /// `within`. The half extents of the solid are cached in `around`. `None` if the first shape
+    /// has no support map: composites and half-spaces.
     pub(super) fn new(
         between: &Between<'_, N, D>,
         max_distance: N,
@@ -144,7 +146,7 @@ fn bounds<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
         dot(&arms[0], &arms[0]).larger(dot(&arms[1], &arms[1])).larger(dot(&arms[2], &arms[2]));
     let slack = V::all(simd, relative_slack()) * (farthest.sqrt() + V::all(simd, query.size));
     let (length, tiny) = (norm(&toward), V::all(simd, least_length()));
-    // Lanes with NaN have no bound.
+    // The comparisons are false for NaN, so lanes with NaN have no bound.
     let is_bound = length.simd_gt(slack)
         & heights[0].simd_gt(tiny)
         & heights[1].simd_gt(tiny)

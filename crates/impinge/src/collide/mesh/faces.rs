@@ -6,8 +6,9 @@
 //!                      8 lanes             cached `FaceSeams`     8 lanes
 //! ```
 //!
-//! A triangle whose gap rounding may decide, or that a kernel leaves undecided, falls back to
-//! [`part_contact`], the path of any two parts.
+//! `FaceSeams` holds the front normals of a triangle and of its neighbours. The contact of a
+//! triangle falls back to [`part_contact`], the path of any two parts, if a kernel leaves the gap
+//! or the points undecided, which happens where rounding may decide.
 
 use smallvec::SmallVec;
 
@@ -27,9 +28,9 @@ use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, max};
 use crate::shape::{FaceSeams, FeatureId, Geometry, Kind, SurfaceAccess};
 use core::cell::Cell;
 
-/// Appends the contacts of a box or a hull with the nearby triangles of a surface. Returns `false`
-/// for other solids and composites. `prediction` is the one of the whole shapes; the request for
-/// parts in `query` may have a larger one.
+/// Appends the contacts of a box or a hull with the nearby triangles of a surface. Returns `false`,
+/// and appends nothing, for other solids and composites. `prediction` is that of the whole shapes;
+/// the request for pairs of parts in `query` may have a larger prediction.
 pub(crate) fn face_contacts<N: Real>(
     query: &Query<'_, N, 3>,
     scene: &Scene<'_, N, 3>,
@@ -76,11 +77,13 @@ struct FaceConfiguration<'a, N: Real> {
     turn: Matrix<N, 3>,
     /// Origin of the solid in the frame of the surface.
     origin: Vector<N, 3>,
-    /// Reference point of the solid, which decides sides, in the frame of the surface.
+    /// Reference point of the solid, which decides on which side of a triangle the solid is, in the
+    /// frame of the surface.
     from: Point<N, 3>,
     /// Bounding radius of the solid's core around its origin.
     reach: N,
-    /// Index in the cache of each near triangle, by its index in the results of `gaps3`.
+    /// Index in the cache of each near triangle, in the order in which `gaps3` numbers the
+    /// triangles.
     cache_indices: SmallVec<[usize; 24]>,
 }
 
@@ -89,7 +92,7 @@ struct KeptTriangle<'a, N: Real> {
     part: u32,
     corners: [Point<N, 3>; 3],
     seams: &'a FaceSeams<N>,
-    /// Bound of the rounding errors of lengths of the triangle and the solid.
+    /// Bound of the rounding errors of lengths computed for the triangle and the solid.
     tolerance: N,
 }
 
@@ -113,7 +116,8 @@ enum SurfaceAnswer<N: Real> {
 
 impl<'a, N: Real> FaceConfiguration<'a, N> {
     /// Returns `None` unless the solid is a box or hull and all cached parts of the surface are
-    /// triangles. Also `None` for bodies, because a solid inside a body has contacts too.
+    /// triangles. Also `None` if the second shape has no surface, and if one shape has bodies,
+    /// because a solid inside a body has contacts too.
     fn new(
         query: &'a Query<'a, N, 3>,
         scene: &'a Scene<'a, N, 3>,
@@ -145,7 +149,8 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
         })
     }
 
-    /// Returns a cached triangle; `None` if the cache does not hold its seams.
+    /// Returns the triangle at `cache_index` in the cache; `None` if the cache does not hold its
+    /// seams.
     fn triangle(&self, cache_index: usize) -> Option<KeptTriangle<'a, N>> {
         let seams = self.around.seams(cache_index)?;
         let corners = self.around.tiles()[cache_index / LANES].corners(cache_index % LANES);
@@ -156,7 +161,7 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
         Some(KeptTriangle { part: self.around.parts()[cache_index], corners, seams, tolerance })
     }
 
-    /// Filters the normal of a triangle's gap by the surface.
+    /// Filters the normal of the gap between a triangle and the solid by the surface.
     fn answer(&self, triangle: &KeptTriangle<'_, N>, gap: &TriangleGap<N>) -> SurfaceAnswer<N> {
         let known = triangle.seams.in_surface(self.surface, &triangle.corners[0]);
         let surface = Some(SurfaceAccess::of_own(&known));
@@ -190,8 +195,8 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
         SurfaceAnswer::Contact(FaceContact { normal, status, face })
     }
 
-    /// Returns the clip request of a contact. `None` for a flat box, and for an `Own` contact
-    /// beyond the prediction of the parts: both fall back to the generic path.
+    /// Returns the clip request of a contact. `None` for a flat box, and for a contact with
+    /// [`PartStatus::Own`] beyond the prediction of the parts. Both fall back to the generic path.
     fn clip_request(
         &self,
         contact: &FaceContact<N>,
@@ -202,8 +207,8 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
         if is_own && distance > self.query.request.prediction {
             return None;
         }
-        // If the parts overlap by no more than rounding, no point gets a larger depth than the
-        // parts.
+        // If the parts are apart or overlap by no more than rounding, no point gets a smaller
+        // distance than the parts.
         let least = if !is_own && distance > -tolerance { distance } else { -N::INFINITY };
         let normal = self.query.between.pair.pose12.vector(&contact.normal);
         ClipRequest::new(self.solid, normal, is_own.then_some(distance), least)
@@ -215,8 +220,8 @@ pub(super) const fn has_faces<N: Real, const D: usize>(solid: Kind<'_, N, D>) ->
     matches!(solid, Kind::Cuboid(_) | Kind::Polytope(_))
 }
 
-/// Up to 8 triangles waiting for the clip. `contacts` holds, for each, the index of its contact and
-/// its index in the cache.
+/// Up to 8 triangles that wait to be clipped together. For each triangle, `contacts` holds the
+/// index of its contact and its index in the cache.
 struct PendingClips<N: Real> {
     triangles: PartPacket<N, 3>,
     requests: SmallVec<[ClipRequest<N>; LANES]>,
@@ -238,13 +243,13 @@ struct FaceContacts<'s, 'a, N: Real> {
     slot: Option<PlacedPair<'a, N, 3>>,
     pending: PendingClips<N>,
     clip: FaceClip<N>,
-    /// Contacts that the generic path did not confirm; their distance is set to infinity.
+    /// Number of contacts that the generic path did not confirm; their distance is set to infinity.
     missing: usize,
 }
 
 impl<N: Real> FaceContacts<'_, '_, N> {
-    /// Appends the contact of a triangle, if it has one. If `gap` is `None` or undecided, the
-    /// generic path computes it.
+    /// Appends the contact of a triangle, if it has one. If `gap` is `None`, or
+    /// [`Self::add_certain`] returns `None`, the generic path computes the contact.
     fn add(&mut self, cache_index: usize, gap: Option<&TriangleGap<N>>) {
         if gap.is_none_or(|gap| self.add_certain(cache_index, gap).is_none()) {
             let found = self.in_general(cache_index);
@@ -286,15 +291,16 @@ impl<N: Real> FaceContacts<'_, '_, N> {
         Some(())
     }
 
-    /// Clears `are_fronts` if the face in contact is not a front: see [`part_contact::Arena`].
+    /// Clears [`Arena::are_fronts`] if the contact is with a face for which [`FaceSeams::is_front`]
+    /// does not return `true`.
     fn note_face(&mut self, cache_index: usize, face: Option<&Vector<N, 3>>) {
         let seams = self.configuration.around.seams(cache_index);
         let is_front = |face| seams.is_some_and(|seams: &FaceSeams<N>| seams.is_front(face));
         self.arena.are_fronts &= face.is_none_or(is_front);
     }
 
-    /// Clips the waiting triangles. The generic path computes the contacts that the lanes leave
-    /// undecided.
+    /// Clips the waiting triangles and appends the points of their contacts. The generic path
+    /// computes the contacts that the lanes leave undecided.
     fn clip(&mut self) {
         let (PendingClips { triangles, requests, contacts }, configuration) =
             (core::mem::take(&mut self.pending), self.configuration);
@@ -324,7 +330,7 @@ impl<N: Real> FaceContacts<'_, '_, N> {
                 None => left |= 1 << lane,
             }
         });
-        // Contacts are replaced in place, so they stay sorted by part.
+        // Undecided contacts are replaced in place, so `contacts` stays sorted by part.
         for lane in Ones::<LANES>(left.into()) {
             let (contact, cache_index) = &contacts[lane];
             match self.in_general(*cache_index) {

@@ -1,4 +1,4 @@
-//! Finds the pairs of parts that may be within the prediction.
+//! Finds the pairs of parts of two shapes that may be within the prediction.
 
 use smallvec::SmallVec;
 
@@ -17,10 +17,10 @@ use crate::shape::{CompositeShape, Part};
 /// Pairs of part indices; 0 stands for a convex shape.
 pub(super) type PartPairs = SmallVec<[[u32; 2]; 24]>;
 
-/// A mask per packet of the cache, with a bit for each of its 8 parts.
+/// Masks of the packets of the cache, one for each packet, with one bit for each of its 8 parts.
 pub(super) type CandidateMasks = SmallVec<[u8; 8]>;
 
-/// The pairs of parts that may be within a distance.
+/// Result of [`culled`]: the pairs of parts that may be within a distance.
 pub(crate) struct CulledParts<N: Real> {
     /// Pairs in ascending order.
     pub(super) parts: PartPairs,
@@ -33,7 +33,8 @@ pub(crate) struct CulledParts<N: Real> {
 }
 
 /// Finds the parts of a convex solid and a composite, or of two composites, that may be within
-/// `max_distance`. Parts that a separating plane proves to be farther are culled.
+/// `max_distance`. If the parts of a composite have cached corners, those that a separating plane
+/// proves to be farther are culled.
 ///
 /// `around` must be the cache of the second shape. It is refilled if its box is too small.
 pub(super) fn culled<N: Space<D>, const D: usize>(
@@ -58,7 +59,8 @@ pub(super) fn culled<N: Space<D>, const D: usize>(
     CulledParts { parts, masks: CandidateMasks::new(), clearance: N::ZERO }
 }
 
-/// Culls the cached parts by lower bounds, or by their boxes if parts have no cached corners.
+/// Returns the cached parts that lower bounds do not cull or, if no corners are cached, the parts
+/// whose boxes overlap `aabb`.
 fn cull_kept<N: Space<D>, const D: usize>(
     query: &LowerBoundQuery<N, D>,
     composite: &dyn CompositeShape<N, D>,
@@ -70,7 +72,7 @@ fn cull_kept<N: Space<D>, const D: usize>(
     for (kept, tiles) in around.parts().chunks(LANES).zip(around.tiles()) {
         let bounds = query.bounds(tiles);
         clearance = min(clearance, bounds.from_middle);
-        // Lanes beyond the last part hold copies of it.
+        // Lanes beyond the last part hold copies of that part.
         let bits = bounds.mask & (u8::MAX >> (LANES - kept.len()));
         masks.push(bits);
         parts.extend(Ones::<LANES>(bits.into()).map(|lane| [0, kept[lane]]));
@@ -105,8 +107,8 @@ pub(super) fn depth_in<N: Real, const D: usize>(aabb: &Aabb<N, D>, point: &Point
     least
 }
 
-/// Returns the pairs of parts whose boxes are within `max_distance` of each other, in ascending
-/// order; index 0 stands for a convex shape.
+/// Returns the pairs of parts that may be within `max_distance` of each other, by their boxes or by
+/// [`each_touching`], in ascending order. Index 0 stands for a convex shape.
 ///
 /// For a shape with itself (`is_self`), returns the pairs of parts that are not adjacent, each
 /// once.
@@ -144,10 +146,10 @@ impl<N: Real, const D: usize> TouchingVisitor<N, D> for FoundPairs<'_, N> {
     }
 }
 
-/// Finds the parts of two composites that may be within `max_distance`. If both composites have
-/// trees, a simultaneous descent of the trees finds them and also tests the parts. Otherwise, each
-/// part of the composite with fewer parts that is near the other composite is searched in the
-/// other.
+/// Appends the pairs of parts of two composites that may be within `max_distance`. If both
+/// composites have trees, [`each_touching`] finds the pairs by a simultaneous descent of the trees
+/// and tests the two parts of each pair. Otherwise, each part of the composite with fewer parts
+/// that is near the larger composite searches the larger composite.
 fn of_two<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     parts1: &dyn CompositeShape<N, D>,
@@ -176,8 +178,8 @@ fn of_two<N: Space<D>, const D: usize>(
     });
 }
 
-/// Finds the pairs of parts of one composite that are within `max_distance` and not adjacent, the
-/// smaller index first.
+/// Appends the pairs of parts of one composite whose boxes are within `max_distance` and that are
+/// not adjacent, the smaller index first.
 fn of_one<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     max_distance: N,
@@ -193,7 +195,8 @@ fn of_one<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns the box of a part, loosened by `max_distance`, in the frame that `pose` maps to.
+/// Returns the box of the part `index`, loosened by `max_distance`, in the frame to which `pose`
+/// transforms the composite.
 fn box_of_part<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     index: u32,

@@ -11,9 +11,9 @@
 //!                │ side
 //! ```
 //!
-//! Two faces that meet are each behind the other (a ridge), each in front of the other (a valley),
-//! or the first is in front of the second but the second behind the first. In the last case no
-//! solid is in front of both, and the face behind is hidden.
+//! Of two faces that meet, each is behind the plane of the other (a ridge), each is in front of it
+//! (a valley), or only one of them is in front of the other's plane. In the last case no solid near
+//! both faces is in front of both, and the face behind the other's plane is hidden.
 
 use smallvec::SmallVec;
 
@@ -23,12 +23,14 @@ use super::scene::Scene;
 use crate::math::order::{order_of, sort_keyed};
 use crate::math::{Mapped, Point, Real, Space, Vector, max, min};
 
-/// Faces do not hide each other if the cosine of the angle between their normals is larger.
+/// Two faces do not hide each other if the cosine of the angle between their normals is larger than
+/// this.
 const ALIKE: f64 = 0.99;
 /// Bound of the rounding errors of heights, in units of epsilon times the lengths of both parts.
 const ROUNDING: f64 = 16.0;
-/// Number of faces around a corner that can hide others; the nearest are used. Around most corners
-/// of surfaces there are six faces, but around the centre of a fan there are all its faces.
+/// Largest number of faces around a corner that are compared with all other faces there; the
+/// nearest to the solid are used. Most corners of surfaces have six faces, but the centre of a fan
+/// of triangles has all faces of the fan.
 const MAX_HIDING: usize = 16;
 
 /// The side of a plane that a face lies on.
@@ -63,7 +65,7 @@ pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contacts: &mut [PartContact<N, D>],
 ) {
-    // Two composites have no single centre that is on one side.
+    // If both shapes are composites, there is no single centre that decides the side.
     if !scene.first_is_convex() {
         return;
     }
@@ -90,7 +92,7 @@ pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
     }
 }
 
-/// Collects the faces in contact.
+/// Collects the faces in contact, and the ids of their corners.
 fn faces_of<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contacts: &[PartContact<N, D>],
@@ -119,8 +121,9 @@ pub(super) fn are_alike<N: Real, const D: usize>(a: &Vector<N, D>, b: &Vector<N,
     a.dot(b) > N::lit(ALIKE)
 }
 
-/// Returns the index of the hidden contact: its face lies behind the plane of the other face, and
-/// the other face lies in front of its plane. `None` if neither face hides the other.
+/// Returns the index of the contact with the hidden face: this face lies behind the plane of the
+/// other face, while the other face lies in front of its plane and is not farther from the solid,
+/// or overlaps it. `None` if neither face hides the other.
 fn hidden_of<N: Real, const D: usize>(
     a: &TouchedFace<N, D>,
     b: &TouchedFace<N, D>,
@@ -137,7 +140,8 @@ fn hidden_of<N: Real, const D: usize>(
     (front.distance <= max(back.distance, N::ZERO)).then_some(back.contact)
 }
 
-/// Returns the side of the plane of `plane` that the face `part` lies on, up to rounding error.
+/// Returns the side of the plane of the face `plane` on which the face `part` lies, up to rounding
+/// error; `Across` if it lies on both sides or in the plane.
 fn side_of<N: Real, const D: usize>(
     part: &TouchedFace<N, D>,
     plane: &TouchedFace<N, D>,

@@ -1,5 +1,5 @@
-//! Contacts of pieces that lie wholly inside a body. They push the piece out through the nearest
-//! part of the body's boundary.
+//! Contacts of connected pieces of one shape that lie wholly inside a body of the other shape.
+//! These contacts push the piece out through the nearest part of the body's boundary.
 
 use super::part_contact::{Arena, contact_of_solids};
 use super::scene::Scene;
@@ -12,7 +12,8 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
     /// Returns the pieces that are inside of bodies, and removes the contacts of their parts with
     /// the boundary from `contacts`: from inside, the boundary is not a surface to touch.
     ///
-    /// A piece with a part that overlaps the boundary is not inside: its own contacts push it out.
+    /// A piece with a part that overlaps the boundary is not returned: the contacts of its parts
+    /// push it out.
     pub(super) fn take_inside(&self, contacts: &mut PartContacts<N, D>) -> InsidePieces<N, D> {
         if self.is_self || !self.between.has_bodies() {
             return InsidePieces::new();
@@ -31,7 +32,7 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
     }
 
     /// Appends the contacts of a piece that is inside: the contacts of its parts with the
-    /// half-space below the exit plane. Appends nothing if there is no exit.
+    /// half-space below the exit plane. Appends nothing if [`InsidePiece::exit`] returns `None`.
     pub(super) fn add_inside(
         &self,
         scene: &Scene<'_, N, D>,

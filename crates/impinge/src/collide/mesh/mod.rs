@@ -1,13 +1,16 @@
 //! Contacts of composites: the contacts of their parts that are also contacts of the whole shapes.
 //!
-//! 1. [`gather`] finds the parts within the prediction: the parts in [`part_cache`], as long as the
-//!    cached box suffices, without the parts that a lower bound culls ([`cull`]).
+//! 1. [`gather`] finds the parts within the prediction: for a convex solid, the parts in
+//!    [`part_cache`], which is refilled if the solid has left its box, without the parts that a
+//!    lower bound culls ([`cull`]).
 //! 2. [`part_contact`] computes the contact of each pair of parts. [`normal_filter`] rejects
-//!    normals that a surface does not admit at a seam; there, only contacts along the normal of the
-//!    face count.
-//! 3. [`hidden`] drops contacts with faces that a neighbour hides; [`resolve`] drops contacts that
-//!    another contact explains. Solids that overlap always keep a contact.
-//! 4. [`inside`] adds the contacts of pieces that lie wholly inside a body and touch no part.
+//!    normals that a surface does not admit at a seam; at such a seam, only contacts along the
+//!    normal of the face count.
+//! 3. [`hidden`] drops contacts with faces that a neighbour hides; [`resolve`] drops contacts whose
+//!    overlap ends if another contact is resolved. Solids that overlap keep at least one contact,
+//!    except beside a ghost.
+//! 4. [`inside`] adds the contacts of connected pieces that lie wholly inside a body (a solid that
+//!    a closed surface bounds) and touch no part of its boundary.
 //! 5. [`patch`] merges the remaining contacts into flat patches.
 //!
 //! For boxes and hulls, [`faces`] does step 2 for 8 triangles of a surface at a time. [`chain`]
@@ -17,7 +20,7 @@
 //! their neighbours.
 //!
 //! A query for the contact with a composite returns the deepest of the contacts that a world would
-//! have. For a half-space and a composite it returns the contact of the nearest part.
+//! have. For a half-space and a composite, the query returns the contact of the nearest part.
 
 mod ball;
 #[cfg(test)]
@@ -76,14 +79,15 @@ use crate::shape::{Geometry, Kind, PartSolid, SupportMap};
 /// Points kept per pair of parts before merging; enough for two facets of common solids.
 const PART_POINTS: usize = 16;
 
-/// Parts farther than the nearest by up to this fraction of its distance are searched too.
+/// Parts farther than the nearest part by up to this fraction of its distance are searched, too.
 const NEARLY: f64 = 1.0 / 64.0;
 
-/// A limit of up to this fraction of a solid's bounding radius counts as small.
+/// Largest limit, as a fraction of a solid's bounding radius, for which [`is_within_solid`] returns
+/// `true`.
 const SMALL: f64 = 1.0 / 4.0;
 
-/// Contacts of two shapes, at least one of them a composite, cached between updates. All are in the
-/// frame of the first shape.
+/// Contacts of two shapes, at least one of them a composite, cached between updates. Points and
+/// normals are in the frame of the first shape.
 #[derive(Clone, Debug)]
 pub(crate) struct CompositeContacts<N: Real, const D: usize> {
     patches: Vec<Patch<N, D>>,
@@ -127,7 +131,7 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
         max(max(normal, point.map_or(N::ZERO, |point| point.raw.distance)), self.around.prefetch())
     }
 
-    /// Returns the manifolds, sorted by their first parts.
+    /// Returns the manifolds, sorted by the smallest pair of parts in each of them.
     pub(crate) fn patches(&self) -> &[Patch<N, D>] {
         &self.patches
     }
@@ -148,6 +152,7 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
     }
 
     /// Exchanges the two shapes; points and normals are then in the frame of the new first shape.
+    /// Clears the reference point and the cache of parts.
     pub(crate) fn flip(&mut self) {
         self.reference = None;
         self.forget_shapes();
@@ -165,8 +170,8 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
 
 impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
     /// Computes the contacts for new poses, of two shapes or, if `is_self`, of one with itself;
-    /// points that moved keep their ids. If a shape has changed, [`Self::forget_shapes`] must be
-    /// called first.
+    /// contact points that persist keep their ids. If a shape has changed, [`Self::forget_shapes`]
+    /// must be called first.
     pub(crate) fn update(
         &mut self,
         between: &Between<'_, N, D>,
@@ -174,7 +179,8 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         request: &ManifoldRequest<N>,
     ) {
         // Only the generic path handles bodies and ghosts: a solid inside a body touches no part,
-        // and one that only a ghost touches gets the contact of the ghost's neighbour.
+        // and a solid that touches only a ghost has its contact with the neighbouring shape that
+        // the ghost represents.
         let has_rules = between.has_bodies() || between.has_ghosts();
         if has_rules || !<N::Algorithms>::update_quickly(self, between, request) {
             self.update_in_general(between, is_self, request);
@@ -234,8 +240,8 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
 }
 
 /// Returns whether [`Query::resolve_contacts`] would change nothing: all contacts are
-/// [`PartStatus::Own`], their faces have about one normal, and the lowest point is as near as the
-/// nearest part.
+/// [`PartStatus::Own`], their faces have about one normal, and the smallest distance of a point is
+/// not above that of the nearest parts, or not above zero if these overlap.
 fn is_resolved<N: Real, const D: usize>(contacts: &[PartContact<N, D>]) -> bool {
     let (mut distance, mut lowest) = (N::INFINITY, N::INFINITY);
     let mut face: Option<Vector<N, D>> = None;
@@ -253,7 +259,8 @@ fn is_resolved<N: Real, const D: usize>(contacts: &[PartContact<N, D>]) -> bool 
     contacts.is_empty() || lowest <= max(distance, N::ZERO)
 }
 
-/// Returns the centre of a convex first shape, in the frame of the second; `None` without a centre.
+/// Returns the centre of a convex first shape, in the frame of the second; `None` for a composite
+/// and a half-space, which have no centre.
 fn middle_of_first<N: Real, const D: usize>(between: &Between<'_, N, D>) -> Option<Point<N, D>> {
     let map = Geometry(between.pair.first).as_support_map()?;
     Some(between.pose21.point(&map.center()))
@@ -267,9 +274,9 @@ struct Travelled<N: Real, const D: usize> {
     clearance: N,
 }
 
-/// Returns the reference point of the first shape: its centre, unless the segment from the old
-/// reference point to it crosses the surface and is at most twice the bounding radius long; then
-/// the old one.
+/// Returns the reference point of the first shape. It is the centre, unless the segment from the
+/// old reference point to the centre crosses the surface and is at most twice the bounding radius
+/// long; then it is the old reference point.
 fn advanced<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     travelled: &Travelled<N, D>,
@@ -291,10 +298,10 @@ fn advanced<N: Space<D>, const D: usize>(
     if is_hit { old } else { center }
 }
 
-/// The inputs for the contacts of a pair.
+/// Input of the computation of the contacts of two shapes.
 pub(crate) struct Query<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
-    /// Whether the pair is one shape with itself.
+    /// Whether both shapes are one composite, whose parts may touch each other.
     is_self: bool,
     /// The cached parts of the second shape.
     around: &'a PartCache<N, D>,
@@ -305,14 +312,15 @@ pub(crate) struct Query<'a, N: Real, const D: usize> {
 
 pub(crate) type PartContacts<N, const D: usize> = SmallVec<[PartContact<N, D>; 8]>;
 
-/// Above this number of pairs of parts, memory is reserved for one contact with `POINTS_AT_A_PART`
-/// points per pair.
+/// Above this number of pairs of parts, memory is reserved for one contact per pair, with
+/// `POINTS_AT_A_PART` points each.
 const MANY_PARTS: usize = 32;
 const POINTS_AT_A_PART: usize = 4;
 
 impl<N: Space<D>, const D: usize> Query<'_, N, D> {
-    /// Computes the contacts of nearby pairs of parts, and decides which of them hold. `prediction`
-    /// is that of the whole shapes; `self.request` may have a larger one for the parts.
+    /// Computes the contacts of the pairs of parts in `culled`, and decides which of these contacts
+    /// hold. `prediction` is that of the whole shapes; `self.request` may have a larger one for the
+    /// parts.
     fn part_contacts(
         &self,
         prediction: N,
@@ -340,7 +348,8 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
         contacts
     }
 
-    /// Decides which contacts hold, and computes the points of those that still lack them.
+    /// Decides which contacts hold, and computes the points of the contacts for which
+    /// [`PartContact::is_owing`] returns `true`.
     fn resolve_contacts(
         &self,
         scene: &Scene<'_, N, D>,
@@ -356,9 +365,10 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
     }
 }
 
-/// Returns the request for each pair of parts. Its prediction is larger by the distance that
-/// turning can bring points nearer. The nearest point, about which the shape turns, may lie on
-/// another part, so [`merge`] drops points that even turning does not bring within the prediction.
+/// Returns the request for each pair of parts. Its prediction is larger by the distance by which
+/// the rotation of `request` can bring points nearer. The nearest point, about which the shape
+/// rotates, may lie on another part. So [`merge`] later drops the points that even the rotation
+/// does not bring within the prediction of `request`.
 fn of_parts<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     request: &ManifoldRequest<N>,
@@ -410,8 +420,8 @@ pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
     deepest(&between, nearest.distance, limit).map(in_world)
 }
 
-/// Returns whether `limit` is small relative to a convex first shape. Then visiting all parts
-/// within it costs less than searching for the nearest part first.
+/// Returns whether `limit` is small relative to a convex first shape. Then a visit of all parts
+/// within `limit` costs less than a search for the nearest part first.
 fn is_within_solid<N: Space<D>, const D: usize>(between: &Between<'_, N, D>, limit: N) -> bool {
     let map = Geometry(between.pair.first).as_support_map();
     limit >= N::ZERO && map.is_some_and(|map| limit <= size(map) * N::lit(SMALL))
@@ -429,12 +439,13 @@ fn has_own_path<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> boo
 }
 
 /// Returns the deepest contact of shapes whose distance is known. If they are apart, only parts
-/// about as near as the nearest are searched, unless the surface admits a contact with none of
-/// them.
+/// about as near as the nearest part are searched, unless the surface admits no contact with any of
+/// these parts; then all parts within `limit` are searched.
 ///
-/// A contact whose distance differs from `distance` only by rounding gets that distance: shapes
-/// that touch have a contact, and shapes that are apart do not overlap. For pairs with
-/// [`has_own_path`] that are apart, the distance of the contact is kept.
+/// The distance of the contact is corrected if the correction is not larger than rounding. If the
+/// shapes touch or overlap but the contact is apart, the distance becomes zero. If the shapes are
+/// apart, the distance becomes `distance`, except for pairs for which [`has_own_path`] returns
+/// `true`.
 fn deepest<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     distance: N,
@@ -455,12 +466,13 @@ fn deepest<N: Space<D>, const D: usize>(
     (found.distance <= limit).then_some(found)
 }
 
-/// Returns the contact with distance zero, for shapes whose positive distance is rounding error.
+/// Returns the contact `found` with distance zero, for shapes that touch although `found` has a
+/// positive distance within rounding error.
 fn touching<N: Real, const D: usize>(found: &Separation<N, D>) -> Separation<N, D> {
     Separation { distance: N::ZERO, point2: found.point1, ..*found }
 }
 
-/// Returns a bound of the rounding errors of lengths in the pair.
+/// Returns a bound of the rounding errors of lengths computed for the two shapes.
 fn rounding<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> N {
     let size = |kind: Kind<'_, N, D>| {
         let aabb = aabb_of(kind, &Pose::identity());

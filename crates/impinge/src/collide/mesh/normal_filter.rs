@@ -4,20 +4,22 @@
 use crate::math::{Point, Real, Space, Vector, unit};
 use crate::shape::{FeatureId, SurfaceAccess};
 
-/// Length of the difference, in units of epsilon, within which a normal counts as the face's own.
+/// Largest length of the difference between a contact's normal and the face's normal, in epsilons,
+/// at which they count as equal.
 const ROUNDING: f64 = 4096.0;
-/// Largest length of the difference at which the normal of a contact inside a face counts as the
-/// face's normal.
+/// Largest length of the difference between a contact's normal and the face's normal at which they
+/// count as equal if the contact is inside the face.
 const ON_FACE: f64 = 1.0 / 64.0;
-/// A normal whose component along the face's normal is below this belongs to the back of the face.
+/// A contact's normal whose component along the face's normal is below this belongs to the back of
+/// the face.
 pub(super) const BEHIND: f64 = -0.5;
 
-/// To detect a ridge, the normal of the face is tilted by this fraction towards the contact's
-/// normal: by more than the limit of flatness.
+/// To detect a ridge, the normal of the face is moved towards the contact's normal by this fraction
+/// of their difference.
 const A_LITTLE: f64 = 1.0 / 32.0;
 
-/// Result of the filter for one contact. Normals point away from the part, in the frame of the
-/// composite.
+/// Result of [`filter_normal`] for one contact. Normals point away from the part, in the frame of
+/// the composite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum FilteredNormal<N: Real, const D: usize> {
     /// The part cannot be touched from the position of the other solid.
@@ -27,12 +29,13 @@ pub(super) enum FilteredNormal<N: Real, const D: usize> {
     /// The contact's normal is the face's normal, up to rounding or, inside a face, up to
     /// `ON_FACE`. The exact normal of the face is given here.
     Face(Vector<N, D>),
-    /// The seam does not admit the contact's normal. A contact with the face itself has the normal
-    /// given here.
+    /// The seam does not admit the contact's normal. The contact becomes one with the face itself,
+    /// whose normal is given here.
     Snapped(Vector<N, D>),
-    /// The contact's normal lies beyond all normals of a ridge, on whose other side another part
-    /// has a face. The contact with this part's face, whose normal is given here, holds only if no
-    /// other contact explains the overlap.
+    /// The face of this part ends at a ridge (a convex seam), and the contact's normal lies beyond
+    /// all normals that the ridge admits, on the side of the adjacent part. The contact with this
+    /// part's face, whose normal is given here, holds only if no other contact explains the
+    /// overlap.
     Beyond(Vector<N, D>),
     /// The seam does not admit the contact's normal, and the part has no face.
     Refused,
@@ -53,8 +56,8 @@ pub(super) struct Case<'a, N: Real, const D: usize> {
     pub(super) part: u32,
     /// Computes the feature of the part at the contact; most cases are decided without it.
     pub(super) feature: &'a dyn Fn() -> FeatureId,
-    /// Whether the other solid has no point over the part's face, so that `Snapped` and `Beyond`
-    /// have the same effect.
+    /// Whether the other solid is known to have no point over the part's face, so that `Snapped`
+    /// and `Beyond` have the same effect and are not told apart.
     pub(super) is_beside: bool,
     /// Unit normal of the contact, away from the part.
     pub(super) outward: Vector<N, D>,
@@ -110,9 +113,9 @@ pub(super) fn filter_normal<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns the normal of the face, tilted slightly towards the normal of the contact; `None` if its
-/// length vanishes. If the seam admits the tilted normal but not the contact's, the part ends at a
-/// ridge, and the contact's normal lies beyond all normals of the ridge.
+/// Returns the unit normal of the face, tilted slightly towards the normal of the contact; `None`
+/// if the tilted vector has no length. If the seam admits the tilted normal but not the contact's,
+/// the part ends at a ridge, and the contact's normal lies beyond all normals of the ridge.
 fn tilted<N: Space<D>, const D: usize>(
     case: &Case<'_, N, D>,
     face: &Vector<N, D>,
@@ -121,7 +124,8 @@ fn tilted<N: Space<D>, const D: usize>(
     unit(&tilted).map(|(tilted, _)| tilted)
 }
 
-/// Returns whether a feature is a flat face. A segment of a surface in 2D is an edge, so it is not.
+/// Returns whether a feature is a flat face. A segment of a surface in 2D has the feature `Edge`,
+/// for which the result is `false`.
 fn is_face(feature: FeatureId) -> bool {
     matches!(feature, FeatureId::Face(_))
 }

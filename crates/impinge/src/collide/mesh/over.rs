@@ -1,9 +1,9 @@
-//! The feature of a triangle that a ball touches, if rounding cannot change it.
+//! The feature of a triangle that a ball touches, if it does not depend on rounding errors.
 //!
 //! In general the feature of a contact follows from the supporting features of a manifold. For a
 //! ball near a triangle that is not thin, the Voronoi region that contains the ball's centre
 //! decides: that of the face, of a side or of a corner. The feature counts as certain only if the
-//! centre is farther from the region's border than rounding error.
+//! centre's distance from the region's border is larger than a multiple of the rounding error.
 
 use crate::math::{Mapped, Point, Real, Vector, cross, max};
 use crate::shape::{FeatureId, Triangle};
@@ -22,7 +22,8 @@ pub(crate) fn over2<N: Real>(_: &Triangle<N, 2>, _: &Point<N, 2>, _: N) -> Optio
 
 /// Returns the feature of a triangle in 3D nearest to the centre of a ball, with the id that
 /// supporting features have: for the face, 0 if the centre is in front, 1 if it is behind. `None`
-/// if the triangle is thin, or the centre is within `CERTAIN · tolerance` of a border.
+/// if the triangle is thin, or the centre is close to a border: within `CERTAIN · tolerance` across
+/// a side or from the plane, `CERTAIN² · tolerance` along a side.
 pub(crate) fn over3<N: Real>(
     triangle: &Triangle<N, 3>,
     center: &Point<N, 3>,
@@ -70,7 +71,7 @@ struct Border<N: Real> {
 fn beside<N: Real>(border: &Border<N>) -> Option<FeatureId> {
     let Border { sides, arms, lengths, insides, margin } = border;
     // Where two sides meet at a small angle, the point nearest to the centre may be on the adjacent
-    // side.
+    // side. So the margin along the sides is larger.
     let aside = N::lit(CERTAIN) * *margin;
     for at in 0..3 {
         let along = sides[at].dot(&arms[at]) / lengths[at];

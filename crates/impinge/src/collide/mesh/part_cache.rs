@@ -1,6 +1,7 @@
 //! The parts around a solid, cached between updates.
 //!
-//! The cache holds parts of the shape of the last update; [`Default`] clears it for a new shape.
+//! The cache is valid for one pair of shapes. If one of them changes, the cache must be replaced by
+//! the [`Default`] one.
 //!
 //! ```text
 //!  parts   p0 p1 p2 … p10                       ascending indices of parts
@@ -20,11 +21,11 @@ use crate::shape::{CompositeShape, FaceSeams, Part, PartSolid, Segment, SupportM
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) enum CacheMargin {
-    /// The initial margin, used until the box with it holds too many parts: more than `most` in
-    /// [`PartCache::covers_with`].
+    /// The initial margin, used until the box with this margin overlaps too many parts: more than
+    /// `most` in [`PartCache::covers_with`].
     #[default]
     Large,
-    /// The margin after the large one held too many parts.
+    /// The margin used after the box with the large margin overlapped too many parts.
     Small,
     /// No margin, for a single update.
     None,
@@ -46,13 +47,13 @@ impl CacheMargin {
 enum KeptSeams<N: Real> {
     /// Not computed yet.
     Unasked,
-    /// The surface does not give them; it must be called each time.
+    /// The surface does not provide the seams of this part, so it must be called for each contact.
     Unknown,
     Known(FaceSeams<N>),
 }
 
-/// Parts around a convex solid, found for a larger box than the solid needs. The cache stays valid
-/// as long as the solid stays in that box.
+/// Parts of a composite around a convex solid, found for a larger box than the solid needs. The
+/// cache is not refilled as long as the solid stays in that box.
 ///
 /// Corners of triangles and segments, in the frame of the composite, are copied into packets of 8
 /// parts, in one block of memory; in the composite they are scattered. With `f32` the copy takes 36
@@ -65,7 +66,8 @@ pub(super) struct PartCache<N: Real, const D: usize> {
     parts: SmallVec<[u32; 8]>,
     /// Corners of all parts; empty unless all parts have corners in the frame of the composite.
     tiles: Vec<PartPacket<N, D>>,
-    /// Seams of all parts, filled where a solid was near; empty if no solid needs them.
+    /// Seams of all parts (the front normals of a triangle and of its neighbours), computed for the
+    /// parts that a solid was near; empty if no solid needs them.
     seams: Vec<KeptSeams<N>>,
     /// Whether the parts in `tiles` are segments, else triangles.
     are_segments: bool,
@@ -105,8 +107,8 @@ impl<N: Real, const D: usize> PartCache<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> PartCache<N, D> {
-    /// Refills the cache unless it holds all parts that overlap a box; returns `false` if the box
-    /// is unbounded.
+    /// Refills the cache unless it holds all parts that overlap a box. Returns `false`, without a
+    /// search, if the box is unbounded.
     pub(super) fn covers(
         &mut self,
         composite: &dyn CompositeShape<N, D>,
@@ -115,8 +117,8 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         self.covers_with(composite, aabb, LANES)
     }
 
-    /// Fills the cache as [`Self::covers`] does, but keeps the large margin as long as it holds at
-    /// most `most` parts.
+    /// Refills the cache as [`Self::covers`] does, but keeps the large margin as long as the box
+    /// with this margin overlaps at most `most` parts.
     pub(super) fn covers_with(
         &mut self,
         composite: &dyn CompositeShape<N, D>,
@@ -138,8 +140,9 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         self.within.as_ref().is_some_and(|within| within.contains(aabb))
     }
 
-    /// Searches the parts around a box, with the margin, and copies their corners. If the large
-    /// margin holds more than `most` parts, this and all later searches use the small one.
+    /// Searches the parts that overlap a box loosened by the margin, and copies their corners. If
+    /// the large margin gives more than `most` parts, this search and all later ones use the small
+    /// margin.
     fn fill(&mut self, composite: &dyn CompositeShape<N, D>, aabb: &Aabb<N, D>, most: usize) {
         let half = aabb.half_extents().iter().fold(N::ZERO, |most, &half| max(most, half));
         let with_margin = |margin: CacheMargin| aabb.loosened(half * N::lit(margin.share()));
@@ -155,7 +158,7 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         self.keep_seams(&before);
     }
 
-    /// Caches the parts that the search in a box found.
+    /// Sorts the parts that the search in `within` found, and copies their corners.
     fn keep_found(&mut self, composite: &dyn CompositeShape<N, D>, within: Aabb<N, D>) {
         self.tiles.clear();
         self.parts.sort_unstable();
@@ -163,15 +166,15 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         self.fill_tiles(composite);
     }
 
-    /// Restores the cache of a saved world: the parts in its box.
+    /// Restores the cache of a saved world by a search of the parts that overlap its box `within`.
     #[cfg(feature = "serde")]
     pub(super) fn fill_again(&mut self, composite: &dyn CompositeShape<N, D>, within: Aabb<N, D>) {
         self.search(composite, &within);
         self.keep_found(composite, within);
     }
 
-    /// Keeps the seams of parts that were cached before, and drops the others. `before` are the old
-    /// indices.
+    /// Keeps the seams of parts that were cached before, and drops the seams of other parts.
+    /// `before` holds the old part indices.
     fn keep_seams(&mut self, before: &[u32]) {
         if before.is_empty() {
             return self.seams.clear();
@@ -187,13 +190,14 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         self.seams = kept;
     }
 
-    /// Replaces the list of parts by those that overlap `within`, unsorted.
+    /// Replaces the list of parts by the parts that overlap `within`, unsorted.
     fn search(&mut self, composite: &dyn CompositeShape<N, D>, within: &Aabb<N, D>) {
         self.parts.clear();
         composite.search().overlapping(within, &mut |part| self.parts.push(part));
     }
 
-    /// Copies the corners of all parts; leaves `tiles` empty unless all parts have corners.
+    /// Copies the corners of all parts; leaves `tiles` empty unless all parts are triangles, or all
+    /// are segments, in the frame of the composite.
     fn fill_tiles(&mut self, composite: &dyn CompositeShape<N, D>) {
         // Exact capacity, because there is one such list per pair.
         self.tiles.reserve_exact(self.parts.len().div_ceil(LANES));
@@ -226,8 +230,8 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         &self.tiles
     }
 
-    /// Fills in the seams of triangles from the surface of the composite. `masks` selects, by a bit
-    /// per part of each packet, the parts that need them.
+    /// Computes the seams of triangles that are not cached yet, from the surface of the composite.
+    /// `masks` selects, by a bit per part of each packet, the parts that need them.
     pub(super) fn learn_seams(&mut self, composite: &dyn CompositeShape<N, D>, masks: &[u8]) {
         let surface = composite.surface_access().filter(|_| self.has_triangles_alone());
         let Some(surface) = surface else { return };
@@ -261,7 +265,8 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         self.parts.is_empty() || !(self.are_segments || self.tiles.is_empty())
     }
 
-    /// Returns the half extents of the solid's core along its own axes, computed at the first call.
+    /// Returns the half extents of the solid's core along its own axes, measured from its centre;
+    /// computed at the first call.
     pub(super) fn half(&mut self, map: &dyn SupportMap<N, D>) -> Vector<N, D> {
         *self.half.get_or_insert_with(|| {
             let center = map.center();

@@ -25,13 +25,14 @@ pub(crate) enum PartStatus {
     /// The contact holds with its own normal.
     Own,
     /// The contact is along the normal of a face, because the seam does not admit the normal of the
-    /// parts. It is dropped if a shallower contact explains the overlap.
+    /// parts. [`resolve`](super::resolve) drops it if a shallower contact explains the overlap.
     Snapped,
     /// The contact is along the normal of a face that ends at a ridge, and the normal of the parts
     /// lies beyond the ridge. It is dropped if another contact explains the overlap, even one along
     /// the same normal.
     Beyond,
-    /// The contact is dropped, unless it is the nearest and no other contact is as near.
+    /// The contact is dropped, unless its parts are the nearest and no remaining contact is as
+    /// near.
     Left,
 }
 
@@ -40,11 +41,12 @@ pub(crate) enum PartStatus {
 pub(crate) struct PartContact<N: Real, const D: usize> {
     /// Signed distance of the two parts alone.
     pub(super) distance: N,
-    /// Normal of this distance: a unit vector from the first shape to the second, in the frame of
-    /// the first; zero without a normal filter.
+    /// Unit vector along which `distance` is measured, from the first shape to the second, in the
+    /// frame of the first; zero for a contact that [`contact_of_solids`] computed.
     pub(super) normal: Vector<N, D>,
     /// Manifold of the pair, in the frame of the first shape. It has no points if the filter drops
-    /// the contact, and none until [`nearest_points`] if [`Self::is_owing`].
+    /// the contact, or while [`Self::is_owing`] returns `true`, until [`nearest_points`] computes
+    /// them.
     pub(super) piece: Piece<N, D>,
     /// Smallest distance of the points in `piece`; infinite without points.
     pub(super) lowest: N,
@@ -52,7 +54,7 @@ pub(crate) struct PartContact<N: Real, const D: usize> {
     /// Normal of the face of the second shape's part in contact, in the frame of the second shape;
     /// `None` for a contact with another feature.
     pub(super) face: Option<Vector<N, D>>,
-    /// Bound of the rounding errors of lengths of the pair.
+    /// Bound of the rounding errors of lengths computed for the two parts.
     pub(super) tolerance: N,
 }
 
@@ -61,10 +63,10 @@ pub(crate) struct PartContact<N: Real, const D: usize> {
 pub(crate) struct Arena<N: Real, const D: usize> {
     /// Points of all pieces.
     pub(super) points: RawPoints<N, D>,
-    /// Largest bound of the rounding errors of parts that were skipped.
+    /// Largest bound of the rounding errors of lengths computed for parts that were skipped.
     pub(super) rounding: N,
     /// Whether all faces in contact are fronts, with neighbours oriented alike. Then no face hides
-    /// another, because the solid is in front of all.
+    /// another, because the solid is in front of all these faces.
     pub(super) are_fronts: bool,
     raw: RawManifold<N, D>,
 }
@@ -82,20 +84,20 @@ impl<N: Real, const D: usize> PartContact<N, D> {
         self.piece.parts
     }
 
-    /// Returns whether the contact holds but has no points yet: the points along the normal of a
-    /// face did not represent it.
+    /// Returns whether the contact holds but has no points yet, because the points along the normal
+    /// of a face did not represent it.
     pub(super) fn is_owing(&self) -> bool {
         self.status != PartStatus::Left && self.piece.points.is_empty()
     }
 
-    /// Replaces the manifold and its smallest distance.
+    /// Replaces the manifold, and sets `lowest` to the smallest distance of its points.
     pub(super) fn set_piece(&mut self, piece: Piece<N, D>, lowest: N) {
         (self.piece, self.lowest) = (piece, lowest);
     }
 }
 
-/// Appends the points of the arena's manifold to the arena's points; returns the piece and its
-/// smallest distance.
+/// Appends the points of the arena's manifold to the arena's points. Returns the piece and the
+/// smallest distance of its points, infinite without points.
 fn appended<N: Space<D>, const D: usize>(
     placed: &PlacedPair<'_, N, D>,
     parts: [u32; 2],
@@ -106,11 +108,12 @@ fn appended<N: Space<D>, const D: usize>(
 }
 
 /// Reference point of the first shape in the frame of the second. It decides on which side of a
-/// surface the shape is; `None` stands for the centre of the part.
+/// surface the shape is; `None` stands for the centre of the first shape's part.
 pub(super) type Reference<N, const D: usize> = Option<Point<N, D>>;
 
 /// Computes the contact of two parts; `known` is their separation, if it is already known. `None`
-/// if they are beyond the prediction, or on a side from which the surface cannot be touched.
+/// if the parts are beyond the prediction, or if one is on a side of the other's surface from which
+/// it cannot be touched.
 pub(super) fn compute<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     placed: &PlacedPair<'_, N, D>,
@@ -138,7 +141,8 @@ pub(super) fn compute<N: Space<D>, const D: usize>(
     of_surfaces(scene, &configuration, &found, request, arena)
 }
 
-/// Computes the contact of two parts without a normal filter.
+/// Computes the contact of two parts without a normal filter; `None` if they are beyond the
+/// prediction.
 pub(super) fn contact_of_solids<N: Space<D>, const D: usize>(
     placed: &PlacedPair<'_, N, D>,
     parts: [u32; 2],
@@ -208,8 +212,8 @@ impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
-    /// Returns whether a contact along `normal` would push the other shape into a body. A face in
-    /// an inner wall of a body has such a normal: the inside is on its back as well.
+    /// Returns whether a contact along `normal` would push one shape into a body of the other. A
+    /// face of an inner wall of a body has such a normal: the inside is behind this face, too.
     ///
     /// `normal` is from the first shape to the second, in the frame of the first.
     fn leads_into_body(&self, scene: &Scene<'_, N, D>, normal: &Vector<N, D>) -> bool {
@@ -226,7 +230,7 @@ impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
 }
 
 /// Returns whether `over` is a side or corner of a triangle: then the ball's centre does not
-/// project into the face.
+/// project into the face. False if the feature is unknown.
 pub(super) fn is_beside(over: Option<FeatureId>) -> bool {
     over.is_some_and(|over| !matches!(over, FeatureId::Face(_)))
 }
@@ -264,8 +268,8 @@ fn of_surfaces<N: Space<D>, const D: usize>(
             PartStatus::Own
         }
         CombinedNormal::Forced(face, status) => {
-            // If the parts overlap by no more than rounding, no point gets a larger depth than the
-            // parts, unless the solid comes from inside of a body.
+            // If the parts are apart or overlap by no more than rounding, no point gets a smaller
+            // distance than the parts, unless the solid comes from inside a body.
             let is_below = || {
                 distance <= N::ZERO && normal.dot(&face) < N::lit(BEHIND) && scene.are_bodies(parts)
             };
@@ -313,8 +317,9 @@ fn over<N: Space<D>, const D: usize>(pair: &Pair<'_, N, D>, tolerance: N) -> Opt
     <N::Algorithms>::over(triangle, &center, tolerance)
 }
 
-/// Returns whether `over` and the filter agree on a face or on its border. If so, the contact gets
-/// the feature `over`; a ball close to a side may still have the normal of the face.
+/// Returns whether `over` is the face and the filter returned its normal, or neither is the case.
+/// If so, the contact gets the feature `over`; a ball close to a side may still have the normal of
+/// the face.
 pub(super) fn is_certain<N: Real, const D: usize>(
     over: FeatureId,
     filtered: &FilteredNormal<N, D>,
@@ -332,8 +337,8 @@ pub(super) fn of_ball<N: Real, const D: usize>(
     RawPoint { point1, distance, feature1, feature2, id, code: 0 }
 }
 
-/// Appends the manifold of two parts at their nearest points, without a normal filter; returns the
-/// piece and its smallest distance.
+/// Appends the manifold of two parts at their nearest points, without a normal filter. Returns the
+/// piece and the smallest distance of its points, infinite without points.
 pub(super) fn nearest_points<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     parts: [u32; 2],
@@ -349,7 +354,7 @@ pub(super) fn nearest_points<N: Space<D>, const D: usize>(
 }
 
 /// Returns whether the points along the normal of a face miss the contact: there are none, or the
-/// parts overlap and all points are apart. The face, clipped to where the other part is above it,
+/// parts overlap and all points are apart. The face, clipped to the region below the other part,
 /// may end beside the overlap.
 pub(super) fn overlooks<N: Real, const D: usize>(
     points: &[RawPoint<N, D>],
@@ -360,8 +365,8 @@ pub(super) fn overlooks<N: Real, const D: usize>(
     !points.iter().any(|point| point.distance <= highest)
 }
 
-/// Combined result of both surfaces. Normals are from the first shape to the second, in the frame
-/// of the first.
+/// Combined result of the normal filters of both surfaces. Normals are from the first shape to the
+/// second, in the frame of the first.
 enum CombinedNormal<N: Real, const D: usize> {
     Nothing,
     Refused,
@@ -372,7 +377,8 @@ enum CombinedNormal<N: Real, const D: usize> {
 }
 
 /// Combines the results of both surfaces for `normal`. `normal` and the result are in the frame of
-/// the first shape. If two faces compete, the one closer to `normal` wins.
+/// the first shape. If both filters force the normal of a face, the face whose normal is closer to
+/// `normal` is used.
 fn combined_normal<N: Space<D>, const D: usize>(
     placed: &PlacedPair<'_, N, D>,
     filtered: &[FilteredNormal<N, D>; 2],

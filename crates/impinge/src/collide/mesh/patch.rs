@@ -12,8 +12,8 @@
 //!   └────────┘└────────┘
 //! ```
 //!
-//! A contact point keeps its id by the rule of [`ids`](crate::collide::manifold::ids), in which the
-//! parts count among the features.
+//! A contact point keeps its id by the rule of [`ids`](crate::collide::manifold::ids); the two
+//! parts are treated as additional features.
 
 use core::cell::OnceCell;
 use core::cmp::Ordering;
@@ -66,7 +66,7 @@ pub(crate) struct Piece<N: Real, const D: usize> {
 pub(crate) struct Merging<'a, N: Real, const D: usize> {
     pub(crate) pair: &'a Pair<'a, N, D>,
     pub(crate) request: &'a ManifoldRequest<N>,
-    /// Bound of the rounding errors of lengths of the pair.
+    /// Bound of the rounding errors of lengths computed for the two shapes.
     pub(crate) tolerance: N,
     /// Pieces, sorted by their parts; each pair of parts occurs once.
     pub(crate) pieces: &'a [Piece<N, D>],
@@ -76,11 +76,12 @@ pub(crate) struct Merging<'a, N: Real, const D: usize> {
     pub(crate) size: OnceCell<N>,
 }
 
-/// By point, the id that it inherits; `None` for a new point.
+/// The inherited id of each point in [`Merging::points`]; `None` for a new point.
 pub(super) type KeptIds = SmallVec<[Option<Inherited>; 32]>;
 
-/// Merges the manifolds of parts into patches, sorted by their first parts. Replaces the patches of
-/// the last update, where the second shape had the pose `old_pose12`.
+/// Merges the manifolds of parts into patches, sorted by the smallest pair of parts in each.
+/// Replaces `patches`, the result of the last update, in which the second shape had the pose
+/// `old_pose12`.
 ///
 /// The manifolds of parts may hold points beyond the prediction. Such a point is kept only if a
 /// rotation about the deepest point of the patch, by the angle of `request.sine`, may bring it
@@ -109,8 +110,8 @@ pub(crate) fn merge<N: Space<D>, const D: usize>(
     patches.truncate(groups.groups.len());
 }
 
-/// Makes a patch of a single point, as a ball has, if the point is within the prediction; else
-/// clears the patches.
+/// Makes a patch from a piece with a single point, such as that of a ball, if the point is within
+/// the prediction; else clears the patches.
 fn merge_one<N: Real, const D: usize>(
     merging: &Merging<'_, N, D>,
     piece: &Piece<N, D>,
@@ -141,8 +142,8 @@ fn anchors<N: Real, const D: usize>(
     pose.anchors(&raw.point1, raw.distance, (parts, [raw.feature1, raw.feature2]))
 }
 
-/// Clears patch `at`, sets its normal, and returns its empty list of points. Appends a patch if
-/// `at` equals the number of patches.
+/// Clears the patch at index `at`, or appends a patch if `at` is the number of patches. Sets its
+/// normal and returns its empty list of points.
 fn blank<N: Real, const D: usize>(
     patches: &mut Vec<Patch<N, D>>,
     at: usize,
@@ -161,7 +162,7 @@ fn blank<N: Real, const D: usize>(
 
 impl<N: Real, const D: usize> Merging<'_, N, D> {
     /// Computes the ids that points inherit, by the rule of [`ids`](crate::collide::manifold::ids):
-    /// first by parts and features where these identify one point, then by position.
+    /// first by parts and features if these identify one point, then by position.
     fn keep(&self, old_pose12: &Pose<N, D>, old: &[Patch<N, D>], kept: &mut KeptIds) {
         kept.resize(self.points.len(), None);
         let (mut at, mut olds, mut ids) = (0, AnchorList::new(), SmallVec::<[u32; 8]>::new());
@@ -184,9 +185,9 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
         }
     }
 
-    /// Returns the index of the point of a piece that inherits the id of an old point by its
-    /// features. `None` if the features do not identify one point among the old points and among
-    /// the new.
+    /// Returns the index of the heir of an old point in a piece: the point with the same features,
+    /// which inherits the id. `None` if the features do not identify one old and one new point, or
+    /// if these two are far apart or have different normals.
     fn only_heir(
         &self,
         old_pose: &PairPose<'_, N, D>,
@@ -252,7 +253,8 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
         self.pieces.binary_search_by(|piece| piece.parts.cmp(&parts)).ok()
     }
 
-    /// Returns the index of the deepest point of a piece, by the order of [`by_depth`].
+    /// Returns the index of the first point of a piece in the order of [`by_depth`]; `None` without
+    /// points.
     pub(super) fn deepest_of(&self, piece: &Piece<N, D>) -> Option<usize> {
         let deeper = |best: usize, next: usize| {
             if by_depth(&self.points[next], &self.points[best]).is_lt() { next } else { best }

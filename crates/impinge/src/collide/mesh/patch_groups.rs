@@ -1,9 +1,9 @@
 //! Groups the pieces that form one patch: the pieces with one normal in one plane.
 //!
 //! If all normals differ, as on rough terrain, each piece is a patch. Otherwise pieces are taken
-//! deepest first, and each is compared with the deepest piece of the earlier patches that may have
-//! its normal. If there are many pieces, cells of the normals' component along one axis limit the
-//! candidates:
+//! deepest first, and each piece is compared with the deepest piece of each earlier patch that may
+//! have the same normal. If there are many pieces, cells of the normals' component along one axis
+//! limit the candidates:
 //!
 //! ```text
 //!  AXIS ──┬──────┬──────┬──────┬──────┬──>   compared: the patches in the own cell
@@ -23,14 +23,14 @@ use crate::math::{Mapped, Real, Vector, min};
 /// Largest length of the difference of two unit normals in one patch; also the largest ratio of
 /// height above a plane to distance for points in one plane.
 const SAME: f64 = 1.0 / 1024.0;
-/// Up to this number of pieces, all share one cell.
+/// Up to this number of pieces, all pieces share one cell.
 const FEW_PIECES: usize = 12;
 /// Length of a cell: `SAME` plus a margin for rounding.
 const CELL: f64 = SAME * (1.0 + 1.0 / 16.0);
-/// The axis of the cells, a unit vector. It is oblique to the coordinate axes, along which most
-/// faces of buildings lie.
+/// The axis of the cells, a unit vector. It is oblique to the coordinate axes, to which the normals
+/// of many surfaces are parallel.
 const AXIS: [f64; 3] = [0.36, 0.48, 0.8];
-/// Patches per cell that a piece is compared with: the deepest ones.
+/// Largest number of patches per cell that a piece is compared with; the deepest ones are used.
 const MAX_COMPARED: usize = 32;
 /// Average number of comparisons per piece that may be spent on the test whether all normals
 /// differ.
@@ -53,9 +53,9 @@ pub(super) struct PieceGroup {
     pieces: Range<usize>,
 }
 
-/// Returns the pieces sorted by group, and sets the range of each group. On entry the length of
-/// each `PieceGroup::pieces` must be the number of the group's pieces. `pieces` yields (piece,
-/// group).
+/// Returns the indices of the pieces sorted by group, and sets the range of each group in this
+/// list. On entry the length of each `PieceGroup::pieces` must be the number of the group's pieces.
+/// `pieces` yields (piece, group).
 fn pieces_by_group(
     groups: &mut [PieceGroup],
     pieces: impl Iterator<Item = (usize, usize)>,
@@ -108,7 +108,7 @@ impl Groups {
         all
     }
 
-    /// Makes a group of each piece.
+    /// Makes one group for each piece.
     fn of_one_each<N: Real, const D: usize>(merging: &Merging<'_, N, D>, leads: &[Lead]) -> Self {
         let group = |(at, lead): (usize, &Lead)| PieceGroup {
             lead: *lead,
@@ -119,8 +119,8 @@ impl Groups {
         Self { groups: leads.iter().enumerate().map(group).collect(), order }
     }
 
-    /// Adds each piece, deepest first, to the group whose lead it is coplanar with, or to a new
-    /// group.
+    /// Adds each piece, deepest first, to the first group found whose lead is coplanar with it, or
+    /// else to a new group.
     fn of_coplanar<N: Real, const D: usize>(
         merging: &Merging<'_, N, D>,
         leads: &[Lead],
@@ -206,7 +206,7 @@ struct NormalCells {
 }
 
 impl NormalCells {
-    /// Sorts pieces into cells; up to [`FEW_PIECES`] pieces share one cell.
+    /// Sorts pieces into cells by their normals; up to [`FEW_PIECES`] pieces share one cell.
     fn of<N: Real, const D: usize>(pieces: &[Piece<N, D>]) -> Self {
         let (mut cells, mut of_pieces, mut order) = (SmallVec::new(), Vec::new(), Vec::new());
         let empty = |number| NormalCell { number, patches: SmallVec::new() };
@@ -250,8 +250,8 @@ impl NormalCells {
         self.of_pieces.is_empty()
     }
 
-    /// Returns the patches that may have the normal of a piece, from its cell and the two
-    /// neighbours.
+    /// Returns the patches that may have the normal of a piece: those in its cell and in the two
+    /// adjacent cells.
     fn near(&self, piece: usize) -> impl Iterator<Item = usize> {
         let own = self.of_pieces.get(piece).copied().unwrap_or(0);
         let number = self.cells[own].number;
@@ -260,7 +260,7 @@ impl NormalCells {
         close.flat_map(|cell| cell.patches.iter().take(MAX_COMPARED).copied())
     }
 
-    /// Adds a patch to the cell of its first piece.
+    /// Adds a patch to the cell of `piece`, its deepest piece.
     fn put(&mut self, patch: usize, piece: usize) {
         let own = self.of_pieces.get(piece).copied().unwrap_or(0);
         self.cells[own].patches.push(patch);
@@ -279,8 +279,8 @@ mod tests {
     use super::*;
     use crate::math::xorshift::Xorshift;
 
-    /// Returns `count` pieces without points, with normals in all directions. If `has_equal`, some
-    /// normals are nearly equal.
+    /// Returns `count` pieces without points, with normals in all directions. If `has_equal`, every
+    /// fourth normal is nearly equal to the one before it.
     fn pieces<const D: usize>(count: usize, has_equal: bool) -> Vec<Piece<f64, D>> {
         let mut random = Xorshift(3);
         let mut pieces: Vec<Piece<f64, D>> = Vec::new();
@@ -295,8 +295,8 @@ mod tests {
         pieces
     }
 
-    /// Asserts that all patches with the normal of a piece are candidates, and few others: their
-    /// number must not grow with the number of patches.
+    /// Asserts that all patches with the normal of a piece are candidates for it, unless there are
+    /// more than the cap, and that a piece has at most `most` candidates on average.
     fn check<const D: usize>(count: usize, most: usize) {
         let pieces = pieces::<D>(count, true);
         let (mut cells, mut compared, mut same) = (NormalCells::of(&pieces), 0, 0);

@@ -2,10 +2,10 @@
 //! all pieces.
 //!
 //! ```text
-//!  gather: all points within the prediction, in 2D coordinates along two tangents
-//!  drop_copies: of points within 4 tolerances of each other, one stays
-//!  choose: a deepest point, and those that span the largest area
-//!  points: ids, and the depth of the deepest
+//!  gather: lists all points within the prediction, with coordinates along two tangents
+//!  drop_copies: keeps one of several points within 4 tolerances of each other
+//!  choose: keeps a deepest point, and the points that span the largest area
+//!  points: assigns ids, and sets the distance of the deepest point exactly
 //! ```
 //!
 //! Most patches have the few points of a single piece. All steps work in place, in lists that the
@@ -26,7 +26,7 @@ use crate::math::{Real, Space, Vector};
 /// Number of points that fit into the lists without an allocation.
 const FEW: usize = 16;
 
-/// A point of a patch, projected along its normal.
+/// A point of a patch, projected along the normal of the patch.
 #[derive(Clone, Copy)]
 pub(super) struct Member<N> {
     /// Coordinates along both tangents, relative to the deepest point.
@@ -40,15 +40,16 @@ pub(super) struct Member<N> {
 /// The points of one patch.
 pub(super) type Members<N> = SmallVec<[Member<N>; FEW]>;
 
-/// Inputs for choosing points; `kept` holds the inherited ids.
+/// Input for the choice of points; `kept` holds the inherited ids.
 pub(super) struct Choosing<'a, N: Real, const D: usize> {
     pub(super) merging: &'a Merging<'a, N, D>,
     pub(super) kept: &'a KeptIds,
 }
 
 impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
-    /// Fills a patch with at most `max_points` points of `pieces`: the deepest one, and those that
-    /// span the largest area. `lead` has the deepest point. `members` is scratch space.
+    /// Fills a patch with at most `max_points` points of `pieces`: a deepest point, and the points
+    /// that span the largest area. `lead` is the piece with the deepest point. `members` is scratch
+    /// space.
     pub(super) fn fill(
         &self,
         lead: Lead,
@@ -69,7 +70,7 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         let limit = if is_line { most.min(2) } else { most };
         let lowest = self.merging.points[lead.deepest].distance;
         let level = lowest + self.merging.tolerance;
-        // The few points of a single piece are already corners of an area.
+        // If a single piece has few enough points, no choice is needed: they already span its area.
         if !(pieces.len() == 1 && members.len() <= limit) {
             self.drop_copies(members);
             self.choose(members, level, limit, is_line);
@@ -77,7 +78,9 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         self.points(members, lowest, out, ids);
     }
 
-    /// Keeps at most `limit` members, at least one of them with a distance up to `level`.
+    /// Keeps at most `limit` members, which span the largest area or, if `is_line`, are the ends of
+    /// the line. At least one of them is a deepest member: its distance is at most `level`, or at
+    /// most [`slack_level`] for a member that continues an old point.
     fn choose(&self, members: &mut Members<N>, level: N, limit: usize, is_line: bool) {
         let flattened =
             members.iter().map(|member| (member.flat, self.distance(member), self.is_old(member)));
@@ -97,7 +100,9 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         members.truncate(indices.len());
     }
 
-    /// Appends the chosen points, sorted by id. A deepest one gets exactly the distance `lowest`.
+    /// Appends the chosen points, sorted by id. The deepest old point (one that the last update
+    /// had) gets exactly the distance `lowest` if it is within the tolerance of it; otherwise the
+    /// deepest point does.
     fn points(
         &self,
         chosen: &[Member<N>],
@@ -130,7 +135,8 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         }
     }
 
-    /// Returns whether the manifolds of the last update had this point at this position.
+    /// Returns whether the point continues a point of the last update that was at the same
+    /// position.
     fn is_old(&self, member: &Member<N>) -> bool {
         self.kept[member.point].is_some_and(|kept| kept.is_old)
     }
@@ -139,8 +145,9 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         self.merging.points[member.point].distance
     }
 
-    /// Lists the deepest point, and then the other points within the prediction, including the
-    /// margin for rotation. The deepest point is always a member, even if its coordinates are NaN.
+    /// Fills `members` with the deepest point, and then the other points within the prediction,
+    /// enlarged by the distance by which the rotation of the request can bring a point nearer. The
+    /// deepest point is always a member, even if its coordinates are NaN.
     fn gather(
         &self,
         Lead { piece: lead, deepest }: Lead,
@@ -168,8 +175,9 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         }
     }
 
-    /// Sorts the points along the first tangent, then along the second, and removes copies: parts
-    /// that meet at a point all have a copy of it. [`Self::is_better`] selects the copy that stays.
+    /// Sorts the points along the first tangent, then along the second, and removes copies: all
+    /// parts that meet at a point have a copy of this point. [`Self::is_better`] selects the copy
+    /// that stays.
     fn drop_copies(&self, members: &mut Members<N>) {
         let near = N::lit(4.0) * self.merging.tolerance;
         sort(members);
@@ -200,8 +208,9 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         }
     }
 
-    /// Returns whether `new` replaces `old` at one position: by depth if the depths differ by more
-    /// than the tolerance, else by having an inherited id, else by the smaller pair of parts.
+    /// Returns whether `new` replaces `old` at one position: the deeper point if the depths differ
+    /// by more than the tolerance, else the point with an inherited id, else the point with the
+    /// smaller pair of parts.
     fn is_better(&self, new: &Member<N>, old: &Member<N>) -> bool {
         let tolerance = self.merging.tolerance;
         let rank = |member: &Member<N>| {
@@ -212,8 +221,8 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
     }
 }
 
-/// Keeps the two ends of a line of sorted points, the points that continue old ones and, if neither
-/// end is deepest, one deepest point.
+/// Keeps the two ends of a line of sorted points, the points that continue old points and, if
+/// neither end is marked as deepest, one deepest point.
 fn keep_ends<N: Real>(points: &mut Projections<N>) {
     let (last, deepest) = (points.len() - 1, a_deepest(points));
     let is_inner = !(points[0].is_deepest || points[last].is_deepest);
@@ -223,8 +232,8 @@ fn keep_ends<N: Real>(points: &mut Projections<N>) {
     });
 }
 
-/// Rotates the tangents by one radian, so that few points of an axis-aligned grid share a
-/// coordinate along the first.
+/// Rotates the tangents by one radian, so that few points of an axis-aligned grid have equal
+/// coordinates along the first tangent.
 fn askew<N: Real, const D: usize>([first, second]: &[Vector<N, D>; 2]) -> [Vector<N, D>; 2] {
     let [cosine, sine] = [0.540_302_305_868_139_7, 0.841_470_984_807_896_5].map(N::lit);
     // In 2D the second tangent is zero.
@@ -243,7 +252,7 @@ fn sort<N: Real>(members: &mut [Member<N>]) {
     sort_few(members, |one, other| by_position(one, other).is_lt());
 }
 
-/// Orders by the first coordinate, then by the second.
+/// Orders points by the coordinate along the first tangent, then by that along the second.
 #[inline]
 fn by_position<N: Real>(a: &Member<N>, b: &Member<N>) -> core::cmp::Ordering {
     let (a, b) = (&a.flat, &b.flat);

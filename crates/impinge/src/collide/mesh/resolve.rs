@@ -7,10 +7,10 @@ use super::scene::Scene;
 use crate::math::order::{order_of, sort_keyed};
 use crate::math::{Real, Space, Vector, max};
 
-/// Normals count as one direction if the cosine of the angle between them is larger.
+/// Two normals count as one direction if the cosine of the angle between them is larger than this.
 const ALIKE: f64 = 0.99;
 
-/// Largest number of escapes kept at a time; their directions differ.
+/// Largest number of escapes kept at a time; no two of them have about the same direction.
 const MAX_ESCAPES: usize = 32;
 
 /// A translation that resolves the overlap, according to one contact: the second shape moves along
@@ -20,20 +20,21 @@ struct Escape<N: Real, const D: usize> {
     depth: N,
 }
 
-/// Escapes in the order of their depths, the shallowest first. Of escapes with about the same
-/// direction only the longest is kept.
+/// Escapes in the order of their depths, the shallowest first. Of several escapes with about the
+/// same direction, only the deepest is kept.
 struct Escapes<N: Real, const D: usize>(SmallVec<[Escape<N, D>; MAX_ESCAPES]>);
 
 /// Drops the contacts that do not hold for the whole shapes.
 ///
 /// Along the normal of a face, the depth is that of the whole solid below the face. For a face that
-/// is touched only at its rim, this may be the width of the solid: a box on top of a cliff is not
-/// deep in the cliff's wall. So the shallower of two explanations of an overlap holds. A contact
-/// with a face is dropped if its parts are also separated once the second shape moves along the
-/// normal of another, shallower contact by the depth of that contact.
+/// is touched only at its rim, this depth may be the width of the solid: a box on top of a cliff is
+/// not deep in the cliff's wall. So the shallower of two explanations of an overlap holds. A
+/// contact with a face is dropped if its parts are also separated once the second shape moves along
+/// the normal of another, shallower contact by the depth of that contact.
 ///
 /// If no remaining contact is as near as the nearest two parts, the contact of these two parts is
-/// kept: solids that overlap always have a contact, except beside a ghost, whose neighbour has it.
+/// kept. So solids that overlap always have a contact, except beside a ghost (a part that stands
+/// for a part of a neighbouring shape): there, the neighbouring shape has the contact.
 pub(super) fn resolve<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contacts: &mut [PartContact<N, D>],
@@ -78,7 +79,7 @@ fn leave_explained<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns the depth of a contact; negative if it is apart.
+/// Returns the depth of a contact's deepest point; negative if this point is apart.
 fn depth<N: Real, const D: usize>(contact: &PartContact<N, D>) -> N {
     -contact.lowest
 }
@@ -100,9 +101,9 @@ fn shallowest_first<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> Escapes<N, D> {
-    /// Adds the escape of a contact that is at least as deep as all contacts added before. It
-    /// replaces the escape with about the same normal or, if there are too many, the first one.
-    /// Contacts that are apart add nothing.
+    /// Adds the escape of a contact that is at least as deep as all contacts added before. The new
+    /// escape replaces the escape with about the same normal or, if there are [`MAX_ESCAPES`], the
+    /// shallowest. Contacts that are apart add nothing.
     fn add(&mut self, contact: &PartContact<N, D>) {
         let (normal, depth) = (contact.piece.normal, depth(contact));
         if depth <= N::ZERO {
@@ -131,7 +132,7 @@ fn is_explained<N: Space<D>, const D: usize>(
         return false;
     }
     let is_beyond = contact.status == PartStatus::Beyond;
-    // An escape shorter than the depth of the parts does not separate them.
+    // An escape that is shorter than the depth of the parts does not separate the parts.
     let least = -contact.distance - contact.tolerance;
     let is_relevant = |escape: &&Escape<N, D>| {
         escape.depth >= least && (is_beyond || escape.normal.dot(&normal) < N::lit(ALIKE))
@@ -148,7 +149,8 @@ fn is_explained<N: Space<D>, const D: usize>(
         }
         relevant.push(escape);
     }
-    // If a point of the part stays well inside the solid, the motion does not separate them.
+    // If a point of the part stays well inside the solid, the motion does not separate part and
+    // solid.
     let points = &arena.points[contact.piece.points.clone()];
     let mut shifts = SmallVec::<[Vector<N, D>; 16]>::new();
     for escape in relevant {
@@ -165,8 +167,9 @@ fn is_explained<N: Space<D>, const D: usize>(
 }
 
 /// Restores the contact of the nearest two parts if all contacts that hold are farther. If the
-/// nearest of those is farther only by rounding, its distances are corrected instead. Changes
-/// nothing beside a ghost, whose neighbour has the contact.
+/// nearest contact that holds is farther only by rounding, the distances of its points are
+/// corrected instead. Changes nothing beside a ghost: there, the neighbouring shape that the ghost
+/// represents has the contact.
 fn keep_one<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contacts: &mut [PartContact<N, D>],
@@ -189,8 +192,8 @@ fn keep_one<N: Space<D>, const D: usize>(
         }
         _ if scene.are_beside_ghost(contacts[nearest].parts()) => {}
         _ => {
-            // Its points, if any, are along the normal of a face and farther, so they are computed
-            // again.
+            // The points of this contact, if it has any, are along the normal of a face and
+            // farther. So they are computed again.
             contacts[nearest].status = PartStatus::Own;
             contacts[nearest].piece.points = 0..0;
         }

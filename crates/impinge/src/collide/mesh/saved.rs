@@ -19,9 +19,9 @@ pub(crate) struct CompositeRecord<N: Real> {
     pose12: Numbers<N>,
     patches: Vec<PatchRecord<N>>,
     reference: Option<Numbers<N>>,
-    /// Corners of the box whose parts are cached; `None` if none are cached. The cached parts
-    /// select the algorithm for a pair with a compound, so the same parts must be cached after
-    /// loading.
+    /// Corners of the box whose parts are cached; `None` if nothing is cached. Whether a
+    /// specialised path computes a pair with a compound depends on the cached parts, so these parts
+    /// must also be cached after loading.
     around: Option<Numbers<N>>,
     room: CacheMargin,
 }
@@ -77,8 +77,8 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
-    /// Restores contacts from their serialized form. `shapes` are in the order of the stored
-    /// contacts.
+    /// Restores contacts from their serialized form. `shapes` are in the order in which the
+    /// contacts were stored.
     pub(crate) fn restored(
         record: &CompositeRecord<N>,
         shapes: [Geometry<'_, N, D>; 2],

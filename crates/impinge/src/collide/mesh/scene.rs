@@ -31,29 +31,30 @@ struct SharedPlacement<N: Real, const D: usize> {
     /// The pose of the part in the frame of its shape.
     pose: Pose<N, D>,
     is_segment: bool,
-    /// Anchor of both, in the frame of the part.
+    /// Anchor of the solid and the part, in the frame of the part.
     local: Vector<N, D>,
     /// Anchor in the frame of the first shape, and in the frame of the second.
     origins: [Point<N, D>; 2],
     relative: RelativePose<N, D>,
 }
 
-/// Relative pose of two bodies, in the order of their kinds.
+/// Relative pose of the two bodies (the placed parts) of a pair, in the order of their kinds.
 #[derive(Clone, Copy)]
 struct RelativePose<N: Real, const D: usize> {
     /// Pose of the second body in the frame of the first.
     pose12: Pose<N, D>,
     /// Whether the first body is the part of the second shape.
     is_swapped: bool,
-    /// Pose of the first body in the frame of the first shape, translated to the anchor.
+    /// Pose of the first body in the frame of the first shape, with the anchor as the origin.
     frame: Pose<N, D>,
     /// Rotation from the frame of the second shape to the frame of the first.
     turn: Pose<N, D>,
 }
 
-/// A part of one of the shapes; a convex shape counts as its only part.
+/// A part of one of the shapes, placed relative to an anchor; a convex shape counts as its only
+/// part.
 struct PlacedPart<'a, N: Real, const D: usize> {
-    /// Pose in the frame of its shape, translated to the anchor.
+    /// Pose of `solid` in the frame of the part's shape, with the anchor as the origin.
     pose: Pose<N, D>,
     /// The solid; corners of triangles and segments are relative to the anchor.
     solid: WholeOrPart<'a, N, D>,
@@ -67,8 +68,9 @@ enum WholeOrPart<'a, N: Real, const D: usize> {
 
 /// A part of the first shape and a part of the second, in the order of their kinds.
 ///
-/// Both are translated to an anchor close to them, as in [`Between::parts`]. Their distance is
-/// therefore equal, bit for bit, to that of the pair there; only the order may differ.
+/// Both parts are translated to an anchor close to them, as in [`Between::parts`]. The distance of
+/// the two parts is therefore equal, bit for bit, to the distance of the pair that
+/// [`Between::parts`] makes; only the order of the parts may differ.
 pub(super) struct PlacedPair<'a, N: Real, const D: usize> {
     /// The two parts, in the order of their kinds.
     bodies: [PlacedPart<'a, N, D>; 2],
@@ -79,8 +81,8 @@ pub(super) struct PlacedPair<'a, N: Real, const D: usize> {
     is_shared: bool,
 }
 
-/// Translates a part to another origin. Corners are moved instead of the pose, so that adjacent
-/// parts still share their corners bit for bit.
+/// Translates a part so that `origin` becomes the origin. Of triangles and segments, the corners
+/// are moved instead of the pose, so that adjacent parts still share their corners bit for bit.
 fn moved<'a, N: Real, const D: usize>(
     part: &Part<'a, N, D>,
     origin: &Point<N, D>,
@@ -155,8 +157,8 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
     }
 
     /// Returns whether a point, in the frame of the first shape, lies in that shape deeper than
-    /// `depth`. Then no translation shorter than `depth` moves the point out of the shape. `false`
-    /// for composites and half-spaces.
+    /// `depth`. Then a translation of length up to `depth` does not move the point out of the
+    /// shape. `false` for composites and half-spaces.
     pub(super) fn is_within(&self, point: &Point<N, D>, depth: N) -> bool {
         match self.between.pair.first {
             Kind::Composite(_) | Kind::Plane(_) => false,
@@ -286,7 +288,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         })
     }
 
-    /// Returns the placement of a part; all parts with the same pose and kind have it.
+    /// Returns the placement of a part; it holds for all parts with the same pose and kind.
     fn placement_of(&self, part: &Part<'a, N, D>) -> SharedPlacement<N, D> {
         let origins = [Point::origin(), Point::from(self.between.pose21.translation)];
         let rotation = part.pose.rotation;
@@ -304,7 +306,8 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> SharedPlacement<N, D> {
-    /// Returns a part translated to the anchor; `None` if the part has another placement.
+    /// Returns a part with the anchor as its origin; `None` if the part does not have this
+    /// placement.
     fn recentred<'a>(&self, part: &Part<'a, N, D>) -> Option<PartSolid<'a, N, D>> {
         let is_segment = matches!(part.solid, PartSolid::Segment(_));
         let is_alike = self.pose.is_same(&part.pose) && self.is_segment == is_segment;
@@ -313,13 +316,13 @@ impl<N: Space<D>, const D: usize> SharedPlacement<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> RelativePose<N, D> {
-    /// Computes the relative pose from the poses of a part of the first shape and one of the
-    /// second, relative to the anchor.
+    /// Computes the relative pose from the poses of a part of the first shape and a part of the
+    /// second shape, each with the anchor as the origin.
     fn new([pose1, pose2]: [&Pose<N, D>; 2], turn: Pose<N, D>, is_swapped: bool) -> Self {
         let (frame1, frame2) = (*pose1, turn.compose(pose2));
         let pose12 = Pose::relative(&frame1, &frame2);
-        // Inverted as for every pair in the opposite order of kinds, so that the bits agree with
-        // the separation.
+        // If the order of kinds is opposite to the order of shapes, the pose is inverted, as for a
+        // whole pair of shapes, so that the result agrees bit for bit with the separation.
         let (frame, pose12) =
             if is_swapped { (frame2, pose12.inverse()) } else { (frame1, pose12) };
         Self { pose12, is_swapped, frame, turn }
@@ -344,8 +347,8 @@ impl<'a, N: Space<D>, const D: usize> PlacedPair<'a, N, D> {
         Self { bodies, relative, origins, is_shared: false }
     }
 
-    /// Replaces the part of the second shape. Returns `false`, and changes nothing, if the new part
-    /// does not have the shared placement.
+    /// Replaces the part of the second shape by `part`. Returns `false`, and changes nothing, if
+    /// `part` does not have the shared placement.
     fn exchange(&mut self, shared: &SharedPlacement<N, D>, part: &Part<'a, N, D>) -> bool {
         let Some(solid) = shared.recentred(part) else { return false };
         let at = usize::from(!self.relative.is_swapped);
@@ -376,9 +379,9 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         Some([[center1 + origin1, in1 + origin2], [in2 + origin1, center2 + origin2]])
     }
 
-    /// Returns the centre of a convex first shape, or `from` instead if it is `Some`, and the
-    /// centre of the part of the second shape, both in the frame of the second. `None` if one of
-    /// them has no centre.
+    /// Returns the centre of a convex first shape, or `from` if that is `Some`, and the centre of
+    /// the part of the second shape, both in the frame of the second shape. `None` if a centre is
+    /// needed but does not exist.
     pub(super) fn centers_in_second(&self, from: &Option<Point<N, D>>) -> Option<[Point<N, D>; 2]> {
         let [first, second] = if self.relative.is_swapped { [1, 0] } else { [0, 1] };
         let origin = self.origins[1].coords;
@@ -390,7 +393,7 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         Some([other, own])
     }
 
-    /// Returns a bound of the rounding errors of lengths in the pair.
+    /// Returns a bound of the rounding errors of lengths computed for the two bodies.
     pub(super) fn tolerance(&self) -> N {
         let size = |body: &PlacedPart<'_, N, D>| {
             let map = Geometry(body.kind()).as_support_map();
@@ -466,8 +469,9 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         <N::Algorithms>::separation(&pair, -tolerance).is_none()
     }
 
-    /// Converts a manifold of the bodies into a manifold of the shapes, in the frame of the first.
-    /// Appends its points to `points`; ids and codes are copied unchanged.
+    /// Converts a manifold of the bodies, in the frame of the first body, into a manifold of the
+    /// shapes, in the frame of the first shape. Appends its points to `points`; ids and codes are
+    /// copied unchanged.
     pub(super) fn piece(
         &self,
         raw: &RawManifold<N, D>,

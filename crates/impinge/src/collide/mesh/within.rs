@@ -9,7 +9,7 @@ use crate::convex::Separation;
 use crate::math::{Real, Space, Vector};
 use crate::tables::ByDimension;
 
-/// A contact of two shapes in the frame of the first.
+/// A contact point of two shapes, in the frame of the first.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FoundContact<N: Real, const D: usize> {
     pub(crate) separation: Separation<N, D>,
@@ -17,11 +17,12 @@ pub(crate) struct FoundContact<N: Real, const D: usize> {
     pub(crate) parts: [u32; 2],
 }
 
-/// Callback that receives each contact.
+/// Callback that receives each contact point.
 type Visit<'a, N, const D: usize> = dyn FnMut(&FoundContact<N, D>) + 'a;
 
-/// Calls `visit` with each contact of the parts within `max_distance`, by the specialised path of
-/// the pair if there is one.
+/// Calls `visit` with each contact point of the parts within `max_distance`. Uses the specialised
+/// path, which also merges points into patches, if [`has_own_path`] returns `true` and the path
+/// supports the pair; else the generic path.
 pub(crate) fn each_contact_within<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     max_distance: N,
@@ -44,7 +45,7 @@ pub(crate) fn each_contact_within<N: Space<D>, const D: usize>(
     each_in_general(between, &request, visit);
 }
 
-/// Calls `visit` with each contact by the generic path.
+/// Calls `visit` with each contact point that the generic path finds.
 fn each_in_general<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     request: &ManifoldRequest<N>,

@@ -2,9 +2,9 @@
 //!
 //! The triangles of a mesh are in the frame of the mesh, whose origin may be far away, and the
 //! tolerances of the pair algorithms grow with all coordinates. So both parts are placed relative
-//! to an anchor close to them: the origin of the convex solid, or the anchor of the first part. All
-//! parts that one solid is compared with get the same anchor, so that adjacent triangles still
-//! share their corners.
+//! to an anchor close to them: the origin of the convex solid or, for two composites, the
+//! [`anchor`] of the first part. All parts that one solid is compared with are placed relative to
+//! one anchor, so that adjacent triangles still share their corners.
 
 use super::bounds::{aabb_of, enclosing};
 use crate::bounding_volume::Aabb;
@@ -23,11 +23,12 @@ pub(crate) struct Between<'a, N: Real, const D: usize> {
     pub(crate) pose21: Pose<N, D>,
 }
 
-/// A part, or a whole convex solid, relative to an anchor in the frame of its shape.
+/// A part of a composite or a whole convex solid, placed relative to an anchor in the frame of its
+/// shape.
 #[derive(Clone, Copy)]
 struct AnchoredPart<'a, N: Real, const D: usize> {
     solid: PartOf<'a, N, D>,
-    /// Pose of the solid in the frame of the shape, translated to the anchor.
+    /// Pose of the solid in the frame of the shape, with the anchor as the origin.
     pose: Pose<N, D>,
 }
 
@@ -54,8 +55,7 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
         Self { pair: ordered.pair(), pose21 }
     }
 
-    /// Makes a pair from the pose of the second shape in the frame of the first alone; `pose21` is
-    /// its inverse.
+    /// Makes a pair from the relative pose `pose12` alone; `pose21` is computed as its inverse.
     pub(crate) fn of_pair(pair: &Pair<'a, N, D>) -> Self {
         Self { pair: *pair, pose21: pair.pose12.inverse() }
     }
@@ -65,15 +65,15 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
         [self.pair.first, self.pair.second].mapped(|kind| Geometry(kind).as_composite())
     }
 
-    /// Returns whether one of the composites has ghosts: parts that continue its surface across
-    /// seams, but that no query finds.
+    /// Returns whether one of the composites has ghosts: parts that continue its surface into a
+    /// neighbouring shape, but that no query finds.
     #[inline]
     pub(crate) fn has_ghosts(&self) -> bool {
         self.composites().iter().flatten().any(|composite| composite.has_ghosts())
     }
 
-    /// Returns whether one of the composites has closed surfaces that bound bodies, in which the
-    /// other shape may lie.
+    /// Returns whether one of the composites has bodies: solids bounded by closed surfaces, in
+    /// which the other shape may lie.
     #[inline]
     pub(crate) fn has_bodies(&self) -> bool {
         self.composites().iter().flatten().any(|composite| composite.has_bodies())
@@ -83,7 +83,8 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
         matches!(self.pair.first, Kind::Plane(_))
     }
 
-    /// Returns the pair of two parts, by their indices; the index of a convex solid is 0.
+    /// Returns the pair of the part `part1` of the first shape and `part2` of the second; the index
+    /// of a convex solid is 0.
     pub(crate) fn parts(&self, [part1, part2]: [u32; 2]) -> PartPair<'a, N, D> {
         let [composite1, composite2] = self.composites();
         if composite1.is_none() && composite2.is_none() {
@@ -115,14 +116,15 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Between<'_, N, D> {
-    /// Returns a bounding box of the first shape (0) or the second (1), in the frame of the other.
+    /// Returns a bounding box of the first shape (0) or the second (1), in the frame of the other
+    /// shape.
     pub(crate) fn whole_in_other(&self, which: usize) -> Aabb<N, D> {
         let (kind, pose) = self.in_frame_of_other(which);
         enclosing(&aabb_of(kind, pose), pose)
     }
 
     /// Transforms a box from the frame of the first shape (0) or the second (1) into the frame of
-    /// the other; the result encloses it.
+    /// the other shape. The result encloses the transformed box, even after rounding.
     pub(crate) fn box_in_other(&self, which: usize, aabb: &Aabb<N, D>) -> Aabb<N, D> {
         let pose = self.in_frame_of_other(which).1;
         enclosing(&aabb.transformed_by(pose), pose)
@@ -138,7 +140,7 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
     }
 
     /// Returns a part of the first shape (0) or the second (1) and its pose in the frame of the
-    /// other; `None` for a convex solid.
+    /// other shape; `None` for a convex solid.
     pub(crate) fn part_in_other(
         &self,
         which: usize,
@@ -150,8 +152,8 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
         Some((part, pose))
     }
 
-    /// Returns whether the bounding boxes of two composites are farther apart than `limit` in the
-    /// frame of one of them. False if one shape is convex.
+    /// Returns whether, in the frame of one of two composites, its bounding box is farther than
+    /// `limit` from a box around the other composite. False if one shape is convex.
     pub(crate) fn are_boxes_beyond(&self, limit: N) -> bool {
         let [Some(parts1), Some(parts2)] = self.composites() else { return false };
         let is_beyond = |parts: &dyn CompositeShape<N, D>, other: usize| {
@@ -161,7 +163,7 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
         is_beyond(parts1, 1) || is_beyond(parts2, 0)
     }
 
-    /// Returns the first shape (0) or the second (1) and its pose in the frame of the other.
+    /// Returns the first shape (0) or the second (1) and its pose in the frame of the other shape.
     pub(super) fn in_frame_of_other(&self, which: usize) -> (Kind<'_, N, D>, &Pose<N, D>) {
         let Pair { first, second, pose12 } = &self.pair;
         if which == 0 { (*first, &self.pose21) } else { (*second, pose12) }
@@ -208,7 +210,7 @@ impl<'a, N: Real, const D: usize> AnchoredPart<'a, N, D> {
 }
 
 impl<N: Real, const D: usize> PartPair<'_, N, D> {
-    /// Returns the parts as a pair for the pair algorithms.
+    /// Returns both parts as the input of the algorithms for two solids.
     pub(crate) fn pair(&self) -> Pair<'_, N, D> {
         Pair { first: self.part1.kind(), second: self.part2.kind(), pose12: self.pose12 }
     }
@@ -250,7 +252,7 @@ impl<N: Real, const D: usize> PartPair<'_, N, D> {
 }
 
 /// Returns a point close to a part: the first corner of a triangle or segment, else the origin of
-/// the part.
+/// the part. The point is in the frame of the composite.
 pub(crate) fn anchor<N: Real, const D: usize>(part: &Part<'_, N, D>) -> Point<N, D> {
     match &part.solid {
         PartSolid::Triangle(triangle) => part.pose.point(&triangle.corners()[0]),
@@ -259,8 +261,8 @@ pub(crate) fn anchor<N: Real, const D: usize>(part: &Part<'_, N, D>) -> Point<N,
     }
 }
 
-/// Translates a triangle or segment so that `origin` becomes the origin. `None` for shapes with
-/// frames of their own, and if a coordinate overflows.
+/// Translates a triangle or segment so that `origin` becomes the origin of its coordinates. `None`
+/// for parts of other kinds, which are moved by their pose, and if a coordinate overflows.
 pub(crate) fn recentred<'a, N: Real, const D: usize>(
     solid: &PartSolid<'a, N, D>,
     origin: &Vector<N, D>,

@@ -44,8 +44,8 @@ fn of_map<N: Real, const D: usize>(map: &dyn SupportMap<N, D>, pose: &Pose<N, D>
     Aabb::try_new(mins, maxs).unwrap_or_else(|_| Aabb::unbounded())
 }
 
-/// Loosens `aabb`, a box transformed by `pose`, so that it encloses everything that it would
-/// enclose in exact arithmetic. Returns an unbounded box if the loosened box is not valid.
+/// Loosens `aabb`, a box transformed by `pose`, so that it encloses the result of the same
+/// transformation in exact arithmetic. Returns an unbounded box if the loosened box is not valid.
 pub(crate) fn enclosing<N: Real, const D: usize>(
     aabb: &Aabb<N, D>,
     pose: &Pose<N, D>,
@@ -57,8 +57,8 @@ pub(crate) fn enclosing<N: Real, const D: usize>(
 
 /// Returns a box around a point, loosened by rounding error; `None` if the point is not finite.
 ///
-/// `bounds` must enclose all boxes that the result is compared with: its coordinates scale the
-/// rounding error.
+/// `bounds` must enclose all boxes that the result is compared with: the rounding error is
+/// proportional to the coordinates of `bounds` and `point`.
 #[inline(always)]
 pub(crate) fn around_point<N: Real, const D: usize>(
     point: &Point<N, D>,
@@ -88,8 +88,8 @@ fn rounding<N: Real>(scale: N) -> N {
     N::lit(ROUNDING_ERRORS) * N::EPSILON * scale
 }
 
-/// Returns `limit` plus its rounding error, so that comparisons of boxes reject no part within
-/// `limit`, a distance or time of zero or more. Infinite if the square of the result, which
+/// Returns `limit`, a distance or time of zero or more, plus its rounding error, so that
+/// comparisons of boxes reject no part within `limit`. Infinite if the square of the sum, which
 /// searches may compute, is not finite.
 pub(crate) fn loosened<N: Real>(limit: N) -> N {
     let within = limit + rounding(limit);

@@ -1,9 +1,10 @@
-//! Pieces of one shape that lie wholly inside a body of the other.
+//! Pieces of one shape that lie wholly inside a body of the other shape.
 //!
 //! A body is bounded by a closed surface; searches of parts find only this surface. A connected
-//! piece that touches no part of the surface is inside or outside as a whole, so one point decides.
-//! The exit leads from the piece through the nearest point of the boundary. The depth is the extent
-//! of the piece below the plane through that point, perpendicular to the exit direction.
+//! piece that touches no part of the surface is inside or outside as a whole, so one point of the
+//! piece decides. The exit direction points from the piece to the nearest point of the boundary.
+//! The exit plane runs through that point, perpendicular to the exit direction; the depth is the
+//! extent of the piece below this plane.
 //!
 //! ```text
 //!   ═════════●═════════  boundary        ┬
@@ -36,18 +37,18 @@ pub(crate) struct InsidePiece<N: Real, const D: usize> {
     piece: u32,
     /// Index range of the parts of the other shape that bound the body.
     boundary: Range<u32>,
-    /// Nearest pair of a part of the piece and a part of the boundary behind which the body ends;
-    /// `None` before one is found.
+    /// Nearest pair of a part of the piece and a part of the boundary, of the pairs for which
+    /// [`Self::leads_out`] returns `true`; `None` before such a pair is found.
     nearest: Option<PartSeparation<N, D>>,
-    /// Nearest pair behind whose boundary part the body does not end; used only if `nearest` is
-    /// `None`.
+    /// Nearest pair of those for which [`Self::leads_out`] returns `false`, because the body
+    /// continues behind the boundary; used only if `nearest` is `None`.
     blocked: Option<PartSeparation<N, D>>,
 }
 
 /// Distance behind the boundary, relative to the separation, of the point that is tested to decide
 /// whether the body ends there. The rounding error is added to this distance.
 const BEYOND: f64 = 1.0 / 64.0;
-/// Rounding error of lengths, in units of epsilon times the coordinates.
+/// Rounding error of lengths, in units of epsilon times the largest coordinate.
 const ROUNDING: f64 = 64.0;
 
 /// Pieces of both shapes that are inside bodies of the other shape.
@@ -64,10 +65,12 @@ pub(crate) struct Exit<N: Real, const D: usize> {
     pub(crate) parts: [u32; 2],
 }
 
-/// Returns the pieces of both shapes whose test point lies in a body of the other. They are inside
-/// the body or cross its boundary.
+/// Returns the pieces of both shapes whose test point, the centre of one of their parts, lies in a
+/// body of the other shape. Such a piece is inside the body or crosses its boundary. A piece occurs
+/// once for each such body.
 ///
-/// Cost: a winding number for each piece that has parts in the box of the other shape.
+/// Cost: a winding number for each body and each piece of the other shape that has parts in the box
+/// of the body's shape.
 pub(crate) fn held_pieces<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
 ) -> InsidePieces<N, D> {
@@ -96,7 +99,8 @@ pub(crate) fn find_exits<N: Space<D>, const D: usize>(
     }
 }
 
-/// Appends the pieces of shape `inner` whose test point lies in the body.
+/// Appends the pieces of shape `inner` whose test point lies in the body; `points` holds the piece
+/// index and the test point.
 fn add_held<N: Space<D>, const D: usize>(
     body: &EnclosedBody<'_, N, D>,
     inner: usize,
@@ -133,7 +137,8 @@ fn points_of_pieces<N: Space<D>, const D: usize>(
 }
 
 /// Returns the parts of a shape whose boxes overlap the box of the other shape, as sorted pairs
-/// (piece, part). They include all parts of a piece that is inside the other shape.
+/// (piece, part); (0, 0) for a convex solid. The pairs include all parts of each piece that is
+/// inside the other shape.
 fn parts_near_other<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     inner: usize,
@@ -170,13 +175,14 @@ struct NearestBoundary<'p, 'a, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestBoundary<'_, '_, N, D> {
-    /// Returns the largest known distance of a piece from its boundary.
+    /// Returns the largest of the known distances of the pieces from their boundaries; infinite
+    /// while one is unknown.
     fn limit(&self) -> N {
         self.pieces.iter().fold(-N::INFINITY, |most, piece| max(most, piece.distance()))
     }
 
-    /// Returns a negative bound at contact, which ends the search, because a piece that crosses the
-    /// boundary is dropped whatever its depth.
+    /// Returns a negative bound, which ends the search, once every piece touches its boundary: a
+    /// piece that crosses the boundary is dropped, whatever its depth.
     fn bound(&self) -> N {
         let limit = self.limit();
         if limit <= N::ZERO { -N::ONE } else { loosened(limit) }
@@ -202,8 +208,8 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestBoundary<'_, '_, 
 }
 
 impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
-    /// Returns whether one of the parts belongs to the piece and the other to the boundary of the
-    /// body.
+    /// Returns whether, of `parts`, the part of shape `inner` belongs to the piece and the part of
+    /// the other shape to the boundary of the body.
     pub(crate) fn has(&self, between: &Between<'_, N, D>, parts: [u32; 2]) -> bool {
         self.boundary.contains(&parts[1 - self.inner]) && self.is_own(between, parts[self.inner])
     }
@@ -220,14 +226,14 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
         near.iter().filter(|(piece, _)| *piece == self.piece).for_each(|(_, part)| visit(*part));
     }
 
-    /// Returns the distance to the nearest part of the boundary found so far; infinite before the
-    /// first.
+    /// Returns the distance of the piece from the nearest part of the boundary found so far;
+    /// infinite if `nearest` is `None`.
     fn distance(&self) -> N {
         self.nearest.map_or(N::INFINITY, |nearest| nearest.separation.distance)
     }
 
-    /// Returns whether the body ends behind the nearest point of the boundary. It does not end
-    /// there if bodies of one surface overlap.
+    /// Returns whether the body ends behind the point of the boundary in `found`. The body
+    /// continues there if closed surfaces of one composite overlap.
     fn leads_out(&self, between: &Between<'_, N, D>, found: &PartSeparation<N, D>) -> bool {
         let Some(Exit { point, outward, .. }) = self.exit_at(found) else { return true };
         let outer = 1 - self.inner;
@@ -246,13 +252,15 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
         !is_held
     }
 
-    /// Returns the exit from the body. `None` if the piece clearly crosses the boundary; in that
-    /// case the contacts of its parts with the boundary are valid.
+    /// Returns the exit from the body. `None` if no pair with the boundary was found, or if the
+    /// piece clearly crosses the boundary; then the contacts of its parts with the boundary are
+    /// valid.
     pub(crate) fn exit(&self) -> Option<Exit<N, D>> {
         self.exit_at(&self.nearest.or(self.blocked)?)
     }
 
-    /// Returns the exit through the part of the boundary in `found`.
+    /// Returns the exit through the part of the boundary in `found`; `None` if the two parts
+    /// overlap by more than rounding.
     fn exit_at(&self, found: &PartSeparation<N, D>) -> Option<Exit<N, D>> {
         let PartSeparation { separation, parts, .. } = *found;
         let Separation { normal, point1, point2, distance } = separation;
@@ -261,7 +269,8 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
         (distance > -rounding([&point1, &point2])).then_some(Exit { point, outward, parts })
     }
 
-    /// Returns the depth of the piece as a separation; `None` if [`Self::exit`] is `None`.
+    /// Returns the depth of the piece as a negative separation; `None` if [`Self::exit`] returns
+    /// `None` or the depth is not finite.
     fn separation(&self, between: &Between<'_, N, D>) -> Option<PartSeparation<N, D>> {
         let Exit { point, outward, parts } = self.exit()?;
         let pose12 = &between.pair.pose12;
@@ -301,14 +310,14 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
     }
 }
 
-/// Returns the rounding error of lengths between two points.
+/// Returns the bound of the rounding error of lengths that are computed from two points.
 fn rounding<N: Real, const D: usize>(points: [&Point<N, D>; 2]) -> N {
     let size = max(max_component(&points[0].coords), max_component(&points[1].coords));
     N::lit(ROUNDING) * N::EPSILON * size
 }
 
 /// Extends `best`, the result for the surfaces alone, to the bodies of the shapes. Returns the pair
-/// of parts that is [`Wanted`]; `None` if no pair is within `limit`.
+/// of parts that `wanted` selects; `None` if no pair is within `limit`.
 pub(super) fn with_inside<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     limit: N,

@@ -2,11 +2,12 @@
 //! nearest pair.
 //!
 //! Nested composites are flattened: their parts have consecutive indices on one level. The result
-//! for a pair of parts is computed by the convex algorithms. [`between`] makes a pair of two parts,
-//! [`bounds`] makes boxes that include rounding errors, [`solid_bounds`] computes lower bounds of
-//! the distance from a convex solid to a part, [`slab_lanes`] from one part to 8 others, and
-//! [`inside`] finds pieces inside closed surfaces that bound bodies. The nearest pair does not
-//! depend on the order of the search: the lowest indices win a tie.
+//! for a pair of parts is computed by the convex algorithms. [`between`] makes a pair of two parts.
+//! [`bounds`] makes boxes that include rounding errors. [`solid_bounds`] computes lower bounds of
+//! the distance from a convex solid to a part, and [`slab_lanes`] lower bounds of the distances
+//! from one part to 8 other parts. [`inside`] finds connected pieces that lie inside a body, which
+//! a closed surface bounds. The nearest pair does not depend on the order of the search: of equally
+//! near pairs, the one with the lowest indices is returned.
 
 pub(crate) mod between;
 pub(crate) mod bounds;

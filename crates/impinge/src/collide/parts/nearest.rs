@@ -11,14 +11,15 @@ use crate::math::{Real, Space, Vector, max, min};
 /// The pair of parts that a search looks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Wanted {
-    /// The nearest pair, or the deepest if parts overlap; the lowest indices win a tie.
+    /// The nearest pair, or the deepest if parts overlap; in a tie, the pair with the lowest
+    /// indices.
     Deepest,
     /// The nearest pair, or any pair that touches or overlaps, which suffices for the distance.
     Touching,
 }
 
-/// Returns the separation of the pair that is [`Wanted`]; `None` if no pair is within `limit`.
-/// `first` is an optional guess of the pair, whose distance then bounds the search. See
+/// Returns the separation of the pair of parts that `wanted` selects; `None` if no pair is within
+/// `limit`. `first` is an optional guess of this pair; its distance then bounds the search. See
 /// [`visit_near_pairs`] for the cost.
 pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
@@ -50,8 +51,10 @@ struct NearestPart<'a, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
-    /// Searches two composites for parts that touch, by overlaps of boxes alone. Returns `true` if
-    /// the search is complete: a touching pair was found, or `limit` admits only touching pairs.
+    /// Searches two composites for one pair of parts that touch, by [`each_touching`]. Returns
+    /// `true` if no further search is needed: a touching pair was found, or `limit` admits only
+    /// touching pairs. Returns `false` without a search if [`each_touching`] does not support the
+    /// shapes.
     fn finds_touching(&mut self) -> bool {
         let (between, max_distance) = (self.between, min(self.limit, N::ZERO));
         let mut touching = TouchingPart { nearest: self, max_distance };
@@ -59,8 +62,9 @@ impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
         is_searched && (self.limit <= N::ZERO || self.bound() < N::ZERO)
     }
 
-    /// Searches two composites for their nearest parts. Returns `true` if these are apart and
-    /// therefore the wanted pair; overlapping parts need the search by depth.
+    /// Searches two composites for their nearest parts, by [`each_touching`]. Returns `true` if no
+    /// further search is needed: these parts are apart, or none are within the limit. Parts that
+    /// touch or overlap need the search by depth of [`visit_near_pairs`].
     fn finds_apart(&mut self) -> bool {
         let (between, max_distance) = (self.between, self.limit());
         max_distance > N::ZERO
@@ -69,7 +73,7 @@ impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
     }
 }
 
-/// Search for any pair that touches.
+/// Visitor of a search for any pair that touches; `max_distance` stays constant.
 struct TouchingPart<'a, 'q, N: Real, const D: usize> {
     nearest: &'q mut NearestPart<'a, N, D>,
     max_distance: N,
@@ -83,8 +87,8 @@ impl<N: Space<D>, const D: usize> TouchingVisitor<N, D> for TouchingPart<'_, '_,
 }
 
 impl<N: Space<D>, const D: usize> TouchingVisitor<N, D> for NearestPart<'_, N, D> {
-    /// Visits a pair; returns `None` at contact, which ends the search, because overlaps need the
-    /// search by depth.
+    /// Visits a pair. Once a pair touches, returns `None`, which ends the search, because overlaps
+    /// need the search by depth.
     fn visit(&mut self, parts: [u32; 2]) -> Option<N> {
         PairVisitor::visit(self, parts);
         Some(self.limit()).filter(|max_distance| *max_distance > N::ZERO)
@@ -100,7 +104,8 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestPart<'_, N, D> {
         self.best.map_or(self.limit, |best| best.separation.distance)
     }
 
-    /// Returns a negative bound, which ends the search, once a touching pair is known and suffices.
+    /// Returns a negative bound, which ends the search, once a touching pair is known and
+    /// [`Wanted::Touching`] is requested.
     fn bound(&self) -> N {
         let limit = self.limit();
         let is_known = self.best.is_some() && limit <= N::ZERO && self.wanted == Wanted::Touching;

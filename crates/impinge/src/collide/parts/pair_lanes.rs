@@ -33,7 +33,7 @@ const CERTAIN: f64 = 4.0;
 pub(crate) struct PartPairs<N, const D: usize> {
     pub(crate) ones: PartPacket<N, D>,
     pub(crate) others: PartPacket<N, D>,
-    /// Number of pairs.
+    /// Number of pairs; lanes from `count` on are ignored.
     pub(crate) count: usize,
     /// Smallest length that scales the rounding error; a larger coordinate of a corner replaces it.
     pub(crate) scale: N,
@@ -57,7 +57,7 @@ impl<N: Real, const D: usize> PartPairs<N, D> {
     }
 }
 
-/// Tests pairs in 2D; sets no `within` bit.
+/// Tests pairs of triangles or segments in 2D; sets no `within` bit.
 pub(crate) fn part_pairs2<N: Real>(pairs: &PartPairs<N, 2>, limit: N) -> PairMasks {
     masks(
         pairs.count,
@@ -65,7 +65,7 @@ pub(crate) fn part_pairs2<N: Real>(pairs: &PartPairs<N, 2>, limit: N) -> PairMas
     )
 }
 
-/// Tests pairs in 3D.
+/// Tests pairs of triangles in 3D.
 pub(crate) fn part_pairs3<N: Real>(pairs: &PartPairs<N, 3>, limit: N) -> PairMasks {
     masks(
         pairs.count,
@@ -219,22 +219,23 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         self.within = within;
     }
 
-    /// Returns the lanes where the vector `along`, perpendicular to two sides, is exact; `squares`
-    /// is the product of the squared lengths of the sides.
+    /// Returns the lanes where the direction of `along`, the cross product of two vectors, is
+    /// exact: the sine of the angle between these vectors is above [`MIN_SINE`]. `squares` is the
+    /// product of the squared lengths of the two vectors.
     #[inline(always)]
     fn is_wide(&self, along: &[V; D], squares: V) -> V::Mask {
         let least = N::lit(MIN_SINE * MIN_SINE);
         dot(along, along).simd_gt(squares * V::all(self.simd, least))
     }
 
-    /// Marks the pairs whose direction is not exact as unsure.
+    /// Marks the pairs as unsure for which [`Self::is_wide`] does not select the lane.
     #[inline(always)]
     fn require_width(&mut self, along: &[V; D], squares: V) {
         self.unsure |= !self.is_wide(along, squares);
     }
 
-    /// Returns the results. `within` requires exact directions and that all axes were tested
-    /// (`has_all`).
+    /// Returns the results. A `within` bit is set only if all directions were exact and all axes
+    /// were tested (`has_all`).
     #[inline(always)]
     fn masks(&self, has_all: bool) -> PairMasks {
         let beyond = bits(self.beyond & self.is_precise);
@@ -243,7 +244,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
     }
 }
 
-/// Returns the vectors from each corner to the next.
+/// Returns the vectors from each corner to the next, and from the last to the first.
 #[inline(always)]
 fn sides<S: Simd, V: Wide<S>, const D: usize>([a, b, c]: &[[V; D]; 3]) -> [[V; D]; 3] {
     [minus(b, a), minus(c, b), minus(a, c)]

@@ -1,4 +1,4 @@
-//! Distance of a composite to another shape, which is the distance of the nearest pair of parts.
+//! Signed distance of a composite and another shape, which is the distance of their nearest parts.
 
 use crate::math::order::sort_few;
 use crate::tables::ByDimension;
@@ -39,7 +39,8 @@ pub(crate) fn separation<N: Space<D>, const D: usize>(
     found.map(|found| found.separation)
 }
 
-/// Receives the pairs of parts found by a search, near pairs first, and limits the search.
+/// Receives the pairs of parts that [`visit_near_pairs`] finds, near pairs first, and limits that
+/// search.
 pub(crate) trait PairVisitor<N: Real, const D: usize> {
     /// Returns the largest distance at which a pair of parts is still needed; it may shrink but
     /// must not grow.
@@ -52,13 +53,15 @@ pub(crate) trait PairVisitor<N: Real, const D: usize> {
     }
 
     /// Returns the sweep of the first shape (0) or the second (1) in the frame of the other shape;
-    /// distances then are to the swept parts. `None` if the shape does not move.
+    /// boxes and slabs then contain its parts during the whole motion. `None` if the shape does not
+    /// move.
     fn sweep(&self, _which: usize) -> Option<PartSweep<N, D>> {
         None
     }
 
-    /// Returns the unit vector from the first shape to the second between the best pair so far, in
-    /// the frame of the first shape. `None` before a pair is found, and if one of the shapes moves.
+    /// Returns the normal of the best pair so far: a unit vector from the first shape to the
+    /// second, in the frame of the first shape. `None` before a pair is found, and if one of the
+    /// shapes moves.
     fn normal(&self) -> Option<Vector<N, D>> {
         None
     }
@@ -72,13 +75,13 @@ pub(crate) trait PairVisitor<N: Real, const D: usize> {
     fn visit(&mut self, parts: [u32; 2]);
 }
 
-/// Visits the pairs of parts of two shapes that are within the limit of a visitor, near pairs
-/// first.
+/// Visits all pairs of parts of two shapes that are within the limit of `visitor`, near pairs
+/// first. Also visits pairs beyond the limit that the bounds do not reject.
 ///
-/// Cost: a convex solid searches the parts near it. Two composites with trees are descended
-/// together where their boxes are near each other. Otherwise each part of the composite with fewer
-/// parts, near parts first, searches the other composite: at most n log m for n parts in the
-/// smaller and m in the larger, as long as parts do not all overlap. A half-space that is not
+/// Cost: for a convex solid, only the parts near it are searched. Two composites with trees are
+/// descended together where their boxes are near each other. Otherwise each part of the composite
+/// with fewer parts, near parts first, searches the other composite: at most n log m for n parts in
+/// the smaller and m in the larger, as long as parts do not all overlap. A half-space that is not
 /// aligned to an axis has no box and is compared with every part.
 pub(crate) fn visit_near_pairs<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
@@ -164,8 +167,8 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         self.visitor.limit()
     }
 
-    /// Returns a lower bound of the overlap of boxes: parts deeper than a negative limit have boxes
-    /// that overlap at least as deeply, up to rounding error.
+    /// Returns the depth by which boxes must overlap to be descended: parts deeper than a negative
+    /// limit have boxes that overlap at least as deeply, up to rounding error.
     fn depth(&self) -> N {
         max(-self.visitor.limit() - self.slack, N::ZERO)
     }
@@ -174,8 +177,9 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         self.toward(0, &self.visitor.normal()?)
     }
 
-    /// Returns `along`, from shape `which` to the other, in that shape's frame, and its opposite in
-    /// the frame of the other shape.
+    /// Returns a direction in the frames of both shapes: for the first shape, toward the second;
+    /// for the second, toward the first. `along` is this vector for shape `which`. `None` if gaps
+    /// along directions cannot be used.
     fn toward(&self, which: usize, along: &Vector<N, D>) -> Option<Toward<N, D>> {
         let pose12 = &self.between.pair.pose12;
         let toward = match which {
@@ -197,7 +201,8 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         range(&corners, along)[1]
     }
 
-    /// Returns the gap along a direction minus the rounding error, so that it is a lower bound.
+    /// Returns the gap along a direction between parts with these extents, minus the rounding
+    /// error, which is a lower bound of their distance.
     fn gap(&self, toward: &Toward<N, D>, [extent1, extent2]: [N; 2]) -> N {
         let offset = toward[0].dot(&self.between.pair.pose12.translation);
         offset - extent1 - extent2 - self.slack
@@ -209,8 +214,9 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         }
     }
 
-    /// Rejects parts by the gap along the best direction, along the line through the centroids and
-    /// along slabs; visits the others in the order of their lower bounds.
+    /// Rejects parts by the gaps along the normal of the best pair, along the line through the
+    /// centroids, and along slabs and separating axes. Visits the remaining parts in the order of
+    /// their lower bounds.
     fn visit(&mut self, which: usize, own: u32, others: &[u32]) {
         let pair = |other: u32| if which == 0 { [own, other] } else { [other, own] };
         let (best, mut near) = (self.best(), PartGaps::new());
@@ -247,12 +253,13 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
     }
 }
 
-/// Parts with a lower bound of their distance, which is negative if they may overlap.
+/// Lower bound of the distance to each of some parts, negative if the part may overlap, and the
+/// index of the part.
 type PartGaps<N> = SmallVec<[(N, u32); 2 * LANES]>;
 
 impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
-    /// Returns a lower bound of the gap of two parts along a direction; minus infinity if a part
-    /// has no corners.
+    /// Returns a lower bound of the gap between two parts along a direction; minus infinity if a
+    /// part has no corners.
     fn gap_along(&self, toward: &Toward<N, D>, parts: [u32; 2]) -> N {
         self.gap(toward, [0, 1].mapped(|which| self.extent(which, parts[which], &toward[which])))
     }
@@ -269,8 +276,8 @@ impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
         toward.map_or(-N::INFINITY, |toward| self.gap_along(&toward, parts))
     }
 
-    /// Returns the slabs around a part of the first shape (0) or the second (1); takes them from
-    /// `self.slabs` if that holds the same part.
+    /// Returns the slabs around a part of the first shape (0) or the second (1); takes the slabs
+    /// from `self.slabs` if that field holds this part.
     fn slabs_of(&mut self, which: usize, part: u32) -> PartSlabs<N, D> {
         // Sweeps only get shorter, so old slabs are still wide enough.
         let is_own = |kept: &PartSlabs<N, D>| kept.which == which && kept.part == part;
@@ -282,8 +289,8 @@ impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
         PartSlabs { which, part, slabs }
     }
 
-    /// Raises the lower bounds of parts to their gaps along the slabs and along the axes of the
-    /// parts.
+    /// Raises the lower bounds in `near` to the gaps that [`part_gaps3`](super::part_gaps3), or its
+    /// counterpart in 2D, computes along the slabs and the separating axes.
     fn add_gaps(
         &self,
         around: &PartSlabs<N, D>,
@@ -306,14 +313,15 @@ impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
     }
 }
 
-/// Search of [`visit_near_pairs`] for shapes that do not both have trees.
+/// Search of [`visit_near_pairs`] for pairs other than two composites that both have trees.
 struct NearestSearch<'a, 'q, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     visitor: &'q mut dyn PairVisitor<N, D>,
 }
 
 impl<N: Space<D>, const D: usize> NearestSearch<'_, '_, N, D> {
-    /// Visits the near parts of a composite for a convex solid, the first shape or the second.
+    /// Visits the parts of a composite near a convex solid, which is the first shape (0) or the
+    /// second (1).
     fn of_solid(&mut self, which: usize, parts: &dyn CompositeShape<N, D>) {
         let (between, is_at_rest) = (self.between, self.visitor.sweep(which).is_none());
         let tree =
@@ -329,14 +337,14 @@ impl<N: Space<D>, const D: usize> NearestSearch<'_, '_, N, D> {
         }
     }
 
-    /// Visits the near parts of `others` for one part of the first shape (0) or the second (1).
+    /// Visits the parts of `others` near one part of the first shape (0) or the second (1).
     fn of_one(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
         let between = self.between;
         self.outside(which, part, others, |sweep| AxisSlabs::of_part(between, which, part, sweep));
     }
 
-    /// Visits the near parts of `others` for one part, except those that the slabs reject; the
-    /// slabs are computed at the first candidate.
+    /// Visits the parts of `others` near one part, except those that the slabs around this part
+    /// reject. The slabs are computed when the first candidate is found.
     fn outside(
         &mut self,
         which: usize,
@@ -357,7 +365,7 @@ impl<N: Space<D>, const D: usize> NearestSearch<'_, '_, N, D> {
     }
 
     /// Visits the near pairs of two composites: each part of the composite with fewer parts
-    /// searches the other.
+    /// searches the larger composite.
     fn of_many(&mut self, parts1: &dyn CompositeShape<N, D>, parts2: &dyn CompositeShape<N, D>) {
         let (which, fewer, more) = by_number(parts1, parts2);
         let (sweep, bound) = (self.visitor.sweep(1 - which), self.visitor.bound());

@@ -1,10 +1,12 @@
-//! Lower bounds of the distances from one part to 8 others at a time, along the slabs around the
-//! one part and the separating axes of the others.
+//! Lower bounds of the distances from one part to 8 other parts at a time, along the slabs around
+//! the one part and along separating axes of each pair.
 //!
-//! Two triangles in 3D overlap iff none of these axes separates them: the two normals and the nine
-//! cross products of a side of each. If they overlap, the shortest separating translation is along
-//! one of these axes (Gottschalk, Lin and Manocha, "`OBBTree`", 1996). Two triangles in 2D overlap
-//! iff no normal of a side of either separates them.
+//! Two triangles in 3D that are not coplanar overlap iff none of these axes separates them: the two
+//! normals and the nine cross products of a side of each. If they overlap, the shortest separating
+//! translation is along one of these axes (Gottschalk, Lin and Manocha, "`OBBTree`", 1996). For
+//! coplanar triangles, only the in-plane normals of one triangle, which its slabs contain, are
+//! tested, so the bound may be smaller than the distance. Two triangles in 2D overlap iff no normal
+//! of a side of either separates them.
 
 use super::slabs::{AxisSlabs, rounding_unit};
 use crate::collide::packet::{LANES, PartPacket};
@@ -16,8 +18,9 @@ use crate::math::{Real, Vector, Wide};
 type Corners<V, const D: usize> = [[V; D]; 3];
 
 /// Returns lower bounds of the distances of 8 parts in 2D from the solid inside the slabs; negative
-/// for overlaps. If the slabs alone put a whole SIMD run beyond `limit`, the other axes are
-/// skipped, so bounds above `limit` may differ by SIMD level.
+/// for overlaps. If the slabs alone put all parts of a SIMD run (all 8 lanes, or one lane without
+/// SIMD) beyond `limit`, the other axes are skipped for that run. So bounds above `limit` may
+/// depend on the SIMD level.
 pub(crate) fn part_gaps2<N: Real>(
     slabs: &AxisSlabs<N, 2>,
     tiles: &PartPacket<N, 2>,
@@ -33,7 +36,8 @@ pub(crate) fn part_gaps2<N: Real>(
 }
 
 /// Returns lower bounds of the distances of 8 parts in 3D from the solid inside the slabs; negative
-/// for overlaps. Skips axes, and differs by SIMD level above `limit`, as [`part_gaps2`] does.
+/// for overlaps. As in [`part_gaps2`], axes are skipped for a SIMD run that is beyond `limit`, so
+/// bounds above `limit` may depend on the SIMD level.
 pub(crate) fn part_gaps3<N: Real>(
     slabs: &AxisSlabs<N, 3>,
     tiles: &PartPacket<N, 3>,
@@ -116,8 +120,8 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D>
         }
     }
 
-    /// Raises each gap to the gap along `along`, which may have any length, from the part with
-    /// corners `own`.
+    /// Raises each gap to the gap along `along`, which may have any length, between the part with
+    /// the corners `own` and the part of the lane.
     #[inline(always)]
     fn across(&mut self, own: &Corners<V, D>, along: &[V; D]) {
         let squared = dot(along, along);
@@ -129,14 +133,14 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D>
         self.gaps = is_length.select(gap, -V::all(simd, N::INFINITY)).larger(self.gaps);
     }
 
-    /// Returns whether some part may still be within `limit`.
+    /// Returns whether the gaps so far leave some part that may be within `limit`.
     #[inline(always)]
     fn are_within(&self, slabs: &AxisSlabs<N, D>, limit: N) -> bool {
         let beyond = V::all(self.simd, limit) + self.slack(slabs);
         bits(self.gaps.simd_gt(beyond)) != u8::MAX
     }
 
-    /// Returns the rounding error of the gaps.
+    /// Returns the rounding error of each gap.
     #[inline(always)]
     fn slack(&self, slabs: &AxisSlabs<N, D>) -> V {
         let mut size = V::all(self.simd, slabs.size);
@@ -148,7 +152,8 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D>
         size * V::all(self.simd, rounding_unit())
     }
 
-    /// Returns the gaps minus their rounding error.
+    /// Returns the gaps minus their rounding error; minus infinity for lengths that are too small
+    /// to be precise.
     #[inline(always)]
     fn certain(&self, slabs: &AxisSlabs<N, D>) -> [N; LANES] {
         let (simd, slack) = (self.simd, self.slack(slabs));
@@ -184,7 +189,7 @@ fn spread_corners<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     [spread(simd, a), spread(simd, b), spread(simd, c)]
 }
 
-/// Returns the vectors from each corner to the next.
+/// Returns the vectors from each corner to the next, and from the last to the first.
 #[inline(always)]
 fn sides<S: Simd, V: Wide<S>, const D: usize>([a, b, c]: &Corners<V, D>) -> Corners<V, D> {
     [minus(b, a), minus(c, b), minus(a, c)]

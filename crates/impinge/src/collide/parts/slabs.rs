@@ -1,5 +1,5 @@
-//! Slabs around one part. They reject parts of the other shape that lie outside one slab by more
-//! than a limit.
+//! Slabs around one part of a shape. A part of the other shape is rejected if it lies outside one
+//! of the slabs by more than a limit.
 //!
 //! ```text
 //!                   r ── s
@@ -26,12 +26,13 @@ const ROUNDING: f64 = 128.0;
 pub(crate) struct AxisSlabs<N: Real, const D: usize> {
     /// Point from which all heights of the slabs are measured.
     pub(super) origin: Vector<N, D>,
-    /// The solid's contribution to the length that scales rounding errors.
+    /// Largest coordinate of the solid and its motion; rounding errors are proportional to it or to
+    /// a larger coordinate of the other part.
     pub(super) size: N,
     /// For a triangle, one slab along the in-plane normal of each side and, in 3D, one along the
-    /// normal of the plane. Empty for a part without corners.
+    /// normal of the plane. A half-space has a single slab, a part without corners none.
     pub(super) slabs: SmallVec<[Slab<N, D>; 5]>,
-    /// Corners of the part relative to `origin`; `None` if it moves.
+    /// Corners of the part relative to `origin`; `None` if the part moves or has no corners.
     pub(super) corners: Option<[Vector<N, D>; 3]>,
 }
 
@@ -43,7 +44,7 @@ pub(super) struct Slab<N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
-    /// Returns the slab of a half-space, which is the first shape; the slab is unbounded below.
+    /// Returns the slab around a half-space, which is the first shape; the slab is unbounded below.
     pub(crate) fn of_half_space(
         between: &Between<'_, N, D>,
         plane: &Plane<N, D>,
@@ -57,8 +58,8 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
         Self { origin, size: highest, slabs: smallvec![slab], corners: None }
     }
 
-    /// Returns the slabs around a part of the first shape (0) or the second (1). There are no slabs
-    /// for a part without corners.
+    /// Returns the slabs around a part of the first shape (0) or the second (1), in the frame of
+    /// the other shape. There are no slabs for a part without corners.
     pub(crate) fn of_part(
         between: &Between<'_, N, D>,
         which: usize,
@@ -82,8 +83,8 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
         slabs
     }
 
-    /// Adds slabs around the corners, relative to the first of them, and around the positions
-    /// `ends` of the corners after the motion, all widened by `spread`.
+    /// Adds slabs that contain both `corners` and their positions `ends` after the motion, widened
+    /// by `spread` on both sides. Both are relative to the first corner before the motion.
     fn surround(&mut self, corners: &[Vector<N, D>; 3], ends: &[Vector<N, D>; 3], spread: N) {
         for along in across(corners) {
             let (start, end) = (range(corners, &along), range(ends, &along));
@@ -128,7 +129,7 @@ pub(crate) fn across<N: Real, const D: usize>(
 }
 
 /// Returns the corners of a part in the frame of its composite; `None` for a part without corners.
-/// The corners of a mesh are read directly.
+/// For a mesh, the corners are read without making a [`Part`].
 pub(crate) fn corners_of<N: Real, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     part: u32,
@@ -168,8 +169,9 @@ fn without<N: Real, const D: usize>(v: &Vector<N, D>, other: &Vector<N, D>) -> V
     unit(other).map_or(*v, |(along, _)| v - along * v.dot(&along))
 }
 
-/// Removes the components along `one` and `other` from each coordinate axis, and returns the
-/// longest remainder; zero if the two vectors span all directions.
+/// Removes the components in the span of `one` and `other` from each coordinate axis, and returns
+/// the longest remainder. Zero if the two vectors span all directions, so that all remainders are
+/// shorter than 1/4.
 fn normal_to<N: Real, const D: usize>(one: &Vector<N, D>, other: &Vector<N, D>) -> Vector<N, D> {
     let along = |v: &Vector<N, D>| unit(v).map_or_else(Vector::<N, D>::zeros, |(along, _)| along);
     let spans = [along(one), along(&without(other, one))];

@@ -1,9 +1,9 @@
 //! Lower bounds of the signed distance from a convex solid to boxes and parts of a composite.
 //!
-//! Along any unit vector, two convex sets have a gap, negative if their projections overlap. The
-//! largest gap is their signed distance, so every direction gives a lower bound. The solid's normal
-//! at its nearest point to some point of the other set gives a bound close to the distance if the
-//! other set is small.
+//! Along any unit vector, two convex sets have a gap, which is negative if their projections
+//! overlap. The largest of these gaps is the signed distance of the sets, so every direction gives
+//! a lower bound. The solid's normal at its nearest point to some point of the other set gives a
+//! bound close to the distance if the other set is small.
 //!
 //! ```text
 //!     solid                       box or part
@@ -36,8 +36,8 @@ pub(crate) struct SolidBounds<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
-    /// Creates bounds for the first shape (0) or the second (1); `None` for composites and
-    /// half-spaces.
+    /// Creates the bounds of the first shape (0) or the second (1), in the frame of the other
+    /// shape; `None` for composites and half-spaces.
     pub(crate) fn of(between: &'a Between<'_, N, D>, which: usize) -> Option<Self> {
         let (solid, pose) = between.in_frame_of_other(which);
         let map = Geometry(solid).as_support_map()?;
@@ -85,7 +85,8 @@ impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
     }
 
     /// Returns the outward unit normal at the solid's nearest point to `point`. For solids without
-    /// a closed form, returns the direction from the centre to `point` instead.
+    /// a closed form, returns the direction from the centre to `point` instead, or zero if the two
+    /// coincide.
     fn outward_at(&self, point: &Point<N, D>) -> Vector<N, D> {
         match <N::Algorithms>::project_on_solid(self.solid, &self.pose.inverse_point(point)) {
             Some(projected) => self.pose.vector(&projected.outward),
@@ -109,8 +110,8 @@ impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
     }
 }
 
-/// Returns the error of gaps between solids with coordinates up to `size`, from rounding and from
-/// the tolerance of iterations.
+/// Returns a bound of the error of gaps between solids with coordinates up to `size`: rounding
+/// error, or the tolerance of the searches of curved solids if that is larger.
 pub(super) fn gap_slack<N: Real>(size: N) -> N {
     size * max(N::lit(ROUNDING) * N::EPSILON, N::lit(CURVED))
 }

@@ -1,4 +1,4 @@
-//! Motion of the parts of one shape in the frame of the other.
+//! Motion of the parts of one shape in the frame of the other shape.
 
 use crate::bounding_volume::Aabb;
 use crate::math::{Matrix, Point, Real, Vector, max, min};
@@ -21,7 +21,8 @@ pub(crate) struct PartSweep<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> PartSweep<N, D> {
-    /// Returns a motion with no known direction: each point stays within `spread` of its position.
+    /// Returns a motion with no known direction: each point stays within `spread` of its initial
+    /// position.
     pub(crate) fn anywhere(spread: N) -> Self {
         Self { turn: Matrix::<N, D>::zeros(), shift: Vector::<N, D>::zeros(), spread }
     }
@@ -31,7 +32,8 @@ impl<N: Real, const D: usize> PartSweep<N, D> {
         self.turn * point + self.shift
     }
 
-    /// Returns a box around the swept points of a box.
+    /// Returns a box that contains all points of `aabb` during the motion; unbounded if `aabb` is
+    /// unbounded or a coordinate overflows.
     pub(crate) fn of_box(&self, aabb: &Aabb<N, D>) -> Aabb<N, D> {
         if !aabb.is_bounded() {
             return Aabb::unbounded();

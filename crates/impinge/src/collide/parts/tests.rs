@@ -16,7 +16,8 @@ use crate::shape::{
 
 type Solids<N, const D: usize> = Vec<Box<dyn Shape<N, D>>>;
 
-/// Returns triangles of all sizes, some of them thin, flat along an axis, or equal.
+/// Returns a mesh of 40 triangles of four sizes, some of them thin or perpendicular to a coordinate
+/// axis, and a copy of one of them.
 fn soup<N: Space<D>, const D: usize>(
     random: &mut Random,
     vector: fn(&mut Random) -> Vector<N, D>,
@@ -37,7 +38,7 @@ fn soup<N: Space<D>, const D: usize>(
     TriMesh::new(corners, triangles)
 }
 
-/// Returns the best pair among all pairs of parts.
+/// Returns the nearest pair, or the deepest if parts overlap, by a test of all pairs of parts.
 fn of_all<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     counts: [u32; 2],
@@ -51,8 +52,10 @@ fn of_all<N: Space<D>, const D: usize>(
     found.reduce(|best, next| if next.is_before(&best) { next } else { best }).expect("some parts")
 }
 
-/// Asserts that the search finds the best pair for each [`Wanted`] and limit, and finds none for a
-/// limit slightly below its distance.
+/// Asserts that the search for [`Wanted::Deepest`] returns the best pair, and the search for
+/// [`Wanted::Touching`] a pair with the best distance or, if that is an overlap, any touching pair.
+/// Asserts that there is no result for a limit slightly below the best distance. Returns the best
+/// distance.
 fn check<N: Space<D>, const D: usize>(pair: &Pair<'_, N, D>, counts: [u32; 2]) -> N {
     let between = Between::of_pair(pair);
     let best = of_all(&between, counts);
@@ -107,9 +110,10 @@ fn searches<N: Space<D>, const D: usize>(
     assert!(overlaps.iter().all(|count| count * 6 > overlaps[0] + overlaps[1]), "{overlaps:?}");
 }
 
-/// Asserts that searches of a finely tessellated ellipsoid find the nearest part. The tree has many
-/// levels, and its nodes have thin slabs. The other solid lies inside, crosses the surface, or lies
-/// near or far outside; its axes are parallel to those of the ellipsoid or not.
+/// Asserts that searches of a finely tessellated ellipsoid find the nearest part. The mesh has over
+/// 1000 triangles, so the tree has several levels. The other solid lies inside, crosses the
+/// surface, or lies near or far outside; its axes are parallel to the axes of the ellipsoid or
+/// rotated.
 fn searches_of_surface<N: Space<3>>() {
     let half = Vector::<N, 3>::new(N::ONE, N::lit(0.75), N::HALF);
     let surface = ellipsoid(&Ellipsoid::new(half), 40);
@@ -133,8 +137,9 @@ fn searches_of_surface<N: Space<3>>() {
     assert!(parts > 1000 && overlaps.iter().all(|&count| count > 40), "{parts} {overlaps:?}");
 }
 
-/// Asserts that bounds do not exceed the distances of parts, and are close to them if the parts are
-/// small.
+/// Asserts that lower bounds do not exceed the distances of the parts, and that
+/// [`SolidBounds::of_part`] falls short by at most about 2.5 times the half diagonal of the part's
+/// box.
 fn bounds<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     mesh: &TriMesh<N, D>,

@@ -1,8 +1,8 @@
 //! Finds pairs of parts of two composites that may be within a distance of each other. Both
 //! composites must have trees.
 //!
-//! The trees reject pairs by boxes. The remaining pairs are tested in SIMD lanes ([`pair_lanes`]),
-//! along every axis that may separate two triangles.
+//! The trees reject pairs by boxes. The remaining pairs are tested 8 at a time in SIMD lanes
+//! ([`pair_lanes`]), along every axis that may separate two triangles.
 //!
 //! [`pair_lanes`]: super::pair_lanes
 
@@ -24,8 +24,8 @@ pub(crate) trait TouchingVisitor<N: Real, const D: usize> {
     /// exceed the previous one; `None` ends the search.
     fn visit(&mut self, parts: [u32; 2]) -> Option<N>;
 
-    /// Returns the unit vector from the first composite to the second between the best pair so far,
-    /// in the frame of the first. `None` if there is none.
+    /// Returns the normal of the best pair so far: a unit vector from the first composite to the
+    /// second, in the frame of the first. `None` if no pair is known.
     fn normal(&self) -> Option<Vector<N, D>> {
         None
     }
@@ -36,8 +36,8 @@ pub(crate) trait TouchingVisitor<N: Real, const D: usize> {
 pub(crate) enum Touching {
     /// All pairs within `max_distance`, each once.
     Each,
-    /// Any pair: the first one is likely to end the search, so no pair waits for a full batch of
-    /// lanes.
+    /// Any pair within `max_distance`: the first pair found is likely to end the search, so no pair
+    /// waits for a full batch of lanes.
     Any,
     /// The nearest pair: `max_distance` shrinks to the best distance. A pair that is likely to be
     /// near is visited first, and may be visited twice.
@@ -45,7 +45,8 @@ pub(crate) enum Touching {
 }
 
 /// Visits the pairs of parts that may be within `max_distance`. Returns `false`, without a visit,
-/// if a composite has no tree or if their translation overflows the `f32` of the boxes.
+/// if one shape is not a composite with a tree, or if the translation between them overflows `f32`,
+/// the type of the boxes.
 ///
 /// Cost: O(n + k) for k pairs of parts and n pairs of blocks with boxes within `max_distance`, as
 /// long as the boxes fit tightly.
@@ -87,7 +88,8 @@ struct TouchingSearch<'a, 'q, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     parts: [&'a dyn CompositeShape<N, D>; 2],
     max_distance: Option<N>,
-    /// Rounding error by which boxes may be farther apart than the nearest parts.
+    /// Rounding error by which the computed distance of boxes may exceed the distance of the parts
+    /// in them; zero unless the nearest pair is wanted.
     slack: N,
     wanted: Touching,
     /// Corners of the current part in the frame of the other composite; `None` for a part without
@@ -113,12 +115,14 @@ impl<N: Space<D>, const D: usize> TouchingSearch<'_, '_, N, D> {
         gap2 - gap1 > (max_distance + self.slack) * axis.norm()
     }
 
-    /// Passes a pair to the visitor and stores the distance that it returns as `max_distance`.
+    /// Passes a pair to the visitor and stores the returned distance as `max_distance`. Does
+    /// nothing after the search has ended.
     fn found(&mut self, pair: [u32; 2]) {
         self.max_distance = self.max_distance.and_then(|_| self.visitor.visit(pair));
     }
 
-    /// Tests the waiting pairs in lanes and visits those not certainly beyond `max_distance`.
+    /// Tests the waiting pairs in lanes, and visits the pairs that are not certainly beyond
+    /// `max_distance`.
     fn flush(&mut self) {
         let (mut looked_at, mut within) = (0, None);
         while let Some(max_distance) = self.max_distance.filter(|_| looked_at < self.pairs.count) {

@@ -2,8 +2,9 @@
 //!
 //! If a ball can roll inside a convex solid and touch every point of its surface, the solid
 //! consists of the points within the ball's radius of a smaller convex solid (W. Blaschke, "Kreis
-//! und Kugel", 1916). So the solid is a core with a radius, like a capsule: as long as the cores do
-//! not overlap, its depth is computed like a distance, by a convex search.
+//! und Kugel", 1916). So an ellipsoid is a core with a radius, like a capsule. As long as the cores
+//! of two solids do not overlap, the depth of the solids follows from the distance of the cores,
+//! which a convex search finds.
 
 use crate::math::{Matrix, Point, Real, Vector, max_component, min};
 use crate::shape::{CurvedSupport, Ellipsoid, Geometry, Kind, SupportMap};
@@ -13,7 +14,8 @@ use crate::shape::{CurvedSupport, Ellipsoid, Geometry, Kind, SupportMap};
 const SHARE: f64 = 15.0 / 16.0;
 
 /// A solid as a core with a radius: the points within `radius` of the eroded solid. Support points
-/// may only be requested along unit vectors.
+/// may only be requested along unit vectors, because they move inwards by `radius` times the
+/// direction.
 #[derive(Clone, Copy)]
 pub(super) struct Eroded<'a, N: Real, const D: usize> {
     solid: &'a dyn SupportMap<N, D>,

@@ -1,5 +1,5 @@
 //! Solids whose cores are hulls of points, as one type, so that the general algorithm compiled for
-//! it makes no indirect calls.
+//! this type makes no indirect calls.
 
 use crate::math::{Point, Real, Vector};
 use crate::shape::{Capsule, Cuboid, Kind, Polytope, Segment, SupportMap, Triangle};

@@ -1,5 +1,6 @@
-//! Separation of any two convex solids by the general algorithm (`convex`), with a tolerance on the
-//! limit and the rule for shared corners, so that results agree with those of the closed forms.
+//! Separation of any two bounded convex solids by the general algorithm (`convex`), with a
+//! tolerance on the limit and the rule for shared corners, so that results agree with those of the
+//! closed forms.
 
 use super::eroded::Eroded;
 use super::flat_core::FlatCore;
@@ -19,7 +20,7 @@ fn maps<'a, N: Real, const D: usize>(
     }
 }
 
-/// Returns `limit` raised so that rounding rejects nothing within it. The general algorithm may
+/// Returns `limit` raised so that rounding rejects no pair within it. The general algorithm may
 /// stop at a bound that is wrong by rounding; the exact comparison is made with the final distance.
 /// The result is at least zero, because for overlapping solids the bounds may be wrong by more than
 /// the final depth.
@@ -30,12 +31,13 @@ pub(super) fn loosened<N: Real, const D: usize>(
     limit: N,
 ) -> N {
     let sizes = map1.reach() + map1.rounding() + map2.reach() + map2.rounding();
-    // The general algorithm stops at a gap of 2⁻⁴⁰ of the size for curved solids.
+    // For curved solids the general algorithm stops when its bounds differ by 2⁻⁴⁰ of the size of
+    // the pair in `f64`, by 2⁻²⁰ in `f32`.
     let relative = max(N::lit(64.0) * N::EPSILON, N::lit(4.0e-12));
     max(limit, N::ZERO) + relative * (sizes + pose12.translation.norm() + limit.abs())
 }
 
-/// Returns the separation of any two convex solids.
+/// Returns the separation of any two bounded convex solids; `None` above `limit`.
 pub(super) fn separation<N: Simplicial<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -67,7 +69,8 @@ pub(super) fn of_flat_cores<N: Simplicial<D>, const D: usize>(
 }
 
 /// Computes [`of_flat_cores`] with a search that starts along `normal`, a unit vector from the
-/// first solid to the second. The closer it is to the final normal, the fewer steps are needed.
+/// first solid to the second. The closer `normal` is to the normal of the result, the fewer steps
+/// are usually needed.
 pub(super) fn of_flat_cores_near<N: Simplicial<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -76,7 +79,8 @@ pub(super) fn of_flat_cores_near<N: Simplicial<D>, const D: usize>(
     from_start(pair, limit, Some(normal))
 }
 
-/// Computes [`of_flat_cores`] with a search that starts along `start`, if it is `Some`.
+/// Computes [`of_flat_cores`] with a search that starts along the unit vector `start`; `None`
+/// stands for the line of the centres.
 fn from_start<N: Simplicial<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,

@@ -19,8 +19,9 @@ pub(super) fn inner_balls_meet<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -
     (pair.pose12.point(&center2) - center1).norm_squared() < max_distance * max_distance
 }
 
-/// Returns centre and radius of a ball inside a solid; `None` for kinds without one. The ball of a
-/// segment has radius zero.
+/// Returns centre and radius of a ball inside a solid, in the frame of the solid. `None` for the
+/// kinds that are not listed below: balls themselves, triangles, tapered capsules, support maps,
+/// half-spaces and composites. The ball of a segment has radius zero.
 fn of<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> Option<(Point<N, D>, N)> {
     let least = |sizes: &Vector<N, D>| sizes.iter().fold(N::MAX, |least, &size| min(size, least));
     Some(match kind {
@@ -41,8 +42,8 @@ fn of<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> Option<(Point<N, D>, N)>
     })
 }
 
-/// Returns the inscribed ball, which touches base and side: its section is the incircle of the
-/// axial section.
+/// Returns centre and radius of a cone's inscribed ball, which touches base and side: the axial
+/// section of the ball is the incircle of the axial section of the cone.
 fn of_cone<N: Real, const D: usize>(cone: &Cone<N>) -> (Point<N, D>, N) {
     let (height, radius) = (cone.half_height() * N::TWO, cone.radius());
     let side = (height * height + radius * radius).sqrt();

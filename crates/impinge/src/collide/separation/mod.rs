@@ -8,25 +8,33 @@
 //! ```
 //!
 //! Distance, closest points, proximity, contact and time of impact are all derived from the
-//! [`Separation`] that the functions here compute, so they cannot contradict each other. `table2`
-//! and `table3` name the function of each pair of kinds. A pair with a closed form has a file of
-//! its own, named in the order of [`ShapeKind`]:
+//! [`Separation`] that the functions here compute, so they agree. `table2` and `table3` name the
+//! function of each pair of kinds. Most closed forms have a file of their own, named after both
+//! kinds in the order of [`ShapeKind`]. The modules:
 //!
 //! - [`balls`], [`segments`], [`boxes`] and [`polygons`] hold closed forms and separating axis
 //!   tests;
 //! - [`apart`] searches for the nearest points of triangles, boxes and hulls in 3D that are well
 //!   apart, for one pair or for 8;
 //! - [`hulls`] is the separating axis test of triangles, boxes and hulls in 3D; `triangles` and
-//!   `chain` test 8 parts of a surface at a time;
-//! - `revolved` computes cylinders and cones from the signed distance of a point, `ridges` their
-//!   deep overlaps, and `revolved::coaxial` pairs with a common axis;
-//! - `shared_corner` sets the distance to zero for solids that share a corner up to rounding;
-//! - `plane_any` handles half-spaces, `rounded` inflated solids, and `general` all other pairs by
-//!   GJK and EPA; it runs on `eroded` ellipsoids.
+//!   `chain` test 8 triangles of a surface or 8 segments of a chain at a time;
+//! - `revolved` handles cylinders and cones by the signed distance of a point from them, `ridges`
+//!   their deep overlaps, and `revolved::coaxial` pairs with a common axis;
+//! - `shared_corner` sets the distance to zero if corners coincide exactly but rounding leaves a
+//!   small distance;
+//! - `plane_any` handles half-spaces, and `rounded` handles inflated solids. `general` handles all
+//!   other pairs by GJK and EPA; before that it replaces ellipsoids by the smaller cores of
+//!   `eroded`.
 //!
 //! Each function takes a pair and a `limit` and returns the separation in the frame of the first
 //! solid, or `None` exactly if the signed distance is above `limit` or NaN. `limit` does not change
 //! the value of the result.
+//!
+//! Terms of these files: the *core* of a solid is the solid without its radius. Lengths in *units
+//! of the pair* are divided by a power of two near the sum of both bounding radii and the distance
+//! of the origins ([`Units`](crate::convex::Units)), so that scaling is exact. A result is *proved*
+//! if its points are as far apart as supporting planes with its normal; for overlaps, `revolved`
+//! also requires balls inside the solids that exclude a smaller depth.
 
 pub(crate) mod apart;
 pub(crate) mod balls;
@@ -101,7 +109,8 @@ fn look_up<N: Real, const D: usize>(table: &Table<N, D>, pair: &Pair<'_, N, D>) 
     table[Geometry(pair.first).kind() as usize][Geometry(pair.second).kind() as usize]
 }
 
-/// Entry below the diagonal of a table: computes the pair in canonical order and flips the result.
+/// Entry below the diagonal of a table: exchanges the solids, computes their separation, and flips
+/// it back to the frame of `pair.first`.
 fn flipped<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,

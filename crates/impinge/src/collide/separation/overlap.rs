@@ -1,6 +1,6 @@
 //! Distance of two solids if the depth of an overlap is not needed.
 //!
-//! If the solids are apart, it is bit-identical to the distance of their separation.
+//! If the solids are apart, this distance is bit-identical to the distance of their separation.
 
 use super::balls::{
     ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_polygon, ball_polytope, ball_segment,
@@ -16,8 +16,9 @@ use crate::convex::{self, Simplicial};
 use crate::math::{Point, Real, Space};
 use crate::shape::{Geometry, Kind};
 
-/// Faceted solids whose depth along the line of their centres is at least this, in units of the
-/// pair, are first searched for a proof of overlap. Below it, separating axes are as fast.
+/// Smallest depth along the line of the centres, in units of the pair, at which pairs of
+/// [`DistanceMethod::Axes`] are searched for a proof of overlap. For smaller depths, separating
+/// axes are as fast.
 const DEEP: f64 = 1.0 / 8.0;
 
 /// Method by which the distance of a pair is computed.
@@ -27,7 +28,7 @@ enum DistanceMethod {
     Formula,
     /// By formulas for features; proving an overlap first is faster than computing the depth.
     Features,
-    /// By separating axes; proving an overlap first is faster only if it is deep.
+    /// By separating axes; proving an overlap first is faster only for depths of at least [`DEEP`].
     Axes,
     /// By the formulas of `revolved`, with a fallback that computes no depths.
     Revolved,
@@ -40,7 +41,7 @@ enum DistanceMethod {
 /// If the solids overlap and `limit` is zero or more, the result may be any number that is not
 /// positive, so that clear overlaps need not be measured. Otherwise it is bit-identical to the
 /// distance of the separation. Pairs that are not in the order of kinds are passed to the
-/// separation, which orders them.
+/// separation, which orders them, unless balls inside the solids prove an overlap.
 pub(crate) fn distance_3d<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     if let Some(known) = known_3d(pair) {
         return (known <= limit).then_some(known);
@@ -70,8 +71,8 @@ pub(crate) fn distance_2d<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: N) -> 
     distance(pair, limit, method_2d(pair))
 }
 
-/// Returns the signed distance if a part of the formula for the separation computes it; else
-/// `None`.
+/// Returns the signed distance, without a limit, if a part of the formula for the separation
+/// computes it; else `None`.
 fn known_3d<N: Real>(pair: &Pair<'_, N, 3>) -> Option<N> {
     use Kind::{Capsule, Segment};
     match (pair.first, pair.second) {
@@ -82,8 +83,9 @@ fn known_3d<N: Real>(pair: &Pair<'_, N, 3>) -> Option<N> {
     }
 }
 
-/// Computes [`known_3d`] for the kinds that do not depend on the dimension. For balls,
-/// `beside_ball` projects the centre.
+/// Returns the signed distance of two balls, of a solid before a half-space, or of a ball before
+/// another solid, whose distance `beside_ball` returns. `None` for other pairs and where these
+/// formulas return `None`.
 #[inline(always)]
 fn known<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -103,8 +105,9 @@ fn known<N: Real, const D: usize>(
 }
 
 /// Returns the signed distance of a ball from a solid in 3D; `center` is in the frame of the solid.
-/// It projects the centre without computing a direction, and subtracts radii in the order of the
-/// separation, for identical bits. `None` without a closed form.
+/// Subtracts the radii in the same order as the separation, for identical bits. For triangles and
+/// segments it computes no direction, unlike the separation. `None` for kinds without a closed
+/// form.
 fn beside_ball_3d<N: Real>(radius: N, kind: Kind<'_, N, 3>, center: &Point<N, 3>) -> Option<N> {
     let apart = match kind {
         Kind::Triangle(triangle) => ball_triangle::distance_from(triangle.corners(), center),
@@ -120,7 +123,8 @@ fn beside_ball_3d<N: Real>(radius: N, kind: Kind<'_, N, 3>, center: &Point<N, 3>
     Some(apart - radius)
 }
 
-/// Returns the signed distance of a ball from a solid in 2D, as [`beside_ball_3d`] does in 3D.
+/// Returns the signed distance of a ball from a solid in 2D, as [`beside_ball_3d`] does in 3D. Also
+/// `None` for triangles without area.
 fn beside_ball_2d<N: Real>(radius: N, kind: Kind<'_, N, 2>, center: &Point<N, 2>) -> Option<N> {
     let apart = match kind {
         Kind::Triangle(triangle) => ball_triangle2::project(triangle.corners(), center)?.distance,
@@ -153,8 +157,9 @@ fn beside_ball<N: Real, const D: usize>(
     Some(apart - radius)
 }
 
-/// Computes the distance by a method. For [`is_distance_only`] pairs, an overlap is proved first if
-/// that is faster.
+/// Returns the signed distance, computed by `method`; `None` above `limit`. If [`is_distance_only`]
+/// returns `true`, all methods but [`DistanceMethod::Formula`] first try to prove an overlap; the
+/// result is then zero.
 fn distance<N: Simplicial<D> + Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -171,7 +176,8 @@ fn distance<N: Simplicial<D> + Space<D>, const D: usize>(
     super::separation(pair, limit).map(|found| found.distance)
 }
 
-/// Returns whether depths are not needed and the solids are in the order of kinds.
+/// Returns whether depths are not needed, because `limit` is zero or more, and the solids are in
+/// the order of kinds.
 fn is_distance_only<N: Real, const D: usize>(pair: &Pair<'_, N, D>, limit: N) -> bool {
     limit >= N::ZERO && Geometry(pair.first).kind() <= Geometry(pair.second).kind()
 }
@@ -187,8 +193,9 @@ fn are_bare<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
     !is_rounded(pair.first) && !is_rounded(pair.second)
 }
 
-/// Returns whether two solids overlap by more than rounding, for certain. `false` proves nothing.
-/// The cores of capsules and rounded solids need not overlap.
+/// Returns whether two solids overlap by more than rounding, for certain. `false` proves nothing;
+/// with [`DistanceMethod::Axes`] it is also returned for depths below [`DEEP`]. The radii of
+/// capsules and rounded solids count: their cores need not overlap.
 ///
 /// Cost: a few support points of each solid.
 fn certainly_overlap<N: Simplicial<D>, const D: usize>(
@@ -211,7 +218,8 @@ fn inner<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> Kind<'_, N, D> {
     if let Kind::Rounded(solid) = kind { inner(solid.inner().0) } else { kind }
 }
 
-/// Returns the method for two kinds in canonical order in 3D; the kinds are grouped as in `table3`.
+/// Returns the method for two kinds in canonical order in 3D. A rounded solid counts as its
+/// innermost solid.
 fn method_3d<N: Real>(pair: &Pair<'_, N, 3>) -> DistanceMethod {
     use Kind::{
         Ball, Capsule, Composite, Cone, Cuboid, Cylinder, Plane, Polytope, Segment, Triangle,
@@ -238,7 +246,8 @@ fn method_3d<N: Real>(pair: &Pair<'_, N, 3>) -> DistanceMethod {
     }
 }
 
-/// Returns the method for two kinds in canonical order in 2D.
+/// Returns the method for two kinds in canonical order in 2D. A rounded solid counts as its
+/// innermost solid.
 fn method_2d<N: Real>(pair: &Pair<'_, N, 2>) -> DistanceMethod {
     use Kind::{Ball, Composite, Plane};
     let (first, second) = (inner(pair.first), inner(pair.second));
@@ -265,7 +274,10 @@ mod tests {
         Rounded, Segment, Shape, Triangle,
     };
 
-    /// Returns the number of poses proved to overlap, and the number of all poses that overlap.
+    /// Returns the number of cases in which [`certainly_overlap`] proves an overlap, and the number
+    /// of all cases with an overlap. A case is a pair of solids at a pose; pairs with
+    /// [`DistanceMethod::Formula`] are not counted. Asserts that `distance` agrees with the
+    /// separation in each case.
     fn found<N: Simplicial<D> + Space<D>, const D: usize>(
         solids: &[Box<dyn Shape<N, D>>],
         poses: &[Pose<N, D>],
@@ -293,7 +305,7 @@ mod tests {
         (found, overlapping)
     }
 
-    /// Returns translations along a direction, in steps of a tenth of `size`.
+    /// Returns 24 multiples of `direction`, from zero in steps of a tenth of `size`.
     fn steps<N: Real, const D: usize>(direction: Vector<N, D>, size: f64) -> Vec<Vector<N, D>> {
         (0..24).map(|n| direction * N::lit(size * 0.1 * f64::from(n))).collect()
     }
@@ -361,7 +373,7 @@ mod tests {
 
     type Solids<N, const D: usize> = [Box<dyn Shape<N, D>>];
 
-    /// Asserts that distances by a part of the formula are bit-identical to those of the
+    /// Asserts that the distances that `known` returns are bit-identical to those of the
     /// separation.
     fn are_parts<N: Space<D>, const D: usize>(
         firsts: &Solids<N, D>,

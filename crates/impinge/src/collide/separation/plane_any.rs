@@ -27,8 +27,8 @@ pub(super) fn separation<N: Real, const D: usize>(
 }
 
 /// Returns the distance of [`separation`] for a convex solid, which may be rounded, and a
-/// half-space whose pose in the solid's frame is `pose12`; `None` if the solid is also a
-/// half-space.
+/// half-space whose pose in the solid's frame is `pose12`; `None` if the solid is itself a
+/// half-space or a composite.
 #[inline]
 pub(super) fn distance<N: Real, const D: usize>(
     kind: Kind<'_, N, D>,
@@ -65,8 +65,8 @@ impl<N: Real, const D: usize> Deepest<N, D> {
 ///
 /// If they face each other, exactly or up to the rounding of rotations (an angle below 16 epsilon),
 /// they have a gap or a finite depth. All other pairs overlap without bound: then the distance is
-/// minus infinity, the normal is the mean of the first normal and the negated second, and the
-/// points are the origins.
+/// minus infinity, the normal is the unit vector along `normal1 - normal2` (the first axis if both
+/// are equal), and the points are the origins of the half-spaces.
 pub(super) fn plane_plane<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,

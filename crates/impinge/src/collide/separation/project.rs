@@ -1,4 +1,5 @@
-//! Projection of a point onto a solid of any kind. The separation of a ball follows from it.
+//! Projection of a point onto a solid of any kind with a closed form. The separation of a ball
+//! follows from the projection of its centre.
 
 use super::balls::{
     ball_cone, ball_cuboid, ball_cylinder, ball_ellipsoid, ball_polygon, ball_polytope,
@@ -71,7 +72,8 @@ fn project_on_common<N: Real, const D: usize>(
     })
 }
 
-/// Moves a projection onto `core` to the surface of the solid inflated by `radius`.
+/// Moves `core`, the projection of a point onto a solid, to the surface of the solid inflated by
+/// `radius`.
 #[inline]
 fn inflated<N: Real, const D: usize>(core: &Projection<N, D>, radius: N) -> Projection<N, D> {
     Projection {

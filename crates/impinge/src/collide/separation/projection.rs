@@ -42,7 +42,8 @@ impl<N: Real, const D: usize> Projection<N, D> {
     }
 }
 
-/// Returns the rounding error of lengths between points at most `reach` from the origin.
+/// Returns the bound that is used for the rounding error of lengths between points at most `reach`
+/// from the origin.
 pub(super) fn rounding_error<N: Real>(reach: N) -> N {
     N::lit(8.0) * N::EPSILON * reach
 }
@@ -61,7 +62,7 @@ pub(super) fn first_axis<N: Real, const D: usize>() -> Vector<N, D> {
 }
 
 /// Returns the unit vector along the part of `v` perpendicular to the unit vector `d`; `None` if
-/// that part is within rounding error.
+/// `v` is zero, or if that part is at most 16 epsilons of the length of `v`.
 ///
 /// It subtracts the component along `d` twice: the first remainder may be small and so inexact
 /// (Kahan: twice is enough).

@@ -20,8 +20,8 @@ pub(super) fn separation<N: Space<D>, const D: usize>(
     (found.distance <= limit).then_some(found)
 }
 
-/// Returns the inner solid of a rounded solid and the radius; for other solids the solid itself and
-/// zero. Removes only one layer.
+/// Returns the inner solid of a rounded solid, and the radius around it; for other solids the solid
+/// itself and zero. Of nested rounded solids it removes only the outermost.
 pub(crate) fn bare<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> (Kind<'_, N, D>, N) {
     match kind {
         Kind::Rounded(solid) => (solid.inner().0, solid.radius()),
@@ -29,7 +29,8 @@ pub(crate) fn bare<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> (Kind<'_, N
     }
 }
 
-/// Returns a limit for the inner solids: `limit + radii`, raised by rounding.
+/// Returns a limit for the inner solids: `limit + radii`, raised so that rounding rejects no pair
+/// within `limit`. An infinite or NaN limit is returned unchanged.
 fn loosened<N: Real>(limit: N, radii: N) -> N {
     if !limit.is_finite_number() {
         return limit;

@@ -3,9 +3,9 @@
 //!
 //! Users build from shared corners: triangles of a mesh, polygons of a map, tetrahedra. The height
 //! of a corner over a side that ends there is computed from the other end of the side, so it may be
-//! a rounding error above zero. If the distance is no more than such an error, the corners
-//! themselves are compared bit for bit, in the frame of the first solid, and with sides by the
-//! exact sign of an area.
+//! a rounding error above zero. If the distance is no more than such an error, the corners are
+//! compared bit for bit, in the frame of the first solid. The exact sign of an area decides whether
+//! a corner lies on a side.
 
 use smallvec::SmallVec;
 
@@ -18,8 +18,9 @@ use crate::shape::{Geometry, Kind, SupportMap};
 /// distance of the origins.
 const ROUNDING: f64 = 64.0;
 
-/// Returns `found`, with a distance of zero if the solids share a corner. For two boxes it returns
-/// `found` unchanged, because their distance is a difference of their dimensions.
+/// Returns `found`, with a distance of zero if a corner of one solid coincides with a corner of the
+/// other or lies between two of its corners. For two boxes it returns `found` unchanged, because
+/// their distance is a difference of their dimensions.
 #[inline]
 pub(super) fn with_shared_corner<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -30,7 +31,8 @@ pub(super) fn with_shared_corner<N: Real, const D: usize>(
     if is_apart && found.distance <= rounding(pair) { at_corner(pair, found) } else { found }
 }
 
-/// Returns the distance up to which a pair may share a corner.
+/// Returns the largest distance of a pair that may be a rounding error: [`ROUNDING`] in units of
+/// length.
 fn rounding<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
     let [reach1, reach2] = [pair.first, pair.second]
         .mapped(|kind| Geometry(kind).as_support_map().map_or(N::ZERO, SupportMap::reach));
@@ -38,8 +40,9 @@ fn rounding<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
     N::lit(ROUNDING) * N::EPSILON * size
 }
 
-/// Compares those corners of both solids that are extreme along the normal, up to rounding; returns
-/// `found`, with distance zero if two coincide.
+/// Compares those corners of both solids that are extreme along the normal, up to rounding. Returns
+/// `found`, with distance zero and both points at the corner if a corner of one solid coincides
+/// with a corner of the other or lies between two of its corners.
 #[cold]
 fn at_corner<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,

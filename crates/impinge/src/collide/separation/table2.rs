@@ -11,7 +11,7 @@ use crate::collide::parts;
 use crate::convex::Separation;
 use crate::math::Real;
 
-/// Holds the table of 2D for one scalar type.
+/// Carrier of the 2D table for the scalar type `N`, as an associated constant.
 struct Table2<N>(core::marker::PhantomData<N>);
 
 impl<N: Real> Table2<N> {

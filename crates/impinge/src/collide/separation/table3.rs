@@ -15,7 +15,7 @@ use crate::collide::parts;
 use crate::convex::Separation;
 use crate::math::Real;
 
-/// Holds the table of 3D for one scalar type.
+/// Carrier of the 3D table for the scalar type `N`, as an associated constant.
 struct Table3<N>(core::marker::PhantomData<N>);
 
 impl<N: Real> Table3<N> {

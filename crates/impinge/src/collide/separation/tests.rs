@@ -34,7 +34,8 @@ fn all_kinds() -> Vec<ShapeKind> {
     kinds
 }
 
-/// A solid of each kind; the bounded solids extend from -1 to 1 along y.
+/// A solid of each kind that exists in 2D and in 3D; the bounded solids extend from -1 to 1 along
+/// y.
 struct Solids<N: Real, const D: usize> {
     ball: Ball<N>,
     segment: Segment<N, D>,
@@ -49,7 +50,7 @@ struct Solids<N: Real, const D: usize> {
     composite: One<N, D>,
 }
 
-/// A composite of one part.
+/// A composite of one part, which is a box.
 struct One<N: Real, const D: usize> {
     cuboid: Cuboid<N, D>,
     search: BoxTree<N, D>,
@@ -118,9 +119,9 @@ fn axis<N: Real, const D: usize>(at: usize) -> Vector<N, D> {
     axis
 }
 
-/// Asserts the distance if the second solid is five units above the first: 3 for bounded solids, 4
-/// above a half-space, -6 below the boundary of a half-space, and minus infinity for two
-/// half-spaces.
+/// Asserts the distance if the second solid is five units above the first: 3 for two bounded
+/// solids, 4 if only the first is a half-space, -6 if only the second is a half-space, and minus
+/// infinity for two half-spaces.
 fn check<N: Space<D>, const D: usize>(first: Kind<'_, N, D>, second: Kind<'_, N, D>) {
     let pose12 = Pose::from_translation(axis::<N, D>(1) * N::lit(5.0));
     let kinds = [first, second].map(|kind| Geometry(kind).kind());

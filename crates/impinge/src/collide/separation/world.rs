@@ -33,7 +33,7 @@ pub(crate) fn of_ordered<N: Space<D>, const D: usize>(
 }
 
 /// Computes [`in_world`], except that for overlapping composites it may return the separation of
-/// any overlapping parts.
+/// any overlapping pair of parts.
 pub(crate) fn touching_in_world<N: Space<D>, const D: usize>(
     placed1: &Placed<'_, N, D>,
     placed2: &Placed<'_, N, D>,
@@ -51,8 +51,9 @@ pub(crate) fn touching_of_ordered<N: Space<D>, const D: usize>(
     Some(placed(&found, ordered.first, ordered.swapped))
 }
 
-/// Returns the distance of [`touching_in_world`]. For two convex solids that certainly overlap it
-/// returns zero, without computing the depth.
+/// Returns the distance of [`touching_in_world`]. If `limit` is zero or more, the result for two
+/// overlapping convex solids may be any number that is not positive, so that the depth need not be
+/// computed.
 pub(crate) fn distance_in_world<N: Space<D>, const D: usize>(
     placed1: &Placed<'_, N, D>,
     placed2: &Placed<'_, N, D>,
@@ -69,8 +70,8 @@ pub(crate) fn distance_in_world<N: Space<D>, const D: usize>(
     <N::Algorithms>::distance(&pair, limit)
 }
 
-/// Computes the separation in the frame of the first solid; `None` beyond `limit` and if a pose is
-/// not finite.
+/// Computes the separation in the frame of the first solid in canonical order; `None` beyond
+/// `limit`, and if a pose is not finite.
 #[inline]
 fn in_first<N: Space<D>, const D: usize>(
     ordered: &Ordered<'_, '_, N, D>,
@@ -97,7 +98,8 @@ fn of_composites<N: Space<D>, const D: usize>(
     nearest_between(&between, limit, wanted, None).map(|found| found.separation)
 }
 
-/// Transforms a separation from the frame of `first` to the world frame, and flips it if `swapped`.
+/// Transforms a separation from the frame of `first` to the world frame, and exchanges its solids
+/// if `swapped` is `true`.
 #[inline]
 pub(crate) fn placed<N: Real, const D: usize>(
     found: &Separation<N, D>,
@@ -121,14 +123,15 @@ pub(crate) fn placed<N: Real, const D: usize>(
 }
 
 impl<'a, N: Space<D>, const D: usize> Placed<'a, N, D> {
-    /// Places a shape at the user's isometry.
+    /// Places a shape at the user's isometry; the rotation is dropped if it does not change the
+    /// shape.
     #[inline]
     pub(crate) fn new(isometry: IsometryRef<'_, N, D>, shape: Geometry<'a, N, D>) -> Self {
         let pose = if shape.turns() { isometry.pose() } else { isometry.unturned() };
         Self { pose, shape }
     }
 
-    /// Places a solid at an isometry of the scalar's own type.
+    /// Places a shape at an isometry of the type `N::Isometry`.
     #[inline]
     pub(crate) fn of_isometry(isometry: &N::Isometry, shape: Geometry<'a, N, D>) -> Self {
         Self { pose: shape.pose_at(isometry), shape }

@@ -1,4 +1,5 @@
-//! Runs all collected cases with convex solids, which other libraries got wrong.
+//! Runs all cases with convex solids from two files of poses on which other libraries returned
+//! wrong results.
 
 use serde_json::Value;
 
@@ -13,7 +14,7 @@ fn cases(file: &str) -> Vec<Value> {
     std::mem::take(data["cases"].as_array_mut().expect("an array of cases"))
 }
 
-/// A case in a common form.
+/// A case of either file.
 struct Case<'a> {
     id: &'a str,
     shapes: [&'a Value; 2],
@@ -32,7 +33,7 @@ fn relative<N: Own<D>, const D: usize>(case: &Case<'_>) -> Pose<N, D> {
     }
 }
 
-/// Checks a case; the error is a message. `None` for solids that are not convex.
+/// Checks a case; the error is a message. `None` if [`solid`] does not support one of the solids.
 fn check<N, const D: usize>(case: &Case<'_>) -> Option<Result<(), String>>
 where
     N: Simplicial<D> + Own<D>,
@@ -81,9 +82,10 @@ where
     )))
 }
 
-/// Returns the factor of the tolerance for an error. Points on curved surfaces are accurate only to
-/// about the square root of the accuracy of distances, 1e-7 of the size in `f64`. The tolerance of
-/// `f32` covers this.
+/// Returns the factor by which the error `name` may exceed the tolerance: for the two points 1000
+/// in `f64` and 4 in `f32`, else 1. Points on curved surfaces are accurate only to about the square
+/// root of the accuracy of distances, which is 1e-7 of the size in `f64`. In `f32`, the tolerance
+/// of curved solids is already wide enough for this.
 fn slack<N: Real>(name: &str) -> f64 {
     match name.starts_with("point ") {
         true if size_of::<N>() == 8 => 1e3,

@@ -26,8 +26,8 @@ fn solve<N: Simplicial<D>, const D: usize>(
     found
 }
 
-/// Asserts that the distance is zero up to a few rounding errors, and that the normal is one of
-/// `normals` or its opposite.
+/// Asserts that the distance is zero and that both points coincide, up to 64 epsilons, and that the
+/// normal is one of `normals` or its opposite. An empty list allows any normal.
 #[track_caller]
 fn touches<N: Simplicial<D>, const D: usize>(found: &Separation<N, D>, normals: &[[f64; D]]) {
     let tolerance = N::lit(64.0) * N::EPSILON;
@@ -133,8 +133,8 @@ fn extreme_sizes() {
     }
 }
 
-/// Along a straight motion from overlap to separation, the signed distance increases by no more
-/// than the step.
+/// Asserts that, along a straight motion from overlap to separation, the signed distance increases
+/// by at most the step and does not decrease, up to rounding.
 #[test]
 fn continuous_through_touching() {
     let cube = Cuboid::new(vector::<f32, 3>([1.0, 0.5, 0.75]));
@@ -162,7 +162,8 @@ fn continuous_through_touching() {
     }
 }
 
-/// NaN input terminates, with or without an answer.
+/// Asserts that a pose with NaN or infinity gives `None`, and that searches of solids with NaN
+/// terminate.
 #[test]
 fn not_a_number() {
     let cube = Cuboid::new(vector::<f32, 3>([1.0; 3]));

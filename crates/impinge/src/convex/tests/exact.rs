@@ -1,4 +1,5 @@
-//! Compares pairs with results computed by hand, and boxes with the best of all candidate axes.
+//! Compares results with results computed by hand, and distances of boxes with the largest height
+//! over all candidate axes.
 
 use super::super::{Separation, Simplicial, separation};
 use super::generator::{Generator, Sample};
@@ -25,8 +26,8 @@ fn expect<N: Real, const D: usize>(
     within(found, distance, normal, points, [100.0 * N::EPSILON.as_f64(); 2]);
 }
 
-/// Compares like [`expect`], but without points. On curved surfaces a normal is accurate only to
-/// the square root of the accuracy of the distance.
+/// Compares distance and normal with the expected ones, but no points. On curved surfaces a normal
+/// is accurate only to the square root of the accuracy of the distance.
 #[track_caller]
 fn expect_curved<N: Real>(found: Option<Separation<N, 3>>, distance: f64, normal: [f64; 3]) {
     let tolerance = 64.0 * N::EPSILON.as_f64() + 1e-11;
@@ -114,7 +115,8 @@ fn by_hand_2d() {
     pairs_2d::<f64>();
 }
 
-/// Returns all directions that can separate two overlapping boxes.
+/// Returns all directions along which the shortest translation that separates two overlapping boxes
+/// may lie: `crosses` and the axes of both boxes, and their opposites.
 fn axes<const D: usize>(pose12: &Pose<f64, D>, crosses: &[Vector<f64, D>]) -> Vec<Vector<f64, D>> {
     let mut axes = crosses.to_vec();
     for axis in 0..D {
@@ -127,7 +129,7 @@ fn axes<const D: usize>(pose12: &Pose<f64, D>, crosses: &[Vector<f64, D>]) -> Ve
 }
 
 /// Compares the distance of two boxes with the greatest height over all axes; for disjoint boxes
-/// that is only a lower bound. `tolerance` is relative to the scale of the sample.
+/// this height is only a lower bound. `tolerance` is relative to the scale of the sample.
 fn against_all_axes<N, const D: usize>(
     crosses: impl Fn(&Pose<f64, D>) -> Vec<Vector<f64, D>>,
     tolerance: f64,

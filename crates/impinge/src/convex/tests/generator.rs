@@ -1,4 +1,4 @@
-//! Random pairs, the same in every run.
+//! Pseudo-random pairs of solids, equal in every run.
 
 use serde_json::{Value, json};
 
@@ -44,8 +44,9 @@ impl Generator {
         json!(self.vector::<D>(size).iter().copied().collect::<Vec<_>>())
     }
 
-    /// Returns a random solid of a kind, with sizes of about `size`; `thin` makes one extent 200
-    /// times smaller.
+    /// Returns a random solid of a kind, with sizes of about `size`. If `thin`, the radius of a
+    /// ball, capsule, cylinder or cone, or the last half extent of a box, is 200 times smaller;
+    /// other kinds ignore `thin`.
     pub(super) fn shape<const D: usize>(&mut self, kind: &str, size: f64, thin: bool) -> Value {
         let slim = if thin { size / 200.0 } else { size };
         let mut length = |scale: f64| self.between(0.5, 2.0) * scale;
@@ -88,7 +89,8 @@ impl Generator {
 pub(super) struct Sample<const D: usize> {
     pub(super) shapes: [Value; 2],
     pub(super) pose12: Pose<f64, D>,
-    /// Length that tolerances are relative to.
+    /// Length that tolerances are relative to: the sum of the bounding radii of the cores, their
+    /// rounding radii and the distance of the origins.
     pub(super) scale: f64,
 }
 
@@ -96,8 +98,9 @@ impl<const D: usize> Sample<D>
 where
     f64: Simplicial<D> + Own<D>,
 {
-    /// Draws a rotation, then moves the second solid along a random direction until the distance is
-    /// about `target`.
+    /// Draws a rotation, then moves the second solid in 12 steps until the distance is about
+    /// `target`. A step is along a random direction, or along the normal if the distance hardly
+    /// changes along that direction.
     pub(super) fn new(shapes: [Value; 2], target: f64, generator: &mut Generator) -> Self {
         let mut sample = Self { shapes, pose12: generator.rotation(), scale: 0.0 };
         let [a, b] = sample.solids::<f64>();

@@ -1,4 +1,5 @@
-//! Checks of the convex algorithms against facts that do not depend on them.
+//! Tests of the convex algorithms: against reference data, closed forms, results computed by hand,
+//! and properties that every correct result has.
 
 mod corpus;
 mod degenerate;

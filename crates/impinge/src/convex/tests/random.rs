@@ -1,4 +1,5 @@
-//! Tests random pairs by certificates, without a reference implementation.
+//! Tests results for random pairs by certificates: heights of normals, which are lower bounds of
+//! the signed distance.
 //!
 //! The signed distance is the largest height over all unit vectors. So a separation is right if the
 //! height of its own normal is its distance, if no other direction has a larger height, and if its
@@ -23,12 +24,14 @@ const KINDS: [&str; 9] = [
 ];
 /// Number of kinds with a flat-faced core: those before the last two.
 const FLAT: usize = 7;
-/// Target distances: far, near, touching from both sides, shallow, deep; relative to the size.
+/// Target distances in units of the solids' size: far, near, touching from both sides, shallow and
+/// deep.
 const TARGETS: [f64; 6] = [1.5, 1e-2, 1e-6, -1e-6, -1e-2, -0.4];
-/// Sizes, and whether one extent is far smaller.
+/// Sizes of the solids, and the argument `thin` of [`Generator::shape`].
 const SIZES: [(f64, bool); 4] = [(1.0, false), (1e-3, false), (1e3, false), (1.0, true)];
 
-/// Runs `check` on pairs of all kinds, sizes and distances.
+/// Runs `check` on pairs of the first `kinds` of [`KINDS`], for all sizes and distances. Its second
+/// argument is whether one of the solids has a curved core.
 fn each_sample<N: Real, const D: usize>(kinds: usize, mut check: impl FnMut(&Sample<D>, bool))
 where
     f64: Simplicial<D> + Own<D>,
@@ -48,8 +51,8 @@ where
     }
 }
 
-/// Returns the largest height along sampled directions: all around, and with increasing density
-/// near the normal.
+/// Returns the largest height along 60 sampled directions: some all around, the others increasingly
+/// dense near the normal.
 fn sampled<const D: usize>(
     solids: [&dyn SupportMap<f64, D>; 2],
     sample: &Sample<D>,
@@ -67,9 +70,10 @@ fn sampled<const D: usize>(
 
 #[derive(Default)]
 struct Tally {
-    /// Errors of distances.
+    /// Largest error of each sample's distance: against the height of its normal, the largest
+    /// height found, and the offset of its points.
     errors: Vec<f64>,
-    /// Errors of points: their distances from the solids' surfaces.
+    /// Larger distance of each sample's two points from the surfaces of their solids.
     astray: Vec<f64>,
     overlaps: usize,
     worst: [f64; 5],
@@ -155,7 +159,8 @@ fn lower_bounds_3d() {
     lower_bounds::<f64, 3>(KINDS.len(), [flat, [[1e-10, 1e-11], [1e-7, 1e-8]]]);
 }
 
-/// Asserts that swapping the solids keeps the distance, up to the tolerance.
+/// Asserts that swapping the solids keeps the distance, up to `tolerance`, relative to
+/// [`Sample::scale`]: for flat-faced cores, then for curved ones.
 fn swapped<N, const D: usize>(kinds: usize, tolerance: [f64; 2])
 where
     N: Simplicial<D> + Own<D>,
@@ -224,7 +229,7 @@ fn scaling_by_powers_of_two_is_exact() {
     }
 }
 
-/// A limit never excludes a pair within it, and always excludes a pair well beyond it.
+/// Asserts that a limit excludes no pair within it, and every pair that is beyond it by the margin.
 #[test]
 fn limits() {
     let (mut within, mut beyond) = (0, 0);

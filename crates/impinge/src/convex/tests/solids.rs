@@ -66,7 +66,8 @@ impl<N: Real> SupportMap<N, 3> for Along<N> {
     }
 }
 
-/// Solids and poses that depend on the dimension.
+/// Scalars that convert entries of the test data: to solids that exist only in dimension `D`, and
+/// to poses in this dimension.
 pub(super) trait Own<const D: usize>: Real {
     fn own(shape: &Value) -> Option<Solid<Self, D>>;
     fn pose(pose: &Value) -> Pose<Self, D>;
@@ -156,7 +157,8 @@ fn point<N: Real, const D: usize>(value: &Value) -> Point<N, D> {
     Point::from(vector(value))
 }
 
-/// Returns the solid of an entry of the test data; `None` if it is not convex.
+/// Returns the solid of an entry of the test data; `None` for half-spaces, ellipsoids and other
+/// types without a constructor here.
 pub(super) fn solid<N: Own<D>, const D: usize>(shape: &Value) -> Option<Solid<N, D>> {
     if let Some(own) = N::own(shape) {
         return Some(own);
@@ -184,8 +186,8 @@ pub(super) fn solid<N: Own<D>, const D: usize>(shape: &Value) -> Option<Solid<N,
     })
 }
 
-/// Returns the distance by which planes perpendicular to `normal` separate two solids:
-/// `min n·b − max n·a`.
+/// Returns the distance by which planes perpendicular to `normal` separate two solids, negative if
+/// none does: `min n·b − max n·a`.
 pub(super) fn height<N: Real, const D: usize>(
     solids: [&dyn SupportMap<N, D>; 2],
     pose12: &Pose<N, D>,
@@ -197,7 +199,7 @@ pub(super) fn height<N: Real, const D: usize>(
     lowest2.coords.dot(&n) - solids[1].rounding() - top1
 }
 
-/// Returns the signed distance of a point from a solid; NaN without a result.
+/// Returns the signed distance of a point from a solid; NaN if [`separation`] returns `None`.
 pub(super) fn outside<const D: usize>(solid: &dyn SupportMap<f64, D>, point: &Point<f64, D>) -> f64
 where
     f64: Simplicial<D>,

@@ -7,7 +7,8 @@ use super::surface::off;
 use crate::math::{Point, Real};
 
 const KINDS: [&str; 6] = ["segment", "capsule_y", "triangle", "cuboid", "cylinder_y", "cone_y"];
-/// Target distances: far, near, touching, shallow and increasingly deep; relative to the size.
+/// Target distances, for solids of a size of about 1: far, near, touching, shallow and increasingly
+/// deep.
 const TARGETS: [f64; 10] = [1.0, 1e-2, 1e-5, 0.0, -1e-5, -1e-3, -1e-2, -0.1, -0.3, -0.8];
 
 /// Number of trials for each pair of kinds.
@@ -27,8 +28,8 @@ fn errors<N: Simplicial<3> + Own<3>>(sample: &Sample<3>, found: &Separation<N, 3
     ]
 }
 
-/// Checks random samples of every pair of kinds; `allowed` is the error relative to the size of the
-/// pair.
+/// Checks random samples of every pair of kinds; `allowed` is the largest error, relative to
+/// [`Sample::scale`].
 fn check<N>(rounds: usize, allowed: f64)
 where
     N: Simplicial<3> + Own<3>,

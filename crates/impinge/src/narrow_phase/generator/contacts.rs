@@ -48,7 +48,7 @@ impl<N: Real, const D: usize> KeptPoints<N, D> for PairContacts<N, D> {
     }
 }
 
-/// Reorders one value for each solid, given in the pair's order: first the value of the solid in
+/// Returns two values, one for each solid in the pair's order, with the value first of the solid in
 /// whose frame contacts are stored.
 pub(super) fn in_kept_order<T>([one, other]: [T; 2], is_swapped: bool) -> [T; 2] {
     if is_swapped { [other, one] } else { [one, other] }

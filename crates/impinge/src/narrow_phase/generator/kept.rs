@@ -1,8 +1,9 @@
 //! Copies of a generator's shapes. The generator compares them with its arguments to detect changed
 //! shapes, and readers need them to build manifolds after the call.
 //!
-//! Small solids are copied and compared. Hulls are recognised by a shared [twin](Polytope::twin),
-//! and composites by their [`Revision`]; a composite itself is not kept.
+//! Small solids are copied and compared. A hull is recognised by its [`twin`](Polytope::twin), a
+//! copy that all later clones of the hull share, and a composite by its [`Revision`]; the composite
+//! itself is not kept.
 
 use std::sync::Arc;
 
@@ -37,7 +38,8 @@ pub(crate) enum Revolved<N: Real> {
 }
 
 impl<N: Real, const D: usize> KeptShape<N, D> {
-    /// Returns a copy or key of a shape. `None` for custom shapes, which may change without notice.
+    /// Returns a copy or key of a shape. `None` for a convex shape of a user's type, which may
+    /// change without notice, and for a composite without a revision.
     pub(super) fn of(shape: Geometry<'_, N, D>) -> Option<Self> {
         Some(match shape.0 {
             Kind::Ball(_) | Kind::Segment(_) | Kind::Capsule(_) | Kind::Cuboid(_) => {
@@ -128,7 +130,7 @@ impl<N: Space<D>, const D: usize> KeptTouch<N, D> {
     }
 
     /// Returns the solids on which the contact lies. `wholes[i]` is shape `i` if it is kept as a
-    /// whole. `None` if such a shape is missing.
+    /// whole. `None` if shape `i` has no part here and `wholes[i]` is `None`.
     pub(super) fn touched<'a>(
         &'a self,
         wholes: [Option<Geometry<'a, N, D>>; 2],

@@ -125,12 +125,13 @@ impl<N: Real, const D: usize> PairManifoldGenerator<N, D> {
 
     /// Returns the generator with contact reuse, as
     /// [`DefaultNarrowPhase::try_reusing`](super::DefaultNarrowPhase::try_reusing) describes it.
-    /// While no point of the smaller solid has moved farther than `tolerance` relative to the other
-    /// solid since the last computation, contacts stay fixed to the solids, and only their depths
-    /// are measured again.
+    /// While no point of the smaller solid has moved, relative to the other solid and since the
+    /// last computation, by `tolerance` or by the linear prediction, contacts stay fixed to the
+    /// solids, and only their depths are measured again.
     ///
-    /// A pair of a ball with a ball, a box, a segment or a capsule is always computed, which is
-    /// equally fast. Custom shapes are always computed too, since they may have changed.
+    /// A pair of a ball with a ball, a box, a segment or a capsule is always computed, because that
+    /// takes no more time. A pair with a convex shape of a user's type is always computed too,
+    /// since the shape may have changed.
     ///
     /// ```
     /// use impinge::dim3::math::{Isometry, Vector};
@@ -166,7 +167,8 @@ impl<N: Real, const D: usize> PairManifoldGenerator<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
-    /// Updates the contacts.
+    /// Updates the contacts: keeps them if nothing changed, moves them along if contact reuse
+    /// allows it, else computes them.
     pub(crate) fn refresh(
         &mut self,
         isometries: [&N::Isometry; 2],

@@ -17,23 +17,25 @@ use crate::shape::{CompositeShape, FeatureId};
 /// The impact of two parts, with their indices.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PartArrival<N: Real, const D: usize> {
-    /// The impact; its separation is in the frame of the first part, or of the first shape if
-    /// `is_of_whole`.
+    /// The impact; its separation is in the frame of the first shape if `is_of_whole` is true, else
+    /// in the frame of the first part.
     pub(crate) arrival: Arrival<N, D>,
     pub(crate) parts: [u32; 2],
     pub(crate) is_of_whole: bool,
 }
 
 /// Returns the first impact of two parts; of several at the same time, the one with the lowest part
-/// indices. `None` if there is none up to the end of the path.
+/// indices. `None` if no parts hit each other up to the end of the path.
 ///
-/// The contacts of the whole shapes decide whether a contact at the start is an impact. If it is
-/// not, they also decide about each later impact of parts: parts of a surface alone would stop a
-/// solid below it at their inner edges.
+/// The contacts of the whole shapes decide whether a contact at the start is an impact. If they are
+/// no impact, the contacts of the whole shapes also decide about each later impact of two parts: if
+/// the parts of a floor were tested alone, their inner edges would stop a solid that has sunk into
+/// the floor.
 ///
-/// Each part of the first shape, or of the second if that has fewer, searches the other shape along
-/// its path; paths end at the first impact found so far. After a start in contact, each part that
-/// is hit also costs the contacts of the whole shapes at that time.
+/// Of two composites, the one with fewer parts is searched for the parts that the box of the other
+/// composite hits. Each part found searches the other composite along its path; paths end at the
+/// first impact found so far. After a start in contact that is not an impact, each part that is hit
+/// also costs the contacts of the whole shapes at that time.
 pub(crate) fn first_arrival<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     path: &Path<N, D>,
@@ -81,7 +83,7 @@ enum WholeContact {
     Nothing,
 }
 
-/// The tolerance of the depth of a contact of the whole shapes, in epsilon times the sizes.
+/// The largest gap of two parts that is treated as contact, in epsilon times [`size`] of the parts.
 const ROUNDING: f64 = 64.0;
 
 /// Two normals are treated as equal if their difference has at most this length.
@@ -114,9 +116,10 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         });
     }
 
-    /// Searches the parts of a composite against a half-space. The half-space approaches all parts
-    /// at the same speed, so the nearest part is hit first. If some parts touch it at the start,
-    /// each of these is tested on its own.
+    /// Tests the nearest part of a composite against a half-space: the half-space approaches all
+    /// parts at the same speed, so it hits the nearest part first. If that part is hit at time
+    /// zero, the other parts that touch the half-space at the start are tested, too, for the lowest
+    /// index.
     fn of_half_space(&mut self, others: &dyn CompositeShape<N, D>) {
         let nearest = nearest_between(self.between, N::INFINITY, Wanted::Deepest, None);
         let Some(nearest) = nearest else { return };
@@ -126,8 +129,9 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         }
     }
 
-    /// Tests one part of one shape against the parts of the other whose boxes it hits, in the order
-    /// of their earliest possible times. Parts that the search's times exclude are skipped.
+    /// Tests part `part` of shape `which` against the parts of the other shape whose boxes are on
+    /// its path, in the order of the lower bounds of their times of contact. Parts that do not
+    /// touch up to the end by [`Mover::earliest`] are skipped.
     fn each_on_path(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
         let aabb = self.grown(&self.between.aabb_in_other(which, part));
         let (velocity, end) = (self.velocity(which), self.end());
@@ -162,8 +166,9 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         }
     }
 
-    /// Runs the convex algorithm for two parts that do not touch before `earliest`. If both shapes
-    /// are indistinguishable, parts with equal indices are too.
+    /// Computes the impact of two parts that do not touch before `earliest`, and keeps it if it is
+    /// the first so far. If the path is mirrored, parts with equal indices are a mirrored pair,
+    /// too.
     fn hold(&mut self, parts: [u32; 2], earliest: N) {
         if self.start == WholeContact::Hit {
             return;
@@ -189,8 +194,8 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         self.first = found.or(self.first);
     }
 
-    /// Handles a solid that is inside a body at the start: a start in contact, although the solid
-    /// touches no part.
+    /// Handles a solid that is inside a body (the interior of a closed composite) at the start:
+    /// this is a start in contact, although the solid may touch no part.
     fn begin_inside(&mut self) {
         if self.start == WholeContact::Unknown && self.between.has_bodies() {
             let mut inside = held_pieces(self.between);

@@ -7,7 +7,8 @@ use crate::collide::parts::slabs::{across, corners, range};
 use crate::math::{Mapped, Pose, Real, Space, Vector, max, max_component, min};
 use crate::shape::{Geometry, Part, SupportMap};
 
-/// Gaps are loosened by this many epsilon times the sum of all lengths.
+/// The tolerance of a gap, in epsilon times the largest length in its computation: the extent of
+/// the solid about the composite's origin plus the target distance, or a coordinate of a corner.
 const ROUNDING: f64 = 128.0;
 
 /// A convex solid that moves in the frame of a composite. While some axis separates the solid from
@@ -45,9 +46,9 @@ impl<'a, N: Space<D>, const D: usize> Mover<'a, N, D> {
         Some(Self { map, boxes, pose, velocity, target })
     }
 
-    /// Returns a time, zero or more, before which the solid certainly does not touch the part.
-    /// `None` if they do not touch up to `end`. The time depends only on the solid and the part, so
-    /// that no result depends on the order of a search.
+    /// Returns a time, zero or more, before which the solid certainly does not touch the part: zero
+    /// if the part has no corners. `None` if the two do not touch up to `end`. The time depends
+    /// only on the solid, the part and `end`, so that no result depends on the order of a search.
     pub(super) fn earliest(&self, part: &Part<'_, N, D>, end: N) -> Option<N> {
         let Some(corners) = corners(&part.solid, &part.pose) else { return Some(N::ZERO) };
         let relative = corners.mapped(|corner| corner - self.pose.translation);

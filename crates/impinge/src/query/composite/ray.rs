@@ -1,8 +1,8 @@
 //! Intersections of a ray with a composite: the intersections with its parts.
 //!
-//! Parts with common corners leave no gap. The triangle algorithms decide by signs that are exact
-//! except for zero, and a zero belongs to both sides (see `triangle3`). The search uses a box
-//! around the ray's origin that contains the rounding errors of times and boxes.
+//! A ray does not slip between two parts that share corners. The triangle algorithms decide by
+//! signs that are exact except for zero, and a zero belongs to both sides (see `triangle3`). The
+//! search uses a box around the ray's origin that contains the rounding errors of times and boxes.
 
 use super::point::nearest_part;
 use crate::bounding_volume::Ray;
@@ -22,8 +22,8 @@ pub(crate) struct RayQuestion<N: Real, const D: usize> {
 }
 
 /// Calls `visit` with the first hit on each part that is hit up to `max_time`. `visit` returns the
-/// new limit of time, which never grows; a negative limit ends the search. The order of the hits is
-/// unspecified.
+/// new limit of time; a limit later than the current limit has no effect, and a negative limit ends
+/// the search. The order of the hits is unspecified.
 pub(crate) fn each_hit<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     question: &RayQuestion<N, D>,

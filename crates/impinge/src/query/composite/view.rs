@@ -64,8 +64,8 @@ pub(crate) struct Touched<'a, N: Real, const D: usize> {
     pub(crate) poses: [Pose<N, D>; 2],
     /// [`Geometry::turns`] of each shape.
     pub(crate) turns: [bool; 2],
-    /// True if the normal is a face normal of the second shape and rotates with it, false for the
-    /// first shape. `None` if the normal belongs to no face.
+    /// `true` if the normal is a face normal of the second shape and rotates with that shape,
+    /// `false` if it is a face normal of the first shape. `None` if the normal belongs to no face.
     pub(crate) turns_with_second: Option<bool>,
 }
 

@@ -1,8 +1,9 @@
 //! Lower bounds of the time during which two moving and rotating bodies stay apart.
 //!
-//! All bounds are along one direction, the normal, which separates the bodies by some gap. It keeps
-//! separating them until their points have approached along it by that gap. The direction is fixed
-//! in the world, or, if one of the bodies is a rotating half-space, in the frame of that body.
+//! Nearly all bounds are for one direction, the normal, along which a gap separates the bodies. The
+//! normal keeps separating them until their points have approached along the normal by that gap. It
+//! is fixed in the world or, if one of the bodies is a rotating half-space, in the frame of that
+//! body. The other bounds are for the bounding spheres, and for approach in any direction.
 
 use super::{ConstantVelocities, RigidMotion};
 use crate::bounding_volume::Aabb;
@@ -19,11 +20,12 @@ pub(super) struct MovingBody<'a, N: Space<D>, const D: usize> {
     pub(super) motion: &'a dyn RigidMotion<N, D>,
     pub(super) shape: Geometry<'a, N, D>,
     center: Point<N, D>,
-    /// An upper bound of the distance of the core's points from the centre; infinite for
-    /// half-spaces and composites that contain one.
+    /// An upper bound of the distance of the core's points from the centre, where the core is a
+    /// convex solid without its rounding radius, or a whole composite; infinite for half-spaces and
+    /// composites that contain one.
     reach: N,
     /// For constant velocities, an upper bound of the distance of the core's points from the axis
-    /// of rotation.
+    /// of rotation; for other motions `reach`.
     arm: N,
     /// An upper bound of the distance of the body's points from the centre.
     radius: N,
@@ -70,7 +72,7 @@ impl<'a, N: Space<D>, const D: usize> MovingBody<'a, N, D> {
         MovingBody { motion: self.motion, shape: solid, center: local, reach, arm, radius }
     }
 
-    /// Returns a length of the body for tolerances; zero for an unbounded body.
+    /// Returns [`Self::radius`], to which tolerances are proportional; zero for an unbounded body.
     pub(super) fn size(&self) -> N {
         if self.radius.is_finite_number() { self.radius } else { N::ZERO }
     }
@@ -130,12 +132,13 @@ pub(super) struct Rate<N> {
 }
 
 impl<N: Real> Rate<N> {
-    /// Returns an upper bound of the distance moved in a time.
+    /// Returns an upper bound of the distance moved in the time `time`.
     pub(super) fn travel(&self, time: N) -> N {
         product(max(self.speed, N::ZERO), time) + product(product(self.bend, time), time)
     }
 
-    /// Returns the time in which the motion uses up a gap; infinite if it never does.
+    /// Returns the time in which the motion uses up the length `gap`: infinite if it never does,
+    /// and zero if the rate is infinite or NaN.
     pub(super) fn time_for(&self, gap: N) -> N {
         if !(self.speed <= N::INFINITY && self.bend <= N::INFINITY) {
             return N::ZERO;
@@ -156,10 +159,10 @@ impl<N: Real> Rate<N> {
 }
 
 impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
-    /// Returns a time during which the bodies certainly do not approach by more than `gap`. The
-    /// time is at most `remaining`, or longer if they never approach by `gap`. `apart` is the
-    /// distance between the bounding spheres minus the target distance; if negative, the spheres
-    /// give no bound.
+    /// Returns a time, counted from this moment, during which the bodies certainly do not approach
+    /// by more than `gap`. A result of `remaining` or more means that they do not in the remaining
+    /// time. `apart` is the distance between the bounding spheres minus the target distance; if
+    /// negative, the spheres give no bound.
     pub(super) fn safe_time(&self, gap: N, apart: N, remaining: N) -> N {
         let safe = |span: N| self.safe_within(gap, apart, self.time + span);
         let all = safe(remaining);
@@ -196,8 +199,9 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         ImpactParts { bodies: [part1, part2], poses }
     }
 
-    /// Implements [`Self::safe_time`] for parts of bodies that both have constant velocities.
-    /// `normal` points from the first part to the second, in the frame of the first.
+    /// Implements [`Self::safe_time`] for parts of bodies that both have constant velocities; the
+    /// result is valid up to the time `to`. `normal` points from the first part to the second, in
+    /// the frame of the first part.
     pub(super) fn safe_time_of(
         &self,
         parts: &ImpactParts<'_, N, D>,
@@ -212,7 +216,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         Moment { bodies, origin, poses, centers, time, normal }.safe_within(gap, -N::ONE, to)
     }
 
-    /// Returns the largest speed at which points of the two parts approach in any direction.
+    /// Returns an upper bound of the speed at which any points of the two parts approach, in any
+    /// direction, up to the time `to`.
     pub(super) fn rate_of(&self, parts: &ImpactParts<'_, N, D>, to: N) -> Rate<N> {
         let swings = [0, 1].mapped(|index| {
             product(self.bodies[index].turn_bound(self.time, to), parts.bodies[index].arm)
@@ -263,8 +268,9 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         is_known && self.bodies.iter().any(|body| body.shape.as_composite().is_some())
     }
 
-    /// Returns a time span, of any order of magnitude, that the bound `safe` covers completely;
-    /// zero if there is none. Used if the bound over all the remaining time is infinite.
+    /// Returns a time span that the bound `safe` covers completely (`safe(span) >= span`), found by
+    /// bisection over all orders of magnitude; zero if there is none. Used if the bound for all the
+    /// remaining time is zero, as when the speed is unbounded.
     fn first_span(&self, remaining: N, safe: &dyn Fn(N) -> N) -> N {
         let (mut low, mut high) = (N::MIN_POSITIVE, min(remaining, N::MAX));
         // The exponents of floating-point numbers span at most 2^11 values.
@@ -285,7 +291,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         if longest >= N::ZERO { longest } else { N::ZERO }
     }
 
-    /// Returns the time in which the bounding spheres of the bodies use up the distance `apart`.
+    /// Returns the time in which the bounding spheres of the bodies use up the distance `apart`;
+    /// zero if `apart` is not positive.
     fn spheres(&self, apart: N, to: N) -> N {
         let is_apart = apart > N::ZERO;
         if !is_apart {
@@ -296,8 +303,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         })
     }
 
-    /// Returns the rate given by the largest speed that a point of either body can have up to the
-    /// time `to`.
+    /// Returns the rate of approach along the normal from upper bounds of the speeds of all points
+    /// of both bodies up to the time `to`.
     pub(super) fn first_order(&self, to: N) -> Rate<N> {
         for (index, body) in self.bodies.iter().enumerate() {
             if !body.reach.is_finite_number() && self.swing(index, N::ONE, to) > N::ZERO {
@@ -309,16 +316,17 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         Rate { speed, bend: N::ZERO }
     }
 
-    /// Returns the direction that separates the bodies. `None` if one is a composite and neither a
-    /// half-space, since other parts may be separated by another direction.
+    /// Returns the direction that separates the bodies. `None` if one of the bodies is a composite
+    /// and neither is a half-space, since other parts may be separated by another direction.
     fn direction(&self) -> Option<&Vector<N, D>> {
         let flat = self.bodies.iter().any(|body| body.is_half_space());
         let whole = self.bodies.iter().all(|body| body.shape.as_composite().is_none());
         (flat || whole).then_some(&self.normal)
     }
 
-    /// Returns the rate given by the present speeds of points and their largest change. `None`
-    /// unless both bodies have constant velocities and one direction separates them.
+    /// Returns the rate of approach from the present speeds of points and the largest change of
+    /// these speeds. `None` unless both bodies have constant velocities, one direction separates
+    /// them, and each body whose rotation changes the gap is convex.
     ///
     /// A point farther from the centre moves faster, and its path bends more. Of all points of a
     /// convex core, the fastest along the normal is a support point.
@@ -354,8 +362,9 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     }
 
     /// Returns an upper bound of the speed at which the centres approach along `direction`, a unit
-    /// vector from the first to the second; if `None`, the bound is for any direction. Speeds
-    /// within rounding error are treated as zero.
+    /// vector from the first body to the second; if `direction` is `None`, the bound is for any
+    /// direction. If both velocities are constant, a speed within rounding error is treated as
+    /// zero.
     fn drift(&self, direction: Option<&Vector<N, D>>, to: N) -> N {
         if let [Some(motion1), Some(motion2)] = self.bodies.mapped(MovingBody::constant) {
             let relative = motion1.linear - motion2.linear;
@@ -373,8 +382,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         speed(0, N::ONE) + speed(1, -N::ONE)
     }
 
-    /// Returns an upper bound of the speed along the normal that rotation gives a point at
-    /// `distance` from the centre.
+    /// Returns an upper bound of the speed along the normal that the rotation of body `index` gives
+    /// to a point at `distance` from its centre.
     fn swing(&self, index: usize, distance: N, to: N) -> N {
         let turn = match (self.slope(index), self.direction()) {
             (Some(slope), Some(_)) => length(&slope),

@@ -1,8 +1,8 @@
 //! The time of impact of two solids that do not rotate: the kernel for one pair.
 //!
 //! Two separated balls touch at the root of a quadratic equation, which is verified by their
-//! separation at that time. A half-space is hit after one step. All other pairs advance by steps in
-//! which the gap certainly separates them. The last step may be verified by a touching point
+//! separation at that time. A half-space is hit after one step. All other pairs advance by steps
+//! during which they certainly stay apart. The last step may be verified by a touching point
 //! instead of a separation, if the normal has not changed during the step.
 
 use super::ImpactStatus;
@@ -32,7 +32,7 @@ pub(crate) struct Path<N: Real, const D: usize> {
     pub(crate) mirrored: bool,
 }
 
-/// The impact of a pair at the end of its path.
+/// The impact of a pair on its path.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Arrival<N: Real, const D: usize> {
     /// The time of impact, in the unit of the path.
@@ -65,7 +65,8 @@ impl<N: Real, const D: usize> Path<N, D> {
         self.target + self.velocity.norm() * (self.end - along) + tolerance
     }
 
-    /// Returns the speed at which the solids approach along a normal; negative if they separate.
+    /// Returns the speed at which the solids approach along a normal: negative if they separate,
+    /// never positive for a mirrored pair.
     fn closing(&self, normal: &Vector<N, D>) -> N {
         let closing = -normal.dot(&self.velocity);
         if self.mirrored { -closing.abs() } else { closing }
@@ -132,8 +133,8 @@ pub(crate) enum Beginning<N: Real, const D: usize> {
 /// Conservative advancement (Mirtich, "Impulse-based dynamic simulation", 1996). The solids stay
 /// apart at least until the gap along the normal of the nearest points is used up at the closing
 /// speed along that normal. If that speed is not positive, they stay apart for ever. The signed
-/// distance of convex solids is a convex function of time, and this is Newton's method on it, from
-/// the left: it never passes the first touch.
+/// distance of convex solids is a convex function of time; conservative advancement is Newton's
+/// method on this function, from the left: no step passes the first touch.
 pub(crate) fn advance<N: Space<D>, const D: usize>(
     start: &Pair<'_, N, D>,
     path: &Path<N, D>,
@@ -239,14 +240,16 @@ fn arrival_of_balls<N: Space<D>, const D: usize>(
     is_there.then(|| Arrival::reached(along, found))
 }
 
-/// Returns the separation at the end of a step that used up the gap along the normal `before`.
-/// `None` unless that normal is still valid and one of the earlier nearest points proves it.
+/// Returns the separation at the end of a step that used up the gap along the normal
+/// `before.normal`. `None` unless one of the nearest points of `before` proves that this normal is
+/// still valid.
 ///
-/// Planes across that normal still separate the solids by the target distance. So the target is
-/// their distance if the nearest point of one solid, on its plane, has that distance from the other
-/// solid. The normal is unchanged if the other solid has the same normal towards that point. For
-/// curved solids the normal has rotated during the step, by about the square root of the error that
-/// the step removed. The plane of a half-space needs no proof.
+/// Planes perpendicular to that normal still separate the solids by `target`. So `target` is the
+/// distance of the solids if the nearest point of one solid, which lies on its plane, has that
+/// distance from the other solid. The normal is unchanged if the other solid has the same normal
+/// towards that point. For curved solids the normal has rotated during the step, by about the
+/// square root of the error that the step removed. A half-space needs no proof, as its normal is
+/// constant.
 fn touching<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     before: &Separation<N, D>,
@@ -288,8 +291,8 @@ fn touching<N: Space<D>, const D: usize>(
     is_proved.then_some(Separation { distance: projected.distance, normal, point1, point2 })
 }
 
-/// Returns the length to which tolerances are proportional: the sizes of the solids plus their
-/// distance.
+/// Returns the length to which tolerances are proportional: the bounding radii of both solids, zero
+/// for those without a support map, plus the largest component of the translation between them.
 pub(crate) fn size<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
     let bounding_radius = |geometry: Geometry<'_, N, D>| {
         geometry.as_support_map().map_or(N::ZERO, |map| map.reach() + map.rounding())
@@ -304,8 +307,9 @@ mod tests {
     use crate::collide::separation::hulls::tests::Random;
     use crate::shape::{Ball, Shape};
 
-    /// Checks, for balls that pass each other at all distances, that an impact from the equation
-    /// agrees with the iteration, and that the equation finds nearly all impacts.
+    /// Checks, for random balls that hit or miss each other, that an impact from the equation
+    /// agrees with the iteration, and that the equation finds more than 98 % of the impacts of the
+    /// iteration.
     fn fly<N: Space<3>>(size: f64) {
         let random = &mut Random(3);
         let (mut met, mut count) = (0, 0);

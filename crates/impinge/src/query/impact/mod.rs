@@ -106,9 +106,9 @@ pub struct ImpactOptions<N: Real> {
     /// earlier, and never late. Negative and NaN are treated as zero. Values below the rounding
     /// error, 8 epsilon times the sizes and the distance of the bodies, are raised to it.
     ///
-    /// With `None` (the default) the search continues up to rounding. If 256 more steps do not
-    /// suffice for that, as for surfaces that slide on each other, it accepts a millionth of the
-    /// sizes and the distance: 2⁻²⁰, in `f32` 2⁻¹⁷. Straight paths ignore this option.
+    /// With `None` (the default) the search continues up to rounding. After 256 consecutive steps
+    /// with a gap below 2⁻²⁰ of the sizes plus the distance (`f32`: 2⁻¹⁷), as for surfaces that
+    /// slide on each other, the search accepts that gap. Straight paths ignore this option.
     pub tolerance: Option<N>,
     /// Whether solids that touch or overlap at time zero are an impact at time zero, whatever their
     /// velocities. False by default: solids that separate or just slide are not.
@@ -304,11 +304,11 @@ impl<N: Real, const D: usize> Impact<N, D> {
 ///
 /// # Cost
 ///
-/// The query takes a few distance computations, at most 128. Each step is as long as the solids
-/// certainly stay apart (conservative advancement: Mirtich, "Impulse-based dynamic simulation",
-/// 1996). This is Newton's method on a convex function, which squares the error at a head-on impact
-/// and halves it at a grazing one. A composite is searched for the parts on the path; of two
-/// composites, each part of the one with fewer parts searches the other.
+/// A query of two convex solids takes a few distance computations, about 130 at most. Each step is
+/// as long as the solids certainly stay apart (conservative advancement: Mirtich, "Impulse-based
+/// dynamic simulation", 1996). This is Newton's method on a convex function, which squares the
+/// error at a head-on impact and halves it at a grazing one. A composite is searched for parts on
+/// the path; of two composites, the parts of the one with fewer parts each search the other.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -433,7 +433,7 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
         Some(Self { first, ordered, pair, path, scale })
     }
 
-    /// Returns the first impact, in the frame of the first part, and its time.
+    /// Returns the first impact in canonical order, and its time in the arguments' unit.
     #[inline(always)]
     fn touch(&self) -> Option<(PartArrival<N, D>, N)> {
         let found = if self.ordered.has_composite() {

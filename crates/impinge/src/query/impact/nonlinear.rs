@@ -22,18 +22,18 @@ const MAX_STEPS: usize = 1024;
 /// The maximum number of separate steps of two parts before all parts are tested again.
 const MAX_PART_STEPS: usize = 64;
 
-/// The maximum number of consecutive steps within the `NEAR` distance, if no tolerance is given.
+/// The maximum number of consecutive steps with a gap below [`NEAR`], if no tolerance is given.
 const MAX_NEAR_STEPS: usize = 256;
 
-/// The bodies are near if the gap is at most this fraction of their sizes and distance, 2^-20, or
-/// this many epsilon of them.
+/// Limits of a near gap: a fraction of the sum of the bodies' sizes and distance (2^-20), and a
+/// number of epsilons of that sum. The larger limit applies.
 const NEAR: [f64; 2] = [1.0 / 1_048_576.0, 64.0];
 
-/// Parts of composites are advanced one by one if the bodies are at most this fraction of their
-/// sizes apart.
+/// Parts of composites are advanced one by one if the gap is less than this fraction of the sum of
+/// the bodies' sizes.
 const PARTS_WITHIN: f64 = 1.0 / 128.0;
 
-/// Parts are advanced separately while no point moves by more than this fraction of the sizes.
+/// Parts are advanced separately while no point moves by more than this fraction of that sum.
 const PARTS_WAY: f64 = 1.0 / 32.0;
 
 /// Returns the first impact of two bodies that move and rotate.
@@ -44,7 +44,7 @@ const PARTS_WAY: f64 = 1.0 / 32.0;
 /// *Never late.* The time is at most that of the first touch, up to the rounding error of the
 /// bodies' positions and sizes: fast rotation and thin bodies are not missed. *Hardly early.* With
 /// [`ImpactStatus::Reached`] the bodies are then within [`ImpactOptions::tolerance`] of the target
-/// distance, or so near that they close the rest within the resolution of the time. With
+/// distance, or so near that they reach the target distance within the resolution of the time. With
 /// [`ImpactStatus::StepsSpent`] 1024 steps did not decide: the bodies do not touch before the
 /// returned time, and whether they touch later is unknown. This happens for bodies that stay in
 /// contact while they rotate, for motions that repeat for ever without an impact and without a
@@ -63,15 +63,16 @@ const PARTS_WAY: f64 = 1.0 / 32.0;
 /// Each step costs one distance computation. Convex solids typically take 15 steps for motions with
 /// constant velocities and 40 for others, several times as many if the bodies graze each other or
 /// rotate fast. No step is longer than the time in which some point of the bodies might use up the
-/// gap (conservative advancement: Mirtich, "Impulse-based dynamic simulation", 1996). The bound is
-/// the speed along the normal (Zhang, Lee and Kim, "Interactive continuous collision detection for
-/// non-convex polyhedra", 2006) of the fastest point of the shape plus the largest bend of its
-/// path, or spheres around the bodies while these are apart. A rotating half-space is fastest far
-/// out: its speed is taken where the other body can be. Composites are bounded as a whole, by their
-/// largest speed, until they are within 1/128 of their sizes. Then, for constant velocities, each
-/// two parts whose paths can cross are advanced separately, with their own normal and speed, until
-/// the first two touch. So all parts are searched twice for each 1/32 of the sizes that the fastest
-/// point moves by, however many steps sliding parts take.
+/// gap (conservative advancement: Mirtich, "Impulse-based dynamic simulation", 1996). This time is
+/// bounded by means of the speed along the normal (Zhang, Lee and Kim, "Interactive continuous
+/// collision detection for non-convex polyhedra", 2006) of the fastest point of the shape and the
+/// largest bend of its path, or by means of spheres around the bodies while these are apart. A
+/// rotating half-space is fastest far out: its speed is taken where the other body can be.
+/// Composites are bounded as a whole, by their largest speed, until they are within 1/128 of their
+/// sizes. Then, for constant velocities, each two parts whose paths can cross are advanced
+/// separately, with their own normal and speed, until the first two touch. So all parts are
+/// searched twice for each 1/32 of the sizes that the fastest point moves by, however many steps
+/// sliding parts take.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -146,7 +147,7 @@ fn two_leads<N: Space<D>, const D: usize>(
 ) -> bool {
     let world = Vector::<N, D>::zeros();
     let later = |time| [one, two].mapped(|body| body.placed(&world, time));
-    // At most 64 times, all of them finite.
+    // At most 64 of these times are finite.
     let times = iter::successors(Some(N::ONE), |time| Some(*time * N::lit(65536.0)));
     let times = times.take_while(|time| time.is_finite_number());
     let longest = Some(options.max_time).filter(|time| time.is_finite_number());
@@ -392,7 +393,7 @@ impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
     }
 
     /// Returns the distance by which the bodies may still approach before an impact is reported:
-    /// the gap, or in `Contact` the gap above its start value plus `slack`.
+    /// the gap, or in [`Mode::Contact`] the gap minus the gap at the start, plus `slack`.
     fn excess(&self, mode: Mode<N>) -> N {
         match mode {
             Mode::Apart => self.gap,
@@ -400,8 +401,8 @@ impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
         }
     }
 
-    /// Returns whether the bodies have an impact: the gap, or in `Contact` the excess, is used up
-    /// within its tolerance.
+    /// Returns whether the bodies have an impact: the gap is within the tolerance or, in
+    /// [`Mode::Contact`], the excess is at most half of [`Self::slack`].
     fn is_hit(&self, mode: Mode<N>) -> bool {
         match mode {
             Mode::Apart => self.gap <= self.tolerance,
@@ -433,8 +434,8 @@ struct Step<N> {
 
 impl<'a, N: Space<D>, const D: usize> PartSteps<'_, '_, 'a, N, D> {
     /// Returns the distance by which two parts may still approach at the given poses, and a time
-    /// during which they certainly do not use it up. `None` if they cannot use it up in the time
-    /// `left`, by their largest speed in any direction.
+    /// during which they certainly do not use up that distance. `None` if they cannot use it up in
+    /// the time `left`, by an upper bound of their speed in any direction.
     fn alone(&self, poses: &BodyPoses<'_, 'a, N, D>, parts: [u32; 2], left: N) -> Option<(N, N)> {
         let (moment, end) = (&poses.moment, self.search.end);
         let placed = poses.between.parts(parts);

@@ -4,8 +4,8 @@ use super::NeighborhoodGeometry;
 use crate::math::{Point, Real, Vector, unit};
 use crate::shape::{Cylinder, Feature, FeatureId, Geometry, Kind, SupportMap, SupportPart};
 
-/// A cylinder whose axis has at most this sine with the contact plane touches along its side; the
-/// axis then represents the core.
+/// The largest sine of the angle between a cylinder's axis and the contact plane at which the
+/// cylinder touches along its round side; the axis then represents the core.
 const LYING_SINE: f64 = 0.05;
 
 /// The data of one solid for all contacts of a manifold, in the solid's local frame.
@@ -117,8 +117,8 @@ impl<N: Real, const D: usize> KinematicSide<N, D> {
     }
 }
 
-/// Returns the side of a feature that is most nearly perpendicular to `outward`; `None` if it is
-/// not perpendicular up to rounding.
+/// Returns the side of a feature that is most nearly perpendicular to `outward`; `None` if even
+/// this side is not perpendicular up to rounding.
 fn perpendicular_edge<N: Real, const D: usize>(
     feature: &Feature<N, D>,
     outward: &Vector<N, D>,

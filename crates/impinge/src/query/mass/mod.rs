@@ -94,9 +94,9 @@ pub fn mass_properties<N: Space<D>, const D: usize>(
 /// Runs [`mass_properties`] for a compound whose children have different densities.
 ///
 /// `density` is called once for each child, in order, with the child's path: the index of the
-/// child, then of its child in a nested compound, and so on, as in [`PartPath`]. A mesh is one
-/// child, as is any shape other than a compound; for a user's composite `density` is called for
-/// each part. A shape that is not a compound has the empty path.
+/// child, then in a nested compound the index of that compound's child, and so on, as in
+/// [`PartPath`]. A mesh is one child, as is any shape other than a compound; for a user's composite
+/// `density` is called for each part. A shape that is not a compound has the empty path.
 ///
 /// # Errors
 /// If a density is negative or not finite; if the shape, or a part of a compound, is a half-space

@@ -66,8 +66,8 @@ impl<const D: usize> Slices<D> {
         });
     }
 
-    /// Returns the moments of the body about the line along `axis`, a unit vector, through the
-    /// origin.
+    /// Returns the moments of the body whose axis of revolution is the line along `axis`, a unit
+    /// vector, through the origin.
     fn moments(&self, axis: &Vector<f64, D>) -> Moments<D> {
         if self.mass <= 0.0 {
             return Moments::massless(Vector::<f64, D>::zeros());

@@ -41,7 +41,7 @@ pub(super) fn by_support<N: Real>(map: &dyn SupportMap<N, 2>) -> Result<Moments<
 /// by a parabola.
 pub(super) struct Tracing<'s> {
     support: &'s dyn Fn(&V2) -> V2,
-    /// The height over its chord up to which an arc is flat.
+    /// The largest height of an arc over its chord at which the arc is treated as flat.
     flat: f64,
     pub(super) sum: Integrals<2>,
 }

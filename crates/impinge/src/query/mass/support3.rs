@@ -28,15 +28,15 @@ const THIN_EPSILON: f64 = 64.0;
 /// The maximum number of times that a group of slices is halved.
 const HALVINGS: u32 = 6;
 
-/// A group is not halved further if the sum of its halves differs from it by less than this. In the
-/// round frame mass and moments are about 1.
+/// A group is not halved further if the sum of its halves differs from the group by less than this.
+/// In the round frame mass and moments are about 1.
 const ENOUGH: f64 = 1e-5;
 
 /// The maximum number of times that each quarter of a slice's outline is halved.
 const DEPTH: u32 = 3;
 
-/// The height over its chord up to which an arc is flat, in the round frame: points of the solid
-/// are about 1 from its centre.
+/// The largest height of an arc over its chord at which the arc is treated as flat, in the round
+/// frame: points of the solid's surface are about 1 from its centre.
 const FLAT: f64 = 1e-5;
 
 /// The maximum number of steps that narrow an interval of the outline; ten are usual.
@@ -60,8 +60,8 @@ pub(super) fn by_support<N: Real>(map: &dyn SupportMap<N, 3>) -> Result<Moments<
     Ok(solid.round.grown(&solid.integrals()))
 }
 
-/// Appends the support points in 98 directions, spread evenly in the frame in which the solid is
-/// round.
+/// Appends the support points in 98 directions: the surface points of a cubic grid in the frame in
+/// which the solid is round.
 ///
 /// # Errors
 /// If a support point is not finite.

@@ -4,8 +4,8 @@ use super::SurfacePoint;
 use crate::math::{Point, Real, Vector, unit};
 use crate::shape::FeatureId;
 
-/// Returns the point on the ray from the centre through `point`; for the centre itself, the point
-/// on the first axis.
+/// Returns the point of the sphere on the ray from the centre through `point`; if `point` is the
+/// centre, the point of the sphere on the first axis.
 pub(super) fn surface_point<N: Real, const D: usize>(
     radius: N,
     point: &Point<N, D>,

@@ -3,10 +3,10 @@
 //! The winding number of a closed line or surface around a point is the number of times that a ray
 //! from the point leaves it, minus the number of times that the ray enters it. Exact signs decide
 //! whether the ray crosses a segment or triangle. Ties, where the ray meets corners or sides, are
-//! resolved as if the point were moved by an infinitesimal step across the ray, which is equal for
-//! all parts (Edelsbrunner and Mücke, "Simulation of Simplicity", 1990; in 2D this is the half-open
-//! rule). So exactly one of two neighbours counts a crossing of their common corner or side, and no
-//! direction of the ray is degenerate.
+//! resolved as if the point were moved by an infinitesimal step across the ray; the step is the
+//! same for all parts (Edelsbrunner and Mücke, "Simulation of Simplicity", 1990; in 2D this is the
+//! half-open rule). So exactly one of two neighbours counts a crossing of their common corner or
+//! side, and no direction of the ray is degenerate.
 
 use core::cmp::Ordering;
 
@@ -48,8 +48,8 @@ pub(super) fn of_segment(
         return Some(0);
     }
     let side = sign(area(&ends[0], &ends[1], point));
-    // If the segment rises on the side of larger x, the point is on its left. Exchanging x and y
-    // exchanges left and right.
+    // A rising segment that has the point on its left crosses the ray's line at a larger x than the
+    // point's. For a ray along y, left and right are exchanged.
     let is_above = (rises == (side > 0)) == (direction.axis == 0);
     match side {
         0 => None,
@@ -74,8 +74,8 @@ pub(super) fn of_triangle(
         return Some(0);
     }
     let side = sign(volume(&corners[0], &corners[1], &corners[2], point));
-    // A triangle that appears counter-clockwise seen against the axis has its back towards points
-    // below it.
+    // A triangle whose corners run counter-clockwise, looking along the negative axis, has its back
+    // towards points with smaller coordinates on the axis.
     let is_above = side * around < 0;
     match side {
         0 => None,

@@ -5,8 +5,8 @@ use crate::collide::separation::balls::ball_ellipsoid::project;
 use crate::math::{Point, Real};
 use crate::shape::{Ellipsoid, FeatureId, SupportMap};
 
-/// Returns the point found by the separation from a ball of radius zero. An ellipsoid with a zero
-/// half axis is treated as a set without interior.
+/// Returns the nearest surface point, computed as the separation from a ball of radius zero. An
+/// ellipsoid with a zero half axis is treated as a set without interior.
 pub(super) fn surface_point<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     point: &Point<N, D>,

@@ -167,8 +167,8 @@ fn signed<N: Space<D>, const D: usize>(
     }
 }
 
-/// Sums the contributions of the parts between a point and the nearest face of the overall box.
-/// `None` if the point lies on a part.
+/// Sums the contributions of the parts between a point and the nearest face of the overall box; 0
+/// for a point outside that box. `None` if the point lies on a part.
 fn winding<N: Space<D>, const D: usize>(
     tree: &BoxTree<N, D>,
     point: &Point<N, D>,

@@ -66,8 +66,9 @@ pub struct PointProjection<N: Real, const D: usize> {
 /// coordinate.
 ///
 /// If several points are equally near, the result is deterministic: the face with the lowest index
-/// wins. An undefined direction (from the centre of a ball, from the axis of a capsule, cylinder or
-/// cone) is the first coordinate axis that is valid.
+/// wins. Where the direction to the surface is undefined, it is fixed by the shape: the first
+/// coordinate axis from the centre of a ball, a direction across the axis from a point on the axis
+/// of a capsule, cylinder or cone.
 ///
 /// `contains_point`, `project_point(…, true).is_inside` and `distance_to_point(…, true) == 0`
 /// always agree. A point that is not finite is never inside; its projection and distance are
@@ -77,11 +78,11 @@ pub struct PointProjection<N: Real, const D: usize> {
 /// outside, the nearest part decides. For a point inside, the part in which it is deepest decides,
 /// with the nearest point of that part's own boundary, which may lie inside another part. So the
 /// depth is at most the depth in the union, and equal to it where parts do not overlap. Of several
-/// equal parts the one with the lowest index wins. Triangles in 3D and segments are surfaces, which
-/// contain the points on them and enclose nothing (but closed meshes have
-/// [`signed_distance`](crate::shape::TriMesh::signed_distance)). Distances from them are as
-/// accurate far from the mesh's origin as near it. A composite without parts is infinitely far from
-/// every point.
+/// parts with equal results the one with the lowest index wins. Triangles in 3D and segments are
+/// surfaces, which contain the points on them and enclose nothing (but closed meshes have
+/// [`signed_distance`](crate::shape::TriMesh::signed_distance)). Distances from triangles and
+/// segments are as accurate far from the mesh's origin as near it. A composite without parts is
+/// infinitely far from every point.
 ///
 /// For a composite, the cost is a search for the parts near the point.
 ///
@@ -245,8 +246,8 @@ pub(crate) fn project<N: Space<D>, const D: usize>(
     Some((placed(&nearest, pose, point, solid), if is_own { N::ZERO } else { distance }))
 }
 
-/// Returns whether a ball or a box does not contain the point and is farther from it than
-/// `farthest` by more than rounding. False for other shapes. The point is in the local frame.
+/// Returns true if the point, in the local frame, is certainly farther than `farthest` from a ball
+/// or a box; always false for other shapes.
 #[inline(always)]
 pub(crate) fn is_surely_beyond<N: Real, const D: usize>(
     shape: Geometry<'_, N, D>,
@@ -374,7 +375,7 @@ impl<N: Real, const D: usize> PartPoint<N, D> {
         PointProjection { is_inside: self.distance <= N::ZERO, point: self.point }
     }
 
-    /// Returns the location on the part of the projection of `point`.
+    /// Returns the location of the projection of `point` on the part `self.part`.
     fn location(
         &self,
         parts: &dyn CompositeShape<N, D>,

@@ -14,13 +14,12 @@ pub(crate) struct SurfacePoint<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> SurfacePoint<N, D> {
-    /// Returns the nearest point of a set without interior.
+    /// Returns the nearest point for a query point outside, or on a set without interior.
     pub(super) const fn on(point: Point<N, D>, feature: FeatureId) -> Self {
         Self { point, feature, is_inside: false }
     }
 
-    /// Returns whichever of two nearest points of parts is nearer to `query`; `self` if they are
-    /// equally near.
+    /// Returns the nearer of two points to `query`; `self` if they are equally near.
     pub(super) fn nearer(self, other: Self, query: &Point<N, D>) -> Self {
         if self.is_beaten_by(&other, query) { other } else { self }
     }
@@ -37,8 +36,8 @@ impl<N: Real, const D: usize> SurfacePoint<N, D> {
         }
     }
 
-    /// Makes `query` its own projection if it lies within rounding on the set, which has no
-    /// thickness.
+    /// Replaces the nearest point by `query` if the two are equal within rounding: a query point
+    /// within rounding of a set without thickness is treated as lying on it.
     ///
     /// `reach` is the largest distance of the set from the local origin. The rounding error of
     /// coordinates is proportional to it and to the coordinates of the query point.

@@ -6,8 +6,8 @@ use crate::collide::separation::balls::ball_tapered::project;
 use crate::math::{Point, Real};
 use crate::shape::TaperedCapsule;
 
-/// Returns the point found by the separation from a ball of radius zero. If both radii are zero,
-/// the shape is a segment.
+/// Returns the nearest surface point, computed as the separation from a ball of radius zero. If
+/// both radii are zero, the shape is a segment.
 pub(super) fn surface_point<N: Real, const D: usize>(
     capsule: &TaperedCapsule<N, D>,
     point: &Point<N, D>,

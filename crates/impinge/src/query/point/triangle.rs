@@ -15,7 +15,7 @@ pub(super) struct OnTriangle<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> OnTriangle<N, D> {
-    /// Returns whichever of two points is nearer to `query`; `self` if they are equally near.
+    /// Returns the nearer of two points to `query`; `self` if they are equally near.
     fn nearer(self, other: Self, query: &Point<N, D>) -> Self {
         if self.found.is_beaten_by(&other.found, query) { other } else { self }
     }
@@ -62,9 +62,9 @@ pub(super) fn on_side<N: Real, const D: usize>(
 ///
 /// If the perpendicular from `point` falls into the triangle, its foot lies on that chord. The
 /// position of the chord along the longest side has a rounding error d. The angles at the longest
-/// side are acute, so the other two sides rise to the opposite corner and fall again. The height of
-/// the foot is therefore found within d of it: on the chord or, where the chord ends too low, on
-/// the side at its end, however steep that side is.
+/// side are acute, so the other two sides rise to the opposite corner and fall again. The point
+/// found is therefore within d of the foot: it lies on the chord or, where the chord ends too low,
+/// on the side at the chord's end, however steep that side is.
 fn on_chord<N: Real, const D: usize>(
     corners: &[Point<N, D>; 3],
     sides: &[OnTriangle<N, D>; 3],

@@ -58,8 +58,8 @@ impl<N: Real> Nappe<N> {
         (self.cosine * a - self.sine * b) * (self.cosine * a + self.sine * b)
     }
 
-    /// Returns the span in this nappe, and at most the apex of the opposite nappe. By rounding the
-    /// span may extend beyond the apex, which later clipping at the apex repairs.
+    /// Returns the span in this nappe; of the opposite nappe it contains at most the apex. By
+    /// rounding the span may extend beyond the apex, which later clipping at the apex repairs.
     fn span(&self) -> Option<Span<N, 3>> {
         let quadratic = self.form(self.flat_dir.norm(), self.climb.abs());
         let constant = self.form(self.flat.norm(), self.height.abs());

@@ -42,7 +42,7 @@ fn squeezed<N: Real, const D: usize>(
     (in_units(&ray.origin.coords), dir / speed, speed)
 }
 
-/// Returns the span inside, along the axes whose half axis is not zero.
+/// Returns the span in the ellipsoid, computed only from the axes whose half axis is not zero.
 fn inside<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     ray: &Ray<N, D>,

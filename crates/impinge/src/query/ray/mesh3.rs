@@ -104,8 +104,9 @@ struct Met<N: Real> {
 }
 
 impl<'a, N: Space<3>> MeshCast<'a, N> {
-    /// Returns a ray before its first triangle. `None` if the mesh is a body for the query, if the
-    /// ray has no direction or is not finite, and if `max_time` is negative or NaN.
+    /// Returns a ray before its first triangle. `None` if the query is solid and the mesh has
+    /// bodies, if the mesh has no bounds, if the ray has no direction or is not finite, and if
+    /// `max_time` is negative or NaN.
     #[inline(always)]
     fn new(mesh: &TriMesh<N, 3>, ray: &'a Ray<N, 3>, max_time: N, solid: bool) -> Option<Self> {
         let is_finite = filled(|axis| ray.dir[axis].is_finite_number()) == [true; 3];
@@ -159,8 +160,9 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
         }
     }
 
-    /// Returns whether the ray enters the box of the triangle in time. This is tested last: where
-    /// areas underflow, their signs are meaningless.
+    /// Returns whether the ray enters the box of the triangle in time. Only then a hit counts:
+    /// where the areas of the interior test underflow, their signs are meaningless. For speed, this
+    /// is tested last.
     fn enters_box(&self, corners: &[Point<N, 3>; 3]) -> bool {
         let enter = box_of_corners(corners).sweep_interval(&self.around, &self.ray.dir);
         enter.is_some_and(|(enter, _)| enter <= self.limit())
@@ -203,8 +205,8 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
     }
 }
 
-/// Rotates a normal by the identity, as for any part of a composite. The sums in this rotation
-/// determine the sign of zeros, which must be bitwise equal.
+/// Rotates a normal by the identity, as `each_hit` does for a part without a pose. The sums in this
+/// rotation determine the sign of zeros, which must be equal for both.
 fn as_part<N: Real>(normal: &Vector<N, 3>) -> Vector<N, 3> {
     Pose::<N, 3>::identity().vector(normal)
 }
@@ -238,7 +240,8 @@ mod tests {
         })
     }
 
-    /// Checks that the results for single rays and for batches equal those of the parts one by one.
+    /// Checks that the results for single rays and for batches equal those of casts against each
+    /// part.
     fn agrees<N: Space<3>>(scale: f64, speed: f64) {
         let (state, mut hits) = (&mut 5, 0);
         for count in [1, 12, 300, 5000] {

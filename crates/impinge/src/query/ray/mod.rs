@@ -59,12 +59,12 @@ pub struct RayIntersection<N: Real, const D: usize> {
     /// The time of impact, zero or more, in units of the length of the ray's direction: the hit
     /// point is `ray.point_at(toi)`.
     pub toi: N,
-    /// The outward unit normal of the solid at the hit point, in the frame of the query. It also
-    /// points out where a ray leaves a hollow shape. On a set without thickness it points against
-    /// the ray.
+    /// The outward unit normal of the solid at the hit point, in the frame of the query. The normal
+    /// points out of the solid also where a ray leaves a hollow shape. On a set without thickness
+    /// it points against the ray.
     ///
-    /// It is the zero vector if the hit is not on a surface: the ray of a solid query starts
-    /// inside, or it starts on the boundary and leads out; or the direction of the ray is zero.
+    /// The normal is zero if the hit is not on a surface: the ray of a solid query starts inside,
+    /// or it starts on the boundary and leads out; or the direction of the ray is zero.
     pub normal: Vector<N, D>,
     /// The feature that was hit. A hit on a vertex or an edge may have the id of one of the faces
     /// there. A ray that starts inside a solid has the nearer of the two features ahead and behind.
@@ -467,9 +467,9 @@ pub(crate) fn at_start<N: Real, const D: usize>(feature: FeatureId) -> RayInters
 
 /// Implements the common part of all casts: non-finite and zero directions, and scaling.
 ///
-/// `project` is called if a ray may start inside; it returns `None` if it can exclude that. `span`
-/// is called for finite rays whose direction was divided by a power of two, so that its largest
-/// component is between 1 and 2 and its powers stay in range.
+/// `project` is called if a ray may start inside; it returns `None` if the ray certainly does not.
+/// `span` is called for finite rays whose direction was divided by a power of two, so that its
+/// largest component is between 1 and 2 and its powers stay in range.
 fn cast<N: Real, const D: usize>(
     ray: &Ray<N, D>,
     solid: bool,
@@ -489,7 +489,7 @@ fn cast<N: Real, const D: usize>(
     let unit = speed.power_of_two_below();
     let hit = span(&Ray::new(ray.origin, ray.dir / unit)).and_then(|span| span.first_hit(solid));
     let Some(hit) = hit else {
-        // By rounding, a crossing at the start may seem to be before it.
+        // By rounding, a crossing at the start may seem to be before the start.
         let start = if solid { project(&ray.origin) } else { None };
         return start
             .filter(|(nearest, _)| nearest.is_inside)

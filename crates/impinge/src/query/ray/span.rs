@@ -51,7 +51,8 @@ impl<N: Real, const D: usize> Span<N, D> {
         }
     }
 
-    /// Returns a span of one or two times on a set without thickness.
+    /// Returns the span on a set without thickness: one time, or the times of the two ends of a
+    /// chord.
     pub(super) fn thin(enter: Crossing<N, D>, leave: Crossing<N, D>) -> Self {
         Self { enter, leave, thin: true }
     }
@@ -73,7 +74,8 @@ impl<N: Real, const D: usize> Span<N, D> {
         }
     }
 
-    /// Returns the first hit at a time of zero or more; `None` if the line leaves before.
+    /// Returns the first hit at a time of zero or more; `None` if the line leaves the set before
+    /// time zero.
     pub(super) fn first_hit(self, solid: bool) -> Option<RayIntersection<N, D>> {
         if self.enter.t >= N::ZERO {
             return self.enter.hit();

@@ -53,8 +53,8 @@ fn ray_corner<N: Real>(corner: &Point<N, 2>, ray: &Ray<N, 2>) -> RayCorner<N> {
     RayCorner { t, side: cross2(&ray.dir, &to_corner) }
 }
 
-/// Returns whether a side leads from the left of the line, or from the line, to the right
-/// (`falling`), or from right to left.
+/// Returns whether the line crosses a side that leads from the line's left to its right if
+/// `falling` is true, else from right to left. One end of the side may be on the line.
 fn crosses<N: Real>(corners: &[RayCorner<N>; 3], side: usize, falling: bool) -> bool {
     let (from, to) = (corners[side].side, corners[(side + 1) % 3].side);
     let (high, low) = if falling { (from, to) } else { (to, from) };

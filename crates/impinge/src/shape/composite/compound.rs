@@ -18,7 +18,7 @@ use crate::shape::{
 /// Children may be of any kind: convex solids, half-spaces, meshes, height fields, compounds. The
 /// compound's parts are the parts of its children, indexed in order: first those of child 0, then
 /// those of child 1, … A child that is not a composite is one part. The path to a part is the index
-/// of the child, then the child's own path.
+/// of the child, then the path within the child.
 ///
 /// Seams are handled within the surface of a child, not between children. A search uses the tree
 /// over the boxes of the children, then runs in each composite child that it finds, with the search

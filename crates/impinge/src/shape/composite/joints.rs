@@ -4,8 +4,9 @@ use crate::math::{Mapped, Point, Real, filled};
 
 /// The joints of a surface, with the parts that meet at each.
 ///
-/// Vertices at the same position form one joint, whose index is that of the lowest such vertex. So
-/// pieces with duplicated vertices, as exporters write them, join like pieces that share vertices.
+/// Vertices at the same position form one joint, whose index is the lowest index of these vertices.
+/// So pieces with duplicated vertices, as exporters write them, join like pieces that share
+/// vertices.
 ///
 /// ```text
 /// of_vertex[v]   joint of vertex v: the lowest vertex at its position

@@ -4,8 +4,8 @@ use core::fmt;
 
 use crate::math::{Point, Real, Vector};
 
-/// Why a [`TriMesh`](crate::shape::TriMesh) or a [`Polyline`](crate::shape::Polyline) rejected its
-/// input. Parts are the triangles or segments.
+/// The reason why a [`TriMesh`](crate::shape::TriMesh) or a [`Polyline`](crate::shape::Polyline)
+/// rejected its input. Parts are the triangles or segments.
 ///
 /// ```
 /// use impinge::dim2::math::Point;

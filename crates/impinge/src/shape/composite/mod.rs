@@ -238,8 +238,8 @@ impl<N: Real, const D: usize> PartSolid<'_, N, D> {
 /// A search structure over the parts of a composite, by their boxes.
 ///
 /// A box may be larger than its part: callers test each reported part. Each part is reported at
-/// most once; near parts first is faster, but no order is required. Non-finite input reports no
-/// parts, except for the infinite faces of an unbounded box.
+/// most once; near parts first is faster, but no order is required. A search with a NaN or infinite
+/// argument reports no parts, except that faces of its box may be infinite.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::Aabb;
@@ -291,8 +291,8 @@ pub trait PartSearch<N: Real, const D: usize>: Send + Sync {
 /// The rule for the contact normals of parts that form one surface. It lets solids slide over the
 /// seams between parts.
 ///
-/// Without it, the edges between the triangles of a floor would stop a sliding box. All vectors are
-/// in the frame of the composite.
+/// Without this rule, the edges between the triangles of a floor would stop a sliding box. All
+/// vectors are in the frame of the composite.
 ///
 /// ```
 /// use impinge::dim2::math::{Point, Vector};

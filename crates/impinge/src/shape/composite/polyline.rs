@@ -246,7 +246,7 @@ impl<N: Real, const D: usize> Polyline<N, D> {
         self.joints.parts(self.joints.of(self.segments[segment as usize][end as usize]))
     }
 
-    /// Returns whether each end of a segment is joined to another segment. O(n).
+    /// Returns whether both ends of every segment are joined to another segment. O(n).
     #[must_use]
     pub fn is_closed(&self) -> bool {
         let joint = |&vertex: &u32| self.joints.parts(self.joints.of(vertex));
@@ -266,7 +266,7 @@ impl<N: Real, const D: usize> Polyline<N, D> {
     }
 
     /// Returns whether the line is a body, not a skin: `solid` was called, and no joined vertices
-    /// have been moved apart since. Always false in 3D.
+    /// are apart after a move. Always false in 3D.
     #[must_use]
     pub const fn is_solid(&self) -> bool {
         self.is_solid && self.is_cycle

@@ -2,8 +2,8 @@
 
 use core::fmt;
 
-/// Why a shape has no mass properties, or why given values are not mass properties. Values are
-/// converted to `f64` without loss.
+/// The reason why a shape has no mass properties, or why given values are not mass properties.
+/// Values are converted to `f64` without loss.
 ///
 /// `part` is the part index that queries use: 0 for a shape of one part. `path_to_part` of the
 /// shape converts it to a path in nested compounds.

@@ -185,7 +185,7 @@ impl<N: Real> Polytope<N, 3> {
     }
 }
 
-/// The value of a side without a twin.
+/// The entry of a side without a twin in the list of twins, and of a side without an edge.
 const NONE: u32 = u32::MAX;
 
 /// A side of a face, in the direction of the face's loop.
@@ -199,8 +199,9 @@ struct DirectedSide {
 /// is none. If a side occurs twice, at least one of the two occurrences is not the twin of its
 /// twin.
 ///
-/// For each side, searches the end that fewer sides leave. On a closed surface this takes linear
-/// time: Chiba and Nishizeki, "Arboricity and Subgraph Listing Algorithms" (1985).
+/// A pair of twins is found from the side at whose end no more sides leave than at its start. On a
+/// closed surface this takes linear time: Chiba and Nishizeki, "Arboricity and Subgraph Listing
+/// Algorithms" (1985).
 fn twins(vertices: usize, sides: &[DirectedSide]) -> Vec<u32> {
     let leaving = (0..).zip(sides).map(|(index, side)| (side.from, [side.to, index]));
     let (starts, leaving) = grouped::<[u32; 2]>(vertices, leaving);

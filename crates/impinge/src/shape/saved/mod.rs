@@ -329,9 +329,9 @@ fn made<N: Real, S: Shape<N, D>, E: core::fmt::Display, const D: usize>(
 /// The number of parts that a compound may have in addition to the parts listed in the data.
 const FREE_PARTS: u64 = 1 << 20;
 
-/// Limits the number of parts of a compound to [`FREE_PARTS`] more than the data list. A short
-/// chain of compounds that each hold the previous one twice could otherwise have more parts than
-/// there is memory for their contacts.
+/// Limits the number of parts of a compound to the number of parts that the data list plus
+/// [`FREE_PARTS`]. A short chain of compounds that each hold the previous one twice could otherwise
+/// have more parts than there is memory for their contacts.
 #[derive(Debug, Default)]
 struct PartLimit {
     listed: u64,

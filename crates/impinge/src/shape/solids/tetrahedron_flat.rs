@@ -32,7 +32,7 @@ impl<N: Real> FlatOutline<N> {
         Self { ring, points, normal }
     }
 
-    /// Applies the rule of [`super::SupportMap::core_feature`] to the flat polygon.
+    /// Applies the rule of [`crate::shape::SupportMap::core_feature`] to the flat polygon.
     pub(in crate::shape) fn fill_toward(&self, direction: &Vector<N, 3>, out: &mut Feature<N, 3>) {
         if self.ring.len() < 3 {
             return self.fill_side(0, out);
@@ -102,7 +102,8 @@ impl<N: Real> FlatOutline<N> {
     }
 }
 
-/// Returns the unit normal of the largest triangle, and twice its area.
+/// Returns the unit normal of the largest triangle, and twice its area; `None` if no triangle has
+/// an area.
 fn widest_normal(positions: &[Vector<f64, 3>; 4]) -> Option<(Vector<f64, 3>, f64)> {
     let [a, b, c, d] = positions;
     let triangles = [[a, b, c], [a, c, d], [a, d, b], [b, d, c]];

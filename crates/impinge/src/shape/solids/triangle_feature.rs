@@ -302,8 +302,8 @@ fn side_between(from: usize, to: usize) -> usize {
 /// A triangle is thin if four times its squared area is at most this fraction of the fourth power
 /// of its longest side.
 pub(crate) const THIN_SQUARED: f64 = 1.0 / 1024.0;
-/// A quantity is clearly larger than another if the excess is at least this fraction; otherwise
-/// rounding may decide.
+/// A quantity is clearly larger than another if the excess is more than this fraction of the larger
+/// one; otherwise rounding may decide.
 pub(crate) const CLEAR: f64 = 1.0 / 1024.0;
 
 impl<N: Real> Triangle<N, 3> {

@@ -1,10 +1,11 @@
 //! The edge between two triangles: the contact normals that it admits, computed from its face
 //! normals.
 //!
-//! A convex edge (ridge) admits the normals between those of its two faces; a concave edge (hollow)
-//! admits none. If the triangles are not thin and not far from the origin for their size, the face
-//! normals alone decide this, without the directions from the edge into the faces that the rule of
-//! [`seam`](super::seam) needs. Cases near a limit are left to the rule of `seam`.
+//! On the front, a convex edge (ridge) admits the normals between those of its two faces, and a
+//! concave edge (hollow) admits none; on the back the two exchange roles. If the triangles are not
+//! thin and not far from the origin for their size, the face normals alone decide this, without the
+//! directions from the edge into the faces that the rule of [`seam`](super::seam) needs. Cases near
+//! a limit are left to the rule of `seam`.
 
 use crate::math::{Mapped, Point, Real, Vector, cross, max, max_component, min};
 use crate::shape::surface::seam::{FLAT_SINE, slack};
@@ -144,8 +145,8 @@ impl BendShape {
     }
 }
 
-/// Returns the signed height over a plane of the corner farthest from it, which is the corner not
-/// on the shared edge. `front` is the unit normal of the plane.
+/// Returns the signed height, over a plane, of the corner that is farthest from the plane: the
+/// corner not on the shared edge. `front` is the unit normal of the plane.
 fn height_of<N: Real>(
     corners: &[Point<N, 3>; 3],
     plane: &[Point<N, 3>; 3],

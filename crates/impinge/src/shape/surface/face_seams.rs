@@ -51,7 +51,7 @@ impl<N: Real> FaceSeams<N> {
     }
 
     /// Returns whether `face` is the normal on the front and all neighbours have their fronts on
-    /// the same side. If this holds for all faces in contact, none hides another.
+    /// the same side. If this holds for all faces in contact, no face hides another.
     pub(crate) fn is_front(&self, face: &Vector<N, 3>) -> bool {
         self.is_oriented && self.front.dot(face) > N::ZERO
     }
@@ -160,7 +160,7 @@ mod tests {
     }
 
     /// Checks that cached seams and the surface give equal results, for normals other than the
-    /// triangle's own; adds the results to `counts`.
+    /// normal of the triangle; adds the results to `counts`.
     fn check(parts: &dyn CompositeShape<f64, 3>, random: &mut Xorshift, counts: &mut [usize; 3]) {
         let surface = parts.surface_access().expect("a surface");
         for part in 0..parts.num_parts() {

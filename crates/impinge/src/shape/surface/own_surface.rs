@@ -1,12 +1,13 @@
-//! Additional methods of the library's own surfaces. They make contacts faster to compute and do
-//! not change them.
+//! Additional methods of the library's own surfaces. Most of them make contacts faster to compute
+//! and do not change them; others tell the algorithms about bodies and ghosts.
 
 use core::fmt;
 
 use crate::math::{Point, Real, Vector};
 use crate::shape::{FaceSeams, FeatureId, Sidedness, Surface};
 
-/// A surface of this library. Its methods change the cost of contacts, never the contacts.
+/// A surface of this library. Only [`Self::is_body`] and [`Self::is_beside_ghost`] change which
+/// contacts are found; the other methods change only the cost.
 pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
     /// Calls [`Surface::admits`] for two normals, for the second only if the first is rejected
     /// (else the second result is false). The neighbourhood of the feature is evaluated once.
@@ -20,8 +21,8 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
         [is_first, !is_first && self.admits(part, feature, second)]
     }
 
-    /// Runs [`Self::admits_in_turn`] at a corner of a triangle, for normals other than its own;
-    /// `known` has the seams of the triangle.
+    /// Runs [`Self::admits_in_turn`] at a corner of a triangle, for normals other than the normal
+    /// of the triangle; `known` has the seams of the triangle.
     fn corner_admits_in_turn(
         &self,
         part: u32,
@@ -59,8 +60,8 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
         false
     }
 
-    /// Returns whether a surface in 3D has two properties. Parts are adjacent if and only if they
-    /// have corners at one position. A seam admits no normal along which a direction into an
+    /// Returns whether a surface in 3D has two properties: parts are adjacent if and only if they
+    /// have corners at one position, and a seam admits no normal along which a direction into an
     /// adjacent part rises.
     fn has_regular_seams(&self) -> bool {
         false
@@ -70,7 +71,7 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
 /// The surface of a composite for the algorithms of the library. A surface of the library also has
 /// the methods of `OwnSurface`; a user's surface has only those of [`Surface`].
 ///
-/// Public only because a hidden method returns it; users can neither construct nor use one.
+/// Public only because a hidden method returns this type; users can neither construct nor use it.
 #[derive(Clone, Copy)]
 pub struct SurfaceAccess<'a, N: Real, const D: usize> {
     surface: &'a dyn Surface<N, D>,

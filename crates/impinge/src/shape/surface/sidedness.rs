@@ -180,7 +180,7 @@ impl<N: Real> OwnSurface<N, 2> for KnownSegment<'_, N> {
         feature: FeatureId,
         [first, second]: [&Vector<N, 2>; 2],
     ) -> [bool; 2] {
-        // Callers normally query an end only for normals other than the segment's own.
+        // Callers normally query an end only for normals other than the two normals of the segment.
         if let (Some(sidedness), FeatureId::Vertex(end)) = (self.sidedness, feature)
             && !sidedness.keeps_internal_edges
             && self.is_own(first) != Some(true)

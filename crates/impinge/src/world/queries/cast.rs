@@ -21,7 +21,7 @@ use crate::world::{CollisionObject, CollisionWorld};
 /// nothing is hit.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns the object that a moving solid hits first, and the impact; at equal times the object
-    /// with the smallest handle. `None` if it hits nothing by the maximum time of `options`.
+    /// with the smallest handle. `None` if the solid hits nothing by the maximum time of `options`.
     ///
     /// Costs a tree search, and an [`impact`] for a few objects whose boxes lie on the path.
     ///

@@ -96,7 +96,7 @@ impl<N: Real, A> Rank<N, A> for Ranking<N, A> {
     }
 }
 
-/// A ranking of a single result, which does not allocate.
+/// The best result so far, for a query with a single result; does not allocate.
 #[derive(Debug)]
 pub(super) struct BestOne<N: Real, A> {
     limit: N,
@@ -104,8 +104,8 @@ pub(super) struct BestOne<N: Real, A> {
 }
 
 impl<N: Real, A> BestOne<N, A> {
-    /// Creates a ranking of a single result with a key of at most `limit`; `None` if `limit` is
-    /// negative or NaN.
+    /// Creates an empty ranking for the best result with a key of at most `limit`; `None` if
+    /// `limit` is negative or NaN.
     pub(super) fn new(limit: N) -> Option<Self> {
         (limit >= N::ZERO).then_some(Self { limit, best: None })
     }

@@ -15,8 +15,8 @@ use crate::partitioning::Sweep;
 use crate::world::bodies::WorldBody;
 use crate::world::{CollisionObject, CollisionWorld, DirtyTree, DirtyVisitor, WorldBroadPhase};
 
-/// The ray, box or moving box with which a query searches. It defines the key of a box of an
-/// object: a time or a distance.
+/// The ray, box or moving box with which a query searches. It defines the key of an object's box: a
+/// time or a distance.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum WorldProbe<N: Real, const D: usize> {
     /// The key is the time at which the ray enters the box.

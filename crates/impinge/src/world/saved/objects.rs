@@ -58,7 +58,7 @@ enum QueryRecord<N: Real> {
 #[serde(bound(serialize = "N: Real, T: Serialize", deserialize = "N: Real, T: Deserialize<'de>"))]
 pub(super) struct RemovedRecord<N: Real, T> {
     generation: u16,
-    /// The index and the generation of the handle in the broad phase.
+    /// The index and the generation of the object's [`ProxyHandle`].
     proxy: (u32, u16),
     object: ObjectRecord<N, T>,
 }
@@ -233,7 +233,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     }
 
     /// Writes the rows of the objects of all pairs to the object table, and marks the objects that
-    /// have a pair with themselves. Fails if an object has no proxy, or a pair has no object.
+    /// have a pair with themselves. Fails if an object has no proxy, or if an object of a pair does
+    /// not exist.
     pub(super) fn lend_all(
         &mut self,
         pairs: &[PairRecord<N>],

@@ -262,7 +262,8 @@ fn stage<N: Space<D>, const D: usize>() -> CollisionWorld<N, D, ()> {
     world
 }
 
-/// Returns all lines drawn for a world, each in a colour that is the uid of its object.
+/// Returns all lines drawn for a world, each in a colour whose red component is the uid of the
+/// object.
 fn picture<N: Space<D>, const D: usize>(
     world: &CollisionWorld<N, D, ()>,
     options: DebugOptions<N>,

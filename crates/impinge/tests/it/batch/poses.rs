@@ -23,7 +23,8 @@ fn numbers<N: Real, const D: usize>(poses: &[Pose<N, D>]) -> Vec<N> {
     numbers
 }
 
-/// Returns the bits of all distances and witness points of a batch.
+/// Returns the bits of all distances of a batch, and of the distance, the first point and the
+/// normal of each witness up to distance 2.
 fn facts<N: Space<D>, const D: usize>(batch: &PairBatch<'_, N, D>) -> Vec<u64> {
     let count = batch.len();
     let (mut distance, mut away) = (vec![N::ZERO; count], vec![N::ZERO; count]);

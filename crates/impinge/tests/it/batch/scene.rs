@@ -15,9 +15,9 @@ pub(super) struct Scene<N: Real, R, const D: usize> {
     pub(super) poses: [Vec<Isometry<N, R, D>>; 2],
 }
 
-/// Pairs every shape with every shape: with equal centres, with touching boxes, rotated and
-/// overlapping, near, far, and with a position that is NaN. All lie around the point with all
-/// coordinates equal to `away`.
+/// Pairs every shape with every shape: with equal centres, with touching boxes, and rotated at
+/// distances of up to 1, 4 and 40. Some pairs also occur with a NaN position. The first solid is at
+/// the point with all coordinates equal to `away`.
 fn scene<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize>(
     table: shape_table::Shapes<N, D>,
     away: f64,

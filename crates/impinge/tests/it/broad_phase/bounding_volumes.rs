@@ -163,7 +163,7 @@ fn check_box<N: Space<D>, const D: usize>((shape, pieces): &Solid<N, D>, pose: &
     check_sphere(shape, pieces, pose);
 }
 
-/// Asserts that the bounding sphere of a shape contains the shape.
+/// Asserts that the bounding sphere of a shape contains the balls among its pieces.
 fn check_sphere<N: Space<D>, const D: usize>(
     shape: &ShapeHandle<N, D>,
     pieces: &[Piece<D>],

@@ -215,8 +215,9 @@ fn nearest<N: Space<D>, const D: usize>() {
     assert_common("points outside", asked - inside, asked);
 }
 
-/// Coordinates that no `f32` represents. The tree, which has `f32` boxes, only proposes candidates;
-/// the boxes as given decide. Ordered searches give the bits of the methods of [`Aabb`].
+/// Tests boxes with coordinates that no `f32` represents. The tree, which has `f32` boxes, only
+/// proposes candidates; the boxes as given decide. Ordered searches give the bits of the methods of
+/// [`Aabb`].
 fn anywhere<N: Space<D>, const D: usize>() {
     let (mut random, mut proposed) = (Random::new(4), 0);
     let lo = |random: &mut Random| core::array::from_fn(|_| random.range(-10.0, 10.0));

@@ -132,8 +132,8 @@ fn on_a_grid<N: Space<D>, const D: usize>() {
     assert!(hits > 1000 && misses > 1000, "some are met, some are not: {hits}, {misses}");
 }
 
-/// Coordinates that no `f32` represents, near the origin and far from it. The tree, which has `f32`
-/// boxes, only proposes candidates; the boxes as given decide.
+/// Tests boxes with coordinates that no `f32` represents, near the origin and far from it. The
+/// tree, which has `f32` boxes, only proposes candidates; the boxes as given decide.
 fn anywhere<N: Space<D>, const D: usize>() {
     around::<N, D>(0.0);
     around::<N, D>(1e6);
@@ -219,7 +219,7 @@ fn limits<N: Space<D>, const D: usize>() {
     assert!(nearest(&none, &Aabb::unbounded(), N::INFINITY).is_empty(), "there is nothing");
 }
 
-/// Squares of these distances overflow the scalar.
+/// Tests distances whose squares overflow the scalar.
 fn huge<N: Space<D>, const D: usize>() {
     let unit = N::MAX.as_f32().min(f32::MAX / 8.0);
     let unit = f64::from(unit) / 64.0;

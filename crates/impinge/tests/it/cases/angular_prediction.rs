@@ -93,7 +93,7 @@ fn contacts_of<N: Space<D>, const D: usize>(
 }
 
 /// Tests many pairs of disjoint solids, with predictions of 1.02 and 0.98 times their distance. The
-/// first must give contacts and the second none.
+/// larger prediction must give contacts and the smaller none.
 fn ask_all<N: Space<D>, const D: usize>(
     seed: u64,
     make: impl Fn(&mut Random) -> [Placed<N, D>; 2],
@@ -149,8 +149,8 @@ fn what_is_near_has_a_contact_in_the_plane() {
     in_the_plane::<f64>(4);
 }
 
-/// Returns the number of contacts at the four corners of a box's bottom. The box stands on an edge
-/// of its bottom, tilted by `tilt`.
+/// Returns the number of contacts of a floor and a box that stands on an edge of its bottom, tilted
+/// by `tilt`.
 fn corners_of_tilted_box<N: Space<3, Isometry = Isometry3<N>>>(
     solid: &ShapeHandle<N, 3>,
     floor: &ShapeHandle<N, 3>,

@@ -6,8 +6,8 @@ use impinge::query::{Proximity, contact, distance, proximity};
 
 const HERE: [f64; 2] = [4.875, 0.0];
 
-/// Returns the distance between a flat solid and a small solid that lies on its line, beyond its
-/// end.
+/// Returns the distance between a flat solid and a small solid that lies on the line of the flat
+/// solid, beyond its end.
 fn beyond(flat: &dyn Shape<f64, 2>, solid: &dyn Shape<f64, 2>) -> f64 {
     let (origin, place) = (Isometry::identity(), Isometry::translation(HERE[0], HERE[1]));
     let found = distance(&origin, flat, &place, solid);

@@ -92,7 +92,8 @@ fn area(outline: &[[f64; 2]]) -> f64 {
     outline.windows(2).map(|side| turn(first, side[0], side[1])).sum::<f64>() / 2.0
 }
 
-/// Returns the intersection of two outlines (I. E. Sutherland and G. W. Hodgman, 1974), without coinciding corners.
+/// Returns the intersection of two outlines (I. E. Sutherland and G. W. Hodgman, 1974), without
+/// coinciding corners.
 fn overlap(one: &[[f64; 2]], other: &[[f64; 2]]) -> Outline {
     let mut rest = one.to_vec();
     for (at, &from) in other.iter().enumerate() {
@@ -115,7 +116,8 @@ fn overlap(one: &[[f64; 2]], other: &[[f64; 2]]) -> Outline {
     rest
 }
 
-/// Returns the largest area of four corners of an outline. With `given`, the four must include that corner.
+/// Returns the largest area of four corners of an outline. With `given`, the four must include that
+/// corner.
 fn best_four(outline: &[[f64; 2]], given: Option<usize>) -> f64 {
     let count = outline.len();
     if count < 4 {
@@ -155,8 +157,8 @@ fn turned(outline: &[[f64; 2]], angle: f64, at: [f64; 2]) -> Outline {
     outline.iter().map(|&corner| place(corner)).collect()
 }
 
-/// A solid that extends from `-0.5 scale` to `0.5 scale` in height, and the outline of its flat ends seen from above,
-/// in coordinates x and z.
+/// A solid that extends from `-0.5 scale` to `0.5 scale` in height, and the outline of its flat
+/// ends seen from above, in coordinates x and z.
 struct Flat<N: Space<3>> {
     shape: ShapeHandle<N, 3>,
     outline: Outline,
@@ -220,8 +222,8 @@ fn turn_about<N: Real>(axis: [f64; 3], angle: f64) -> UnitQuaternion<N> {
 }
 
 impl<N: Space<3, Isometry = Isometry<N, UnitQuaternion<N>, 3>>> Rest<N> {
-    /// Draws a random pose that overlaps by `0.01 scale`; `None` if the ends overlap little, or if the lowest corner of the
-    /// tilted solid lies beside the lower solid.
+    /// Draws a random pose that overlaps by `0.01 scale`; `None` if the ends overlap little, or if
+    /// the lowest corner of the tilted solid lies beside the lower solid.
     fn draw(makes: [Make<N>; 2], tilt: f64, scale: f64, random: &mut Random) -> Option<Self> {
         let [low, high] = makes.map(|make| make(random, scale));
         let (at, angle) = ([0.0; 2].map(|_| 1.5 * scale * random.signed()), TAU * random.signed());
@@ -314,8 +316,8 @@ fn points_span_the_overlap<N: Space<3, Isometry = Isometry<N, UnitQuaternion<N>,
     }
 }
 
-/// The points span at least 90 % of the area of the best four corners. If a single corner is the deepest, the four must
-/// include it.
+/// The points span at least 90 % of the area of the best four corners. If a single corner is the
+/// deepest, the four must include it.
 #[test]
 fn four_points_span_the_overlap_of_two_faces() {
     points_span_the_overlap::<f32>();

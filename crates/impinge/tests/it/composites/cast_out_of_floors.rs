@@ -139,7 +139,7 @@ fn what_leaves_the_floor_meets_the_wall() {
     assert_eq!((hit.toi, hit.normal.x), (0.0, -1.0));
 }
 
-/// Casts in a world give the results of single queries.
+/// Solids cast in a world leave the floor without a hit, and hit it at time zero when cast into it.
 #[test]
 fn worlds_cast_out_of_floors() {
     let mut world = CollisionWorld::<f32, 3, ()>::new(0.02);

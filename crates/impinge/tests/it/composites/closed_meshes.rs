@@ -1,5 +1,5 @@
-//! Compares the volumes that closed meshes and lines enclose with two definitions of the inside:
-//! solid angles, and angle-weighted pseudonormals.
+//! Compares the signed distances of closed meshes and lines with other definitions of the inside:
+//! winding numbers, angle-weighted pseudonormals, and the closed form for boxes.
 
 use crate::support::query_support;
 
@@ -276,7 +276,7 @@ fn what_is_not_closed_encloses_nothing() {
 
 #[test]
 fn parted_corners_open_a_mesh() {
-    // Each triangle has its own three vertices; vertices at the same position are one.
+    // Each triangle has its own three vertices; the mesh treats vertices at one position as equal.
     let (corners, triangles) = cuboid([-1.0; 3], [1.0; 3]);
     let soup: Vec<P3> = triangles.iter().flatten().map(|&at| corners[at as usize]).collect();
     let names = (0..).take(triangles.len()).map(|part| [3 * part, 3 * part + 1, 3 * part + 2]);

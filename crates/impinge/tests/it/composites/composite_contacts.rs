@@ -87,7 +87,7 @@ fn laws_over_hills<N: Real + Space<3, Isometry = Isometry3<N>>>(floor: &dyn Shap
             // A depth along the normal of a slope may exceed the lift straight up, but by no more
             // than half.
             let lift = lift(floor, solid, &pose);
-            // The centre of a solid that is deeper may be below the surface, which then pushes it
+            // The centre of a deeper solid may be below the surface, which then pushes the solid
             // out downwards.
             if lift > N::lit(0.15) {
                 continue;

@@ -1,6 +1,6 @@
 //! Compares composites with a brute-force scan of their parts, against convex solids, half-spaces
-//! and other composites. Both orders must agree to the bit, in whatever order the search proposes
-//! parts.
+//! and other composites. Both orders of the shapes must agree to the bit, in whatever order the
+//! search proposes parts.
 
 use crate::support::composite_support;
 use crate::support::query_support;
@@ -39,7 +39,8 @@ impl<N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Two<'_, N, R, D> {
         witness(self.m1, self.g1, self.m2, self.g2, limit)
     }
 
-    /// Checks the laws of every pair of shapes; `noise` is the rounding error allowed in lengths.
+    /// Checks the laws that hold for every pair of shapes; `noise` is the rounding error allowed in
+    /// lengths.
     fn check(&self, noise: N) {
         let Self { m1, g1, m2, g2 } = *self;
         let found = self.witness(N::INFINITY).expect("they are some distance apart");
@@ -68,7 +69,8 @@ impl<N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Two<'_, N, R, D> {
     }
 }
 
-/// Asserts that the parts of a witness have the distance of the witness.
+/// Asserts that the part of the composite that a witness names has, on its own, the distance of the
+/// witness from the other shape.
 fn check_parts<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     found: &Witness<N, D>,
     two: (&Scene<N, R, D>, &Isometry<N, R, D>),

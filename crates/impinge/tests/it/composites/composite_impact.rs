@@ -1,4 +1,4 @@
-//! Tests the first impact of moving composites; both orders must agree to the bit.
+//! Tests the first impact of moving composites, which must be the same to the bit in both orders.
 
 use crate::support::composite_support;
 use crate::support::query_support;
@@ -97,8 +97,8 @@ fn moved<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     m
 }
 
-/// Asserts that the shapes are farther apart than the target distance before the impact, and at that distance at the
-/// impact.
+/// Asserts that the shapes are farther apart than the target distance before the impact, and at
+/// that distance at the impact.
 fn stepped<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     one: &Mover<'_, N, R, D>,
     two: &Mover<'_, N, R, D>,
@@ -108,8 +108,8 @@ fn stepped<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     let at =
         |time: N| distance(&moved(one.0, one.1 * time), one.2, &moved(two.0, two.1 * time), two.2);
     assert!(at(toi) <= target + noise, "they touch at {toi:?}: {:?}", at(toi));
-    // Shapes that touch at the start and then separate have no impact, so only pairs that are disjoint at the start are
-    // checked.
+    // Shapes that touch at the start and then separate have no impact, so only pairs that are
+    // disjoint at the start are checked.
     if at(N::ZERO) > target + noise {
         for step in 0..16 {
             let time = toi * N::lit(f64::from(step) / 16.0);
@@ -212,8 +212,9 @@ fn what_slides_over_the_floor_meets_the_wall() {
     assert_eq!(impact(&still, &slide, &short), None, "too late");
 }
 
-/// Computes the impact of a moving shape with one that rests at the origin. Asserts that nothing touches before the
-/// impact, and that the gap is at most 2⁻¹⁵ at the impact. Returns whether there is one.
+/// Computes the impact of a moving shape with a shape that rests at the origin. Asserts that
+/// nothing touches before the impact, and that the gap is at most 2⁻¹⁵ at the impact. Returns
+/// whether there is an impact.
 fn slides<N, R, const D: usize>(
     motion: ConstantVelocities<N, D>,
     mover: &dyn Shape<N, D>,
@@ -243,8 +244,8 @@ where
     true
 }
 
-/// Returns the surface of a screw thread of pitch 1 around the y axis: its radius varies by 0.25
-/// along a helix.
+/// Returns the surface of a screw thread of pitch 1 around the y axis: its crest, at `radius +
+/// 0.25`, and its groove, at `radius - 0.25`, are helices.
 fn thread<N: Space<3>>(radius: f64, pitches: u32) -> Pieces<N, 3> {
     let (around, rows) = (24, 8 * pitches);
     let mut points = Vec::new();
@@ -286,8 +287,8 @@ where
     assert!(hits >= 2, "{hits}");
 }
 
-/// Tests a round outline of segments that spins within a slightly larger one, and drifts toward it
-/// much more slowly.
+/// Tests a round outline of segments that spins within a slightly larger outline, and drifts toward
+/// it much more slowly.
 fn spins_in_ring<N: Space<2, Isometry = Isometry2<N>>>()
 where
     ConstantVelocities<N, 2>: RigidMotion<N, 2>,
@@ -337,8 +338,8 @@ impl Shape<f64, 3> for Asked {
     }
 }
 
-/// A screw in its nut advances to the impact with a few searches over all parts, not with one search for each step of
-/// the touching parts.
+/// A screw in its nut advances to the impact with a few searches over all parts, not with one
+/// search for each step of the touching parts.
 #[test]
 fn screws_are_looked_at_a_few_times() {
     let [screw, nut] =
@@ -357,8 +358,8 @@ fn screws_are_looked_at_a_few_times() {
     }
 }
 
-/// Asserts that the impact of two composites is the first impact of any two parts, each advanced as a separate solid.
-/// All parts have the identity as their pose.
+/// Asserts that the impact of two composites is the first impact of any two parts, each advanced as
+/// a separate solid. All parts have the identity as their pose.
 fn both_turn<N: Space<D>, const D: usize>(
     motions: &[ConstantVelocities<N, D>; 2],
     shapes: &[Pieces<N, D>; 2],
@@ -381,8 +382,8 @@ where
     found.is_finite_number()
 }
 
-/// Tests patches that lie close to each other. Both rotate, each about its own centre, or only the
-/// first one does.
+/// Tests two patches in 3D, and two chains in 2D, that lie close to each other. Both bodies move
+/// and rotate, each about its own centre, or only the first body moves.
 fn patches_that_turn<N: Space<2, Isometry = Isometry2<N>> + Space<3, Isometry = Isometry3<N>>>() {
     let (random, mut hits) = (&mut Random(31, false), [0, 0]);
     for round in 0..40 {

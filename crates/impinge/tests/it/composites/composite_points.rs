@@ -26,8 +26,9 @@ fn dot<N: Real, const D: usize, const K: usize>(
     Point::from(sum)
 }
 
-/// Returns the point with given barycentric weights, in the frame of the solid; `None` if there are
-/// no weights.
+/// Returns the point with given barycentric weights, in the frame of the part. Returns `None` for a
+/// part with a shape; asserts that its weights are defined if and only if the shape is a triangle
+/// or a segment.
 fn weighed<N: Real, const D: usize>(
     solid: &PartSolid<'_, N, D>,
     barycentric: &Barycentric<N>,

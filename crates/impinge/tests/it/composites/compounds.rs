@@ -103,7 +103,8 @@ fn parts_are_those_of_the_children_in_a_row() {
     check_parts::<f64>();
 }
 
-/// Returns points of all parts, in the frame of the compound.
+/// Returns the centre and three support points of each part, with the index of the part, in the
+/// frame of the compound.
 fn points_of<N: Real>(compound: &Compound3<N>, random: &mut Poses) -> Vec<(u32, Point<N, 3>)> {
     let mut points = Vec::new();
     for number in 0..compound.num_parts() {
@@ -305,8 +306,8 @@ fn with_corner_at_origin<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>
     })
 }
 
-/// Asserts that a distance of zero, an intersection, and a contact occur together, in either order.
-/// Returns whether the shapes touch.
+/// Asserts that a distance of zero, an intersection, and a contact occur together, in either order
+/// of the shapes. Returns whether the shapes touch.
 fn check_one_fact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,
@@ -348,7 +349,7 @@ fn check_corners<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     assert!((600..2700).contains(&touching), "{touching} of 3000 touch");
 }
 
-/// The rotated children have a corner at the origin up to rounding, which is also a corner of the
+/// Tests rotated children with a corner at the origin up to rounding, which is also a corner of the
 /// other solid.
 #[test]
 fn touching_a_turned_child_is_one_fact() {

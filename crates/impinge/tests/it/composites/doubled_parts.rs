@@ -1,5 +1,5 @@
-//! Tests that parts that are listed twice, or lie on other parts, change no contact: many meshes in
-//! use have duplicates.
+//! Tests that parts that are listed twice, or lie on other parts, do not change the depth of
+//! contacts: many meshes in use have duplicates.
 
 use crate::support::{query_support, slides};
 
@@ -44,8 +44,8 @@ fn are_same_up_to(room: f64, [one, other]: [Option<f64>; 2]) -> bool {
 /// Index of the sheet that is cut along the other diagonal.
 const OTHER_CUT: usize = 4;
 
-/// Tests that a sheet in which each triangle is listed once has the same contacts as the other
-/// sheets.
+/// Tests that contacts with sheet 0, in which each triangle is listed once, are as deep as contacts
+/// with the other sheets.
 fn rims<N: Space<3, Isometry = Isometry3<N>>>() {
     let random = &mut Random(41, false);
     let (mut met, mut at_rim) = (0, 0);
@@ -104,7 +104,7 @@ fn the_rim_of_a_doubled_sheet_by_its_report() {
     assert!((found.normal.x - 0.969).abs() < 1e-3, "{found:?}");
 }
 
-/// With a floor in the same mesh, the contact at the rim is one of two.
+/// If the mesh has a floor, too, the deepest contact is the contact at the rim.
 #[test]
 fn the_rim_above_a_floor_is_touched() {
     let mut corners = SQUARE.map(|[x, _, z]| [x, 1.0, z]).to_vec();
@@ -147,7 +147,8 @@ fn rims_have_normals_close_to_that_of_the_face() {
     shallow::<f64>();
 }
 
-/// Tests that lines in 2D whose segments are listed twice keep the contacts at their ends.
+/// Tests that lines in 2D whose segments are listed twice have contacts of the same depth at their
+/// ends and corner as a line that lists each segment once.
 fn lines<N: Space<2, Isometry = Isometry2<N>>>() {
     let p = |x: f64, y: f64| Point::<N, 2>::new(N::lit(x), N::lit(y));
     let corners = || vec![p(2.0, 0.0), p(0.0, 0.0), p(-2.0, 1.0)];
@@ -187,8 +188,8 @@ fn lines_that_are_listed_twice_keep_their_ends() {
     lines::<f64>();
 }
 
-/// Tests that a triangle without area that extends beyond a shared edge has the same contact there
-/// as on its own, even if the solid also touches a floor below.
+/// Tests that a triangle without area that extends beyond a shared edge has a contact of the same
+/// depth there as on its own, even if the solid also touches a floor below.
 fn sticking_out<N: Space<3, Isometry = Isometry3<N>>>() {
     let mut corners = SQUARE.to_vec();
     corners.push([1.0, 0.0, 3.0]);
@@ -231,7 +232,8 @@ fn triangles_without_area_are_met_where_they_stick_out() {
     sticking_out::<f64>();
 }
 
-/// Filled triangles in 2D that are listed twice have the contacts of a single one.
+/// Filled meshes in 2D whose triangles are listed twice have contacts of the same depth as a mesh
+/// that lists each triangle once.
 #[test]
 fn filled_triangles_that_are_listed_twice_are_there_once() {
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(Point::<f64, 2>::from);

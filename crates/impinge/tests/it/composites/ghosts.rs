@@ -1,6 +1,6 @@
-//! Tests ghost cells and ghost triangles, which surround a tile of terrain. A solid that slides
-//! over the seam of two tiles has the normals of a single surface, whether the tiles are two
-//! objects or one compound.
+//! Tests ghost cells and ghost triangles, which surround a tile of terrain. The contacts of a solid
+//! that slides over the seam of two tiles have the normals of a single surface, whether the tiles
+//! are several objects or one compound.
 
 use impinge::math::{Isometry2, Isometry3, Point, Real, Vector};
 use impinge::narrow_phase::{ContactPrediction, contact_manifolds};
@@ -188,8 +188,8 @@ fn line<N: Real>(low: f64, border: usize, height: fn(f64) -> f64) -> HeightField
     if border > 0 { field.with_ghost_border() } else { field }
 }
 
-/// Slides solids over the seam of two fields in 2D, and returns the number of contact normals that
-/// are not upward: the line is flat.
+/// Slides solids over the seam of two flat fields in 2D, and returns the number of contact normals
+/// that are not upward.
 fn line_bumps<N: Real>(border: usize) -> usize {
     let l = N::lit;
     let solids: [ShapeHandle<N, 2>; 3] = [

@@ -35,7 +35,7 @@ fn lowest<N: Real>(solid: &dyn Shape<N, 2>, turn: UnitComplex<N>) -> N {
     pose.point(&map.support_point(&pose.inverse_vector(&v(0.0, -1.0)))).y
 }
 
-/// Slides all solids along a floor at y = 0 around x = `center`, in both directions.
+/// Slides all solids along a floor at y = 0 around x = `center`, to the left or right at random.
 fn slide_all<N: Real + Space<2, Isometry = Isometry2<N>>>(
     floor: &dyn Shape<N, 2>,
     (center, depth, is_below): (f64, f64, bool),

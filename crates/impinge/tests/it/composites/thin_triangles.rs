@@ -117,7 +117,8 @@ fn triangle<N: Real>(random: &mut Random) -> ([[f64; 3]; 3], [[f64; 3]; 2]) {
     (corners.map(rounded::<N, 3>), [across, plain::perpendicular(&[along, across])])
 }
 
-/// Returns a point near a triangle, and whether it lies on the triangle up to its own rounding.
+/// Returns a point near a triangle, and whether it lies on the triangle up to the rounding of its
+/// coordinates.
 fn asked(
     random: &mut Random,
     corners: &[[f64; 3]; 3],
@@ -140,7 +141,7 @@ fn asked(
     }
 }
 
-/// The worst error of each kind, in units, with its case.
+/// The worst error of each kind, in units, with a description of its case.
 #[derive(Default)]
 struct Worst(BTreeMap<&'static str, (f64, String)>);
 
@@ -224,8 +225,8 @@ impl<N: Space<3>> Scene<N> {
         self.ask_mesh(worst, truth);
     }
 
-    /// Records the error of the distance from the triangle's mesh. The unit does not depend on the
-    /// position of the mesh.
+    /// Records the error of the distance from a mesh of the triangle. The unit is epsilon times the
+    /// distance from the point to the farthest corner, wherever the mesh lies.
     fn ask_mesh(&self, worst: &mut Worst, truth: f64) {
         let (corners, point) = &self.of_scalar;
         let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]);

@@ -58,7 +58,7 @@ fn quaternion<N: Real>(random: &mut Random) -> [f64; 4] {
 }
 
 /// Returns the worst error of the signed distance, relative to the size of the scene, over pairs
-/// with at least one curved solid, and the description of its case.
+/// with at least one curved solid, and a description of the pair with that error.
 fn worst<N: Space<3>>(seed: u64, rounds: usize) -> (f64, String) {
     let (mut random, mut worst) = (Random::new(seed), (0.0, String::new()));
     for (kind1, kind2, round) in pairs(rounds) {

@@ -293,8 +293,8 @@ struct Case<N: Play<D>, const D: usize> {
 }
 
 impl<N: Move<D>, const D: usize> Case<N, D> {
-    /// Returns pairs of contacts at `time`: the prediction from time zero, and the contact computed
-    /// then. Sorted by descending depth at time zero.
+    /// Returns two contacts at `time` for each contact that lasts: the prediction from time zero,
+    /// and the contact computed at `time`. Sorted by descending depth at time zero.
     fn predicted(&self, time: f64) -> Vec<[Contact<N, D>; 2]> {
         let mut world = World::<N, D>::new(N::lit(0.02));
         let query = GeometricQueryType::Contacts(N::lit(0.1), N::ZERO);
@@ -318,7 +318,7 @@ impl<N: Move<D>, const D: usize> Case<N, D> {
     }
 
     /// Asserts that predictions are exact for points, lines and planes fixed to their solids, up to
-    /// the error `loss` of the query for comparison.
+    /// `loss`, the error of the computed contacts.
     fn check_exact(&self, loss: f64) {
         for time in [0.08, 0.04, 0.02] {
             for [predicted, found] in self.predicted(time) {

@@ -312,8 +312,8 @@ fn contacts_are_kept_on_every_ground() {
 
 #[test]
 fn what_was_fast_and_slows_down_is_kept_again() {
-    // A box moves over the edge of a floor: computed contacts stay at the edge, reused ones move
-    // with the box.
+    // A box moves over the edge of a floor: computed contacts stay at the edge, reused contacts
+    // move with the box.
     let mut stage = Stage::<f64>::new(floor(), [0.0, 0.499, 0.0], solids()[0].clone());
     let edge = |stage: &Stage<f64>| {
         let contacts = stage.world.contact_views().flat_map(|(_, _, view)| view.contacts());

@@ -1,5 +1,5 @@
-//! Tests that every case of the corpus of bugs is run: each kind of query has a test listed here,
-//! which counts its cases itself.
+//! Tests that every case of the corpus of bugs is run: for each kind of query, a test listed here
+//! asserts the number of cases that it runs.
 
 use crate::support::query_support;
 

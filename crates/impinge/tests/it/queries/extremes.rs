@@ -24,7 +24,8 @@ type World<N, const D: usize> = CollisionWorld<N, D, ()>;
 
 const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
-/// Returns the digest of the complete visible state of a world.
+/// Returns a digest of what a world reports after an update, of the handles, poses and query limits
+/// of its objects, and of a query with the unbounded box.
 fn state<N: Stage<D>, const D: usize>(world: &World<N, D>) -> u64 {
     let mut digest = Digest::new();
     digest_state(world, &mut digest);
@@ -40,7 +41,7 @@ fn state<N: Stage<D>, const D: usize>(world: &World<N, D>) -> u64 {
     digest.finish()
 }
 
-/// Asserts that `call` panics with a message that explains the reason.
+/// Asserts that `call` panics with a message of more than ten bytes.
 #[track_caller]
 fn panics<R>(call: impl FnOnce() -> R, what: &str) {
     let outcome = catch_unwind(AssertUnwindSafe(|| drop(call())));
@@ -146,7 +147,8 @@ fn busy<N: Stage<D>, const D: usize>() -> (World<N, D>, [CollisionObjectHandle; 
     (world, handles)
 }
 
-/// Every mutator refuses every kind of bad argument and leaves the state unchanged.
+/// Asserts that methods that change a world refuse bad numbers and stale handles, and leave the
+/// state unchanged.
 fn refusals_change_nothing<N: Stage<D>, const D: usize>() {
     let (mut world, [first, second, area, stale]) = busy::<N, D>();
     let before = state(&world);
@@ -218,7 +220,8 @@ fn questions_that_are_none<N: Stage<D>, const D: usize>() {
     assert_eq!(world.interferences_with_aabb(&aabb, &all).count(), 3, "everything");
 }
 
-/// Shapes of size zero at one position all interact with each other.
+/// Asserts that shapes of size zero, a ball, a cube and a half-space, all at one position, touch
+/// each other.
 fn sizes_of_zero<N: Stage<D>, const D: usize>() {
     let zero = Point::<N, D>::origin();
     let shapes: Vec<ShapeHandle<N, D>> = vec![
@@ -286,8 +289,8 @@ fn enormous<N: Stage<D>, const D: usize>() {
     assert!(hits > 0, "the enormous ones");
 }
 
-/// Adds many objects with the same centre: each touches all others, and all contacts end with one
-/// removal.
+/// Adds many objects with the same centre, half of them sensors. Any two of them have a contact or
+/// a proximity event; the removal of all but one ends all contacts and proximities.
 fn coincident<N: Stage<D>, const D: usize>(count: usize) {
     let mut world = World::<N, D>::new(N::lit(0.02));
     let shape = ball(0.5);

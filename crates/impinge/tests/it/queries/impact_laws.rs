@@ -20,7 +20,7 @@ const SEEDS: u64 = 6;
 /// Number of times on the path at which the distance is computed.
 const LOOKS: u32 = 48;
 
-/// The solids, rotations and motions that differ by dimension.
+/// Functions that make random solids, rotations and motions of one dimension.
 struct Maker<N: Space<D>, R, const D: usize> {
     sample: Sample<N, D>,
     turn: fn(&mut Random) -> R,
@@ -163,7 +163,8 @@ where
         self.check(found.as_ref(), &|time| self.straight(time), self.noise())
     }
 
-    /// Returns the rounding error of the separation, which is larger for curved solids.
+    /// Returns the error allowed in distances, which covers the larger rounding errors of curved
+    /// solids.
     fn noise(&self) -> N {
         max(N::EPSILON * N::lit(1024.0), N::lit(1e-9)) * self.extent()
     }
@@ -245,11 +246,13 @@ where
     assert!(spent[0] < scenes / 50 && spent[1] < scenes / 10, "{spent:?} of {scenes} given up");
 }
 
-/// Solids are placed so that they touch with a known normal, and moved back along their path; the
-/// impact must find that position and normal again, both for the solid and for a composite with the
-/// solid as its only part.
+/// Places two solids so that they touch, or are at the target distance, with a known normal, and
+/// moves the second solid back along its path. Asserts that the impact has that position and
+/// normal, both for the solid and for a composite with the solid as its only part.
 ///
-/// Until then the supporting planes across the normal separate them. At least one of the solids is
+/// Before the impact, the planes perpendicular to the normal at the nearest points separate the
+/// solids. At least one of the solids is round, or the target distance is positive, so that the
+/// normal is unique.
 /// round, or the target distance is positive, so that the normal is unique.
 fn known_normals<N, R, const D: usize>(kinds: &[ShapeKind], maker: &Maker<N, R, D>)
 where

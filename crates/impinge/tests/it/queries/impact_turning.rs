@@ -50,7 +50,7 @@ fn rod(from: f64, to: f64) -> Segment<f64, 2> {
 /// The motion and the shape of a body.
 type Body<'a, N, const D: usize> = (&'a dyn RigidMotion<N, D>, &'a dyn Shape<N, D>);
 
-/// Returns the impact; asserts that both orders give the same one.
+/// Returns the impact; asserts that exchanging the bodies gives the flipped impact.
 fn both<N: Space<D>, const D: usize>(
     one: Body<'_, N, D>,
     two: Body<'_, N, D>,
@@ -476,7 +476,7 @@ fn box2d_115_sweep() {
     assert!(near(least + 1e-6).expect("so near") > 0.999, "at the end");
 }
 
-/// The impact of a composite is the impact of its first part, which the result reports.
+/// The impact of a composite is that of the part hit first, whose index the result reports.
 #[test]
 fn composites() {
     let parts = [
@@ -576,8 +576,8 @@ fn what_grazes_within_a_millionth_touches() {
     }
 }
 
-/// Tests equal bodies at one pose whose motions differ only after the maximum time: both orders
-/// give the same result.
+/// Tests equal bodies at one pose with different motions: for maximum times so short that the
+/// motions are equal up to rounding, and for a longer one, both orders give the same result.
 #[test]
 fn equal_bodies_that_part_after_the_longest_time_have_one_order() {
     let triangle = Triangle::new(

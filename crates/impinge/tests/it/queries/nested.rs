@@ -14,7 +14,8 @@ use impinge::shape::{
 };
 use impinge::world::{CollisionGroups, CollisionWorld};
 
-/// Returns nested compounds around a shape, each moved along the first axis.
+/// Returns the shape in `deep` nested compounds, each of which moves its child along the first
+/// axis.
 fn nest<N: Space<D>, const D: usize>(mut shape: ShapeHandle<N, D>, deep: u32) -> ShapeHandle<N, D> {
     let pose =
         Pose::from_translation(Vector::<N, D>::from_fn(|row, _| N::lit([0.25, 0.0, 0.0][row])));

@@ -31,10 +31,10 @@ struct Setting {
     turned: bool,
 }
 
-/// Returns a motion that rotates from a pose with a given angular speed.
+/// A function that returns a motion from a pose with a given angular speed.
 type Spin<N, R, const D: usize> = fn(&Isometry<N, R, D>, N) -> Box<dyn RigidMotion<N, D>>;
 
-/// The shapes, rotation and motion that differ by dimension.
+/// The shapes, the rotation and the motion of one dimension.
 struct Stage<N: Real, R, const D: usize> {
     shapes: fn(N) -> Shapes<N, D>,
     turn: R,

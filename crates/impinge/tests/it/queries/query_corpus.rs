@@ -22,8 +22,8 @@ struct Expected {
     tolerance: f64,
 }
 
-/// Compares all results of one pair with the expected ones and with each other. `exact` is the pair
-/// in `f64`, for which the separation along the normal is tested.
+/// Compares all results of one pair with the expected results and with each other. `exact` is the
+/// pair in `f64`, for which the separation along the normal is tested.
 fn check<N: Space<D>, R, Q, const D: usize>(
     expected: &Expected,
     pair: &[Placed<N, R, D>; 2],
@@ -206,7 +206,7 @@ fn narrow_phase_failures_of_others() {
 }
 
 /// Computes the time of impact of a case with one scalar, in both orders, and compares it with the
-/// expected one.
+/// expected time.
 fn cast<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     case: &Value,
     scalar: &str,

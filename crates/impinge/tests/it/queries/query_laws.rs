@@ -18,7 +18,7 @@ use query_support::{Placed, gap_along, signed};
 /// Placement of the second solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Regime {
-    /// At this signed distance from the first solid, in units of the smaller one.
+    /// At this signed distance from the first solid, in units of the size of the smaller solid.
     At(f64),
     /// With equal origins of both frames.
     Coincident,
@@ -65,7 +65,8 @@ struct Maker<N: Real, R, const D: usize> {
 }
 
 impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Maker<N, R, D> {
-    /// Makes the two solids of a setting, which differ only by a factor between scales.
+    /// Makes the two solids of a setting. If two settings differ only in `scale`, their solids
+    /// differ only by that factor.
     fn make(&self, setting: &Setting) -> [Placed<N, R, D>; 2] {
         let random = &mut Random(setting.seed, setting.degenerate);
         let scale = N::lit(setting.scale);
@@ -118,8 +119,8 @@ fn of_alike<N: Real, const D: usize>(setting: &Setting) -> N {
     let curved = |kind| matches!(kind, ShapeKind::Cylinder | ShapeKind::Cone);
     let ball = kinds.contains(&ShapeKind::Ball) || kinds.contains(&ShapeKind::Plane);
     if kinds.into_iter().any(curved) && !ball {
-        // In a curved solid around one a thousand times smaller, all directions are nearly equally
-        // good, and the general algorithm reaches its limit of iterations.
+        // In a curved solid around a much smaller solid, all directions are nearly equally good,
+        // and the general algorithm reaches its limit of iterations.
         let swallowed = setting.regime == Regime::Coincident && (setting.ratio - 1.0).abs() > 0.99;
         let relative = if swallowed { 1e-6 } else { 1e-9 };
         // In `f32` this is about 1e-4.
@@ -348,8 +349,8 @@ fn laws<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     let (mut settings, mut broken) = (0, 0);
     let pairs = kinds.iter().flat_map(|k1| kinds.iter().map(move |k2| (*k1, *k2)));
     for (first, (kind1, kind2)) in (0..).zip(pairs) {
-        // Few seeds, but each two kinds start at another one, so that together they cover all
-        // ratios.
+        // There are few seeds, but each pair of kinds begins at a different seed, so that all pairs
+        // together cover all ratios.
         let own = first..first + seeds();
         let all = REGIMES.iter().flat_map(|r| own.clone().map(move |seed| (*r, seed)));
         for (regime, seed) in all {

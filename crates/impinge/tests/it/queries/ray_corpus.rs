@@ -276,7 +276,8 @@ fn convex_meshes<N: Space<3>>() {
     assert_eq!(checked, 4, "all of the cube");
 }
 
-/// Compares the sign of a tetrahedron with its four planes, on a grid around it.
+/// Compares, on a grid of points, whether a tetrahedron contains a point, as a hull and as a mesh,
+/// with the signs of its four planes at the point.
 fn tetrahedron<N: Space<3>>() {
     let all = cases();
     let case = all.iter().find(|case| case["query"] == "point_sign_grid").expect("it is there");

@@ -1,4 +1,4 @@
-//! Tests that worlds have no preferred size: if all lengths are scaled by a power of two, all
+//! Tests that worlds are scale invariant: if all lengths are scaled by a power of two, all
 //! resulting lengths are scaled to the bit, and everything else stays the same.
 
 use crate::support::scene_stage;
@@ -83,8 +83,8 @@ fn check_worlds<N: Play<D>, const D: usize>(
     manifolds.iter().map(|(.., manifold)| manifold.len()).sum()
 }
 
-/// Rays, points and boxes find the same objects in both worlds; the times of rays are in
-/// proportion.
+/// Asserts that rays, points and boxes find the same objects in both worlds, and that the times of
+/// rays are in proportion.
 fn check_queries<N: Play<D>, const D: usize>(
     usual: &World<N, D>,
     scaled: &World<N, D>,

@@ -1,5 +1,5 @@
-//! Tests that queries of single pairs have no preferred size: shapes with corners on a grid, whose
-//! features meet in every degenerate way, are scaled by powers of two.
+//! Tests that queries of single pairs are scale invariant: shapes with corners on a grid, whose
+//! features often meet in degenerate ways, are scaled by powers of two.
 
 use crate::support::query_support;
 

@@ -1,6 +1,6 @@
-//! Tests of contacts under a solver: solids at rest, falling, sliding and shaken, in 2D and 3D, with `f32` and `f64`.
-//! Scenes, solver and measures come from `impinge-stacks`. Bounds are in units of the scenes, whose solids have a size
-//! and a density of about 1 under a gravity of 10.
+//! Tests of contacts under a solver: solids at rest, falling, sliding and shaken, in 2D and 3D,
+//! with `f32` and `f64`. Scenes, solver and measures come from `impinge-stacks`. Bounds are in
+//! units of the scenes, whose solids have a size and a density of about 1 under a gravity of 10.
 
 mod fall;
 mod rest;

@@ -47,7 +47,7 @@ fn rest<N: Stage<D>, const D: usize>(stacks: &[Stack<D>], choices: Choices) {
     assert_none(&faults.collect::<Vec<_>>());
 }
 
-/// Returns every other scene, for choices other than the defaults.
+/// Returns every second scene, for choices other than the defaults.
 fn some<const D: usize>(stacks: Vec<Stack<D>>) -> Vec<Stack<D>> {
     stacks.into_iter().step_by(2).collect()
 }

@@ -1,4 +1,5 @@
-//! Streams of contacts: the indices in the fill before, against a map from ids.
+//! Tests streams of contacts: compares the indices in the lists of the fill before with a map from
+//! ids.
 
 use crate::support::{scene_stage, world_stage};
 
@@ -67,7 +68,8 @@ fn follows_scenes<N: Play<D>, const D: usize>() {
     }
 }
 
-/// Rows of boxes, of which many are removed at once, so that other pairs take the memory of theirs.
+/// Tests a row of boxes, many of which are removed at once, so that the pairs of other boxes move
+/// into the memory of their pairs.
 fn finds_pairs_that_moved_in_memory<N: Stage<D>, const D: usize>() {
     let mut world = CollisionWorld::<N, D, ()>::new(N::lit(0.01));
     let mut handles: Vec<_> =
@@ -77,14 +79,15 @@ fn finds_pairs_that_moved_in_memory<N: Stage<D>, const D: usize>() {
     checked.fill(&world);
     let all = checked.new;
     assert!(all >= 199, "each box touches the next");
-    // More in a row than the stream looks ahead, and some single ones.
+    // Removes more boxes in a row than the stream searches ahead, and two single boxes.
     world.remove(&handles.drain(20..80).collect::<Vec<_>>());
     world.remove(&[handles.remove(3), handles.remove(90)]);
     checked.fill(&world);
     world.update();
     checked.fill(&world);
     assert_eq!(checked.new, all, "no contact is new: the others only moved in memory");
-    // All at once are new, and then all of them are gone.
+    // Moves all boxes apart, so that no contact is left, and then back, so that all contacts are
+    // new.
     let far = add(&mut world, 300.0, &cube(0.5), contacts(0.125));
     for (n, handle) in handles.iter().enumerate() {
         world.set_position(*handle, N::on_x(2.0 * n as f64));

@@ -77,7 +77,7 @@ fn a_million_units_away() {
     far_from_the_origin::<f64, 3>();
 }
 
-/// An object far away changes nothing for the others.
+/// An object far away changes nothing for the other objects.
 fn one_far_object<N: Stage<D>, const D: usize>() {
     let fill = |world: &mut World<N, D>| {
         for n in 0..60 {

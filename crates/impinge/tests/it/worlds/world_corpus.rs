@@ -443,8 +443,8 @@ fn empty_worlds<N: Stage<3, Isometry = Isometry3<N>>>() {
     }
 }
 
-/// Runs the one case that queries a world with a point, in an empty world and in one whose objects
-/// are all filtered out.
+/// Runs the one case that queries a world with a point: in an empty world, and in a world whose
+/// objects are all filtered out.
 #[test]
 fn world_point_projection() {
     empty_worlds::<f32>();

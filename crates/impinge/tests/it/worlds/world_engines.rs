@@ -14,7 +14,7 @@ use ContactEvent::{Started, Stopped};
 
 type World<N, const D: usize> = CollisionWorld<N, D, ()>;
 
-/// Returns the objects that have a pair with the given one.
+/// Returns the objects that have a pair with the object `handle`.
 fn partners<N: Space<D>, const D: usize>(
     world: &World<N, D>,
     handle: CollisionObjectHandle,

@@ -392,7 +392,7 @@ fn skins_change_in_place<N: Stage<D>, const D: usize>() {
     assert!(world.contains(area), "it was there all along");
 }
 
-/// Skins of zero, and skins of other objects, change no bit of a pair.
+/// The skin of a distant object changes no bit of the pairs of other objects.
 fn worlds_without_skins_are_as_before<N: Stage<D>, const D: usize>() {
     let mut worlds = [0, 1].map(|_| World::<N, D>::new(N::lit(0.125)));
     for world in &mut worlds {

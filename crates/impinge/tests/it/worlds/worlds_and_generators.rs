@@ -193,8 +193,8 @@ fn follow<N: Space<3, Isometry = Isometry3<N>>>(
             twin.contacts(&mut expected);
             assert_eq!(said[index], facts(&expected), "pair {index} in step {step}");
             compared += usize::from(!expected.is_empty());
-            // Sometimes another shape; not where it is equal, since a world then computes the pair
-            // anew, unlike the generator.
+            // Sometimes replaces a shape, but not by an equal shape: the world would then compute
+            // the pair anew, unlike the generator.
             let is_equal = index / 6 % 3 == 0 && tolerance > 0.0;
             if step % 40 == 20 && index % 6 == 0 && !is_equal {
                 twins.shapes[1] = shape(noise, index / 6 % 3, scale);

@@ -11,7 +11,8 @@ use crate::math::lanes::{bits, norm};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
-/// The slots of `L` pairs, each with two masks over the lanes.
+/// The slots of `L` pairs, each with two masks over the lanes. A slot holds one possible contact
+/// point (candidate) of each pair.
 pub(super) struct Slots<N: Real, const D: usize, const COUNT: usize, const L: usize> {
     /// Coordinates in the plane perpendicular to the normal; in 2D the second is always zero.
     pub(super) flat: [[[N; L]; COUNT]; 2],
@@ -132,7 +133,7 @@ impl<V> Admission<V> {
     }
 
     /// Clears the slots whose candidates are not admitted; computes `points1` and `distances` of
-    /// the others. `point1` maps coordinates and height to the point on the first box.
+    /// the admitted candidates. `point1` maps coordinates and height to the point on the first box.
     #[inline(always)]
     pub(super) fn admit<S: Simd, N: Real, const D: usize, const COUNT: usize, const L: usize>(
         &self,

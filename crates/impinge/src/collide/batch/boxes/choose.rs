@@ -81,7 +81,7 @@ struct KeptSlots<const COUNT: usize> {
     slots: u32,
     /// Whether every old point still has its candidate, in the slot of its code.
     is_still: bool,
-    /// Bits of the old points that no slot continues.
+    /// Bits of the old points (by index in the manifold) that no slot continues.
     left: u32,
     /// Id of each slot in `slots`.
     ids: [u32; COUNT],
@@ -102,7 +102,8 @@ impl<const COUNT: usize> KeptSlots<COUNT> {
 }
 
 impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_, N, D, COUNT, L> {
-    /// Replaces the points of a manifold, and its normal, by at most `limit` candidates.
+    /// Replaces the points of a manifold by at most `limit` candidates, and its normal by the new
+    /// normal.
     ///
     /// 1. Old points find their slots by code, else by features ([`Self::kept`]).
     /// 2. Slots that are too far from their old points lose the ids ([`Self::drop_jumped`]).
@@ -151,8 +152,8 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         raw.normal = normal;
     }
 
-    /// Assigns old points to slots by code, else by features. Each pair of features occurs at most
-    /// once among the points and once among the slots.
+    /// Assigns old points to slots by code, else by features. This is unambiguous, because each
+    /// pair of features occurs at most once among the points and once among the slots.
     #[inline(always)]
     fn kept(&self, old: &[RawPoint<N, D>], slot_features: &impl SlotFeatures) -> KeptSlots<COUNT> {
         let mut kept =
@@ -175,7 +176,8 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         kept
     }
 
-    /// Removes the ids of slots that are too far from their old points ([`is_same_point`]).
+    /// Removes the ids of slots whose candidate is too far from the old point with the same
+    /// features ([`is_same_point`]).
     #[inline(always)]
     fn drop_jumped(&self, old: &[RawPoint<N, D>], kept: &mut KeptSlots<COUNT>) {
         for (at, point) in old.iter().enumerate() {
@@ -193,7 +195,8 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         is_same_point([old.feature1, old.feature2], &(position - old.point1), || self.size)
     }
 
-    /// Passes the ids of the remaining old points to slots of `some` without an id, by position.
+    /// Passes the ids of the old points in `kept.left` to slots in `some` that have no id, by
+    /// position.
     #[inline(never)]
     fn match_positions(
         &self,
@@ -315,8 +318,8 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
     }
 
     /// Returns the slot that gets the distance `gap`: the slot with the smallest distance among the
-    /// level slots that continue an old point. If there are none, it is chosen among all level
-    /// slots, else among all slots.
+    /// level slots that continue an old point; if there are none, among all level slots; if there
+    /// are none either, among all slots.
     #[inline(always)]
     fn deepest(&self, slots: u32, kept: u32) -> usize {
         let level = self.level & slots;
@@ -349,7 +352,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
             let lowest = Ones::<COUNT>(self.valid).filter(|&slot| self.distance(slot) <= least);
             level = lowest.fold(0, |slots, slot| slots | 1 << slot);
         }
-        // If a level slot continues an old point, no other kept slot counts as deepest.
+        // If a level slot continues an old point, only level slots count as deepest.
         let has_old = level & kept != 0;
         let slack =
             if has_old { -N::INFINITY } else { slack_level(self.gap, self.size, self.tolerance) };

@@ -1,13 +1,15 @@
 //! Contact kernels for pairs of boxes.
 //!
-//! Case distinctions of a pair become masks over the lanes. Each possible corner of the overlap
-//! area of the two faces has its own slot, filled or not ([`admit`]): 4 slots in 2D ([`plane`]), 24
-//! in 3D ([`space`]). Only the choice of the points ([`choose`]) runs pair by pair. Flat boxes, and
-//! pairs whose nearest points do not lie on the two faces, fall back to the builder for one pair.
+//! The contact points of two boxes are corners of the overlap area of two facing faces (in 2D: ends
+//! of the overlap of two sides), projected along the separating axis. Case distinctions of a pair
+//! become masks over the lanes. Each possible corner has its own slot, filled or not ([`admit`]): 4
+//! slots in 2D ([`plane`]), 24 in 3D ([`space`]). Only the choice of the points ([`choose`]) runs
+//! pair by pair. Flat boxes, and pairs whose nearest points do not lie on the two faces, fall back
+//! to the builder for one pair.
 //!
-//! The sine of the angle by which the boxes may rotate is used in the test of each corner. The
-//! kernels read these fields of [`Inputs`]: both poses, the half extents in `ends[0][0]` and
-//! `ends[1][0]`, `prediction` and `sine`.
+//! The kernels read these fields of [`Inputs`]: both poses, the half extents in `ends[0][0]` and
+//! `ends[1][0]`, `prediction` and `sine`: the sine of the angle by which the boxes may rotate, for
+//! the test of each corner.
 
 mod admit;
 mod choose;
@@ -24,7 +26,7 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
 
 impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
-    /// Puts two boxes and their poses into a lane; `false` for other kinds.
+    /// Copies two boxes and their poses into a lane; returns `false` for other kinds.
     #[inline(always)]
     fn put_boxes(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) -> bool {
         let [Solid::Cuboid(box1), Solid::Cuboid(box2)] = pair.solids else { return false };
@@ -56,8 +58,9 @@ pub(super) struct Boxes<V, const D: usize> {
     pub(super) half2: [V; D],
 }
 
-/// Returns axes and translation of the second box in the frame of the first or, in the lanes of
-/// `is_second`, of the first box in the frame of the second, rounded as by `Pose::inverse`.
+/// Returns the axes and the centre of the other box in the frame of one box: of the second box in
+/// the frame of the first or, in the lanes of `is_second`, of the first box in the frame of the
+/// second. The latter are rounded as by `Pose::inverse`.
 #[inline(always)]
 pub(super) fn other<S: Simd, V: Wide<S>, const D: usize>(
     boxes: &Boxes<V, D>,

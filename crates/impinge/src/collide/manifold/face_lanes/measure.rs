@@ -1,6 +1,6 @@
 //! Measures a solid's supporting feature and 8 triangles along the normals: the distances of the
-//! corners of each outline from the sides of the other, and the distances between both along the
-//! normal.
+//! corners of each outline from the sides of the other outline, and the distances between both
+//! along the normal.
 //!
 //! ```text
 //!      v3 ──────────── v2     seen along the normal n of the lane, which points into the page
@@ -93,10 +93,10 @@ pub(in crate::collide) struct FaceClip<N: Real> {
     /// Corners of the triangles.
     pub(super) corners: [[[N; LANES]; 3]; 3],
     /// Signed distances along the normal from the corners of the triangles to the plane of the
-    /// face; negative where they overlap. Unused unless the ring is a face.
+    /// face; negative where the solids overlap. Unused unless the ring is a face.
     pub(super) depths: [[N; LANES]; 3],
     /// Signed distances along the normal from the planes of the triangles to the corners of the
-    /// ring; negative where they overlap.
+    /// ring; negative where the solids overlap.
     pub(super) vertex_depths: [[N; LANES]; MAX],
     /// Corners of the triangles, measured against the sides of the ring.
     pub(super) in_face: SideHeights<N, 3, MAX>,
@@ -204,7 +204,8 @@ impl<N: Real> FaceClip<N> {
     }
 
     /// Measures the corners of the triangles against the sides and the plane of the ring. Returns
-    /// the lanes where all sides of the ring are longer than two tolerances.
+    /// the lanes where all sides of the ring are longer than two tolerances and the distances from
+    /// its plane are not NaN.
     #[inline(always)]
     fn measure_face<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
@@ -313,7 +314,7 @@ impl<V> ProjectedTriangles<V> {
 
     /// Returns the supporting features of the triangles along the normals, by the rule of
     /// [`core_feature`](crate::shape::SupportMap::core_feature). The mask has the lanes where
-    /// rounding cannot change the feature and it is not degenerate.
+    /// rounding cannot change the feature and the feature is not degenerate.
     #[inline(always)]
     fn supporting<S: Simd, N: Real>(&self, simd: S, tolerance: V) -> (SupportingBits, V::Mask)
     where

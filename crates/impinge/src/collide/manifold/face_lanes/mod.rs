@@ -38,11 +38,12 @@ pub(in crate::collide) struct ClipRequest<N: Real> {
     pub(in crate::collide) normal: Vector<N, 3>,
     /// Supporting feature of the solid towards the triangle, against the normal.
     part: FeatureId,
-    /// Signed distance of the nearest points, if they have this normal. Then no point gets a
-    /// smaller distance, and the lane is undecided if no point is that near.
+    /// Signed distance of the nearest points if their normal is `normal`; else `None`. If it is
+    /// known, no point gets a smaller distance, and the lane is undecided if no point is that near,
+    /// up to rounding.
     pub(in crate::collide) nearest: Option<N>,
-    /// Points nearer than this by more than rounding are dropped; the distances of the others are
-    /// raised to at least this.
+    /// Points nearer than this by more than rounding are dropped; the distances of the other points
+    /// are raised to at least this.
     pub(in crate::collide) least: N,
 }
 
@@ -71,10 +72,10 @@ pub(in crate::collide) struct FaceSolid<'a, N: Real> {
 }
 
 impl<N: Real> FaceSolid<'_, N> {
-    /// Appends the points of each of up to 8 triangles, whose corners are in their own frame. Calls
-    /// `visit` with the lane and the smallest distance of its points, infinite without points, or
-    /// with `None` if the lane is undecided. Lanes are visited in groups with the same supporting
-    /// feature of the solid.
+    /// Appends the points of each of up to 8 triangles, whose corners are in the frame that `turn`
+    /// and `origin` refer to. For each lane, calls `visit` with the lane and the smallest distance
+    /// of its points (infinite without points), or `None` if the lane is undecided. Lanes are
+    /// visited in groups with the same supporting feature of the solid.
     pub(in crate::collide) fn each_clip(
         &self,
         triangles: &PartPacket<N, 3>,

@@ -50,7 +50,7 @@ struct FoundPoints<'a, N: Real> {
 
 impl<N: Real> FoundPoints<'_, N> {
     /// Returns the smallest distance; infinite without points. If `nearest` is known, the deepest
-    /// point gets that distance; `None` if no point is that near.
+    /// point gets that distance; `None` if no point is that near, up to the tolerance.
     fn lowest(&mut self) -> Option<N> {
         let new = &mut self.points[self.first..];
         let lowest = new.iter().fold(N::INFINITY, |lowest, point| min(point.distance, lowest));
@@ -62,7 +62,7 @@ impl<N: Real> FoundPoints<'_, N> {
         is_reached.then_some(nearest)
     }
 
-    /// Adds the point `point` of the triangle, at the signed `distance` from the face of the solid
+    /// Adds the point `point` of the triangle, at the signed `distance` from the solid's feature
     /// along the normal, unless it is beyond the prediction, below `least`, or already added.
     fn push(&mut self, point: &Vector<N, 3>, distance: N, [feature1, feature2]: [FeatureId; 2]) {
         let ClipRequest { normal, nearest, least, .. } = self.request;
@@ -174,8 +174,9 @@ impl<N: Real> LaneClip<'_, N> {
         self.part_with(at, sides, |side| [with_ids(side), with_ids((side + 1) % ring.count)])
     }
 
-    /// Adds the crossings of a side of the triangle and a side of the ring. Only sides are crossed
-    /// whose ends are farther than the tolerance from the other's line, on both sides of it.
+    /// Adds the crossings of sides of the triangle and sides of the ring. Two sides cross only if
+    /// the ends of each are farther than the tolerance from the line of the other, on different
+    /// sides of that line.
     fn crossings(&self, found: &mut FoundPoints<'_, N>) {
         let FaceClip { ring, in_face, in_triangle, crossed, .. } = self.clip;
         for side in 0..3 {

@@ -1,4 +1,5 @@
-//! Contacts of faces with any number of corners in 3D: the corners of the overlap of both faces.
+//! Tests that the contacts of two faces in 3D, with any number of corners, are the corners of their
+//! overlap.
 
 use super::super::build3;
 use super::scene::fact;
@@ -8,7 +9,8 @@ use crate::shape::{Capsule, ConvexHull, Cuboid, Cylinder, Segment, Shape, Triang
 
 pub(super) type Outline = Vec<[f64; 2]>;
 
-/// Returns a regular polygon around a centre, counter-clockwise.
+/// Returns a regular polygon around a centre, counter-clockwise. `radius` is the distance of its
+/// corners from the centre, `turn` the angle of the first corner in radians.
 pub(super) fn regular(count: usize, [x, y]: [f64; 2], radius: f64, turn: f64) -> Outline {
     let corner = |at: usize| {
         let angle = turn + at as f64 * core::f64::consts::TAU / count as f64;
@@ -18,7 +20,7 @@ pub(super) fn regular(count: usize, [x, y]: [f64; 2], radius: f64, turn: f64) ->
     (0..count).map(corner).collect()
 }
 
-/// Returns the prism over an outline between two heights.
+/// Returns the prism over an outline in x and y, between two heights z.
 pub(super) fn prism<N: Real>(outline: &Outline, [low, high]: [f64; 2]) -> ConvexHull<N> {
     let at = |z: f64| {
         let point = move |&[x, y]: &[f64; 2]| Point::<N, 3>::new(N::lit(x), N::lit(y), N::lit(z));
@@ -59,7 +61,8 @@ fn manifold<N: Real>(pair: &Pair<'_, N, 3>, points: usize) -> RawManifold<N, 3> 
     out
 }
 
-/// Asserts that each expected corner is a contact, and each contact an expected corner.
+/// Asserts that each expected corner is a contact, and each contact an expected corner, by the x
+/// and y coordinates on the first solid.
 fn has_corners<N: Real>(found: &RawManifold<N, 3>, expected: &Outline, tolerance: f64, what: &str) {
     let off = |point: &Point<N, 3>, [x, y]: &[f64; 2]| {
         (point.x.as_f64() - x).abs().max((point.y.as_f64() - y).abs())
@@ -110,7 +113,9 @@ fn faces_of_any_number_of_corners_are_clipped() {
     prisms::<f64>(1e-13);
 }
 
-/// Tests that a face without width counts as a segment, and a face without length as a point.
+/// Tests solids without width on a box, in both orders: the contacts of a segment or of a face
+/// without width are its two ends, those of a box without height its four corners. An upright
+/// cylinder whose radius is within rounding has one contact.
 fn degenerate<N: Real>(tolerance: f64) {
     let p = |x: f64, y: f64| Point::<N, 3>::new(N::lit(x), N::lit(y), N::ZERO);
     let floor = Cuboid::new(Vector::<N, 3>::new(N::ONE, N::ONE, N::ONE));

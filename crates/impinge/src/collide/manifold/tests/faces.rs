@@ -1,5 +1,5 @@
-//! Compares the contacts of a face with triangles, computed 8 at a time in SIMD lanes, with the
-//! exact overlap of both outlines.
+//! Compares the contacts of a solid's face with triangles, computed 8 at a time in SIMD lanes, with
+//! the exact overlap of both outlines. Also tests edges and corners of the solid.
 
 use super::clip::{Outline, common, prism, regular};
 use crate::collide::manifold::face_lanes::{ClipRequest, FaceClip, FaceSolid};
@@ -18,7 +18,8 @@ struct Scene<N: Real> {
     requests: Vec<ClipRequest<N>>,
 }
 
-/// Contact points of one triangle; `None` if the lanes leave it to the clip of the pair.
+/// Contact points of one triangle; `None` if the lane is undecided, so that the caller has to clip
+/// the pair.
 type Found<N> = Option<Vec<RawPoint<N, 3>>>;
 
 /// Returns the unit normal of a triangle, with the sign that makes its z component non-negative.
@@ -39,8 +40,9 @@ impl<N: Real> Scene<N> {
         scene
     }
 
-    /// Clips all triangles, which are passed to the kernel in a frame in which the solid is at
-    /// `turn` and `origin`; the returned points are in the frame of the solid.
+    /// Clips all triangles. They are passed to the kernel in a frame in which the solid has the
+    /// rotation `turn` and its origin at `origin`; the returned points are in the frame of the
+    /// solid.
     fn found(
         &self,
         level: Level,
@@ -117,8 +119,8 @@ fn bottom(outline: &Outline) -> Vec<Point<f64, 3>> {
 }
 
 /// Asserts that the points of one triangle span the overlap of the triangle and the bottom of the
-/// solid, and that each lies on both at its distance. Also asserts that the ids of vertices belong
-/// to corners at these positions.
+/// solid, projected along the normal. Each point must lie on the bottom, and at its distance from
+/// the triangle; points with the id of a vertex must lie at that corner.
 fn check<N: Real>(
     outline: &Outline,
     corners: &Corners<N>,
@@ -174,9 +176,9 @@ fn frames<N: Real>(random: &mut Xorshift) -> [(Matrix<N, 3>, Vector<N, 3>); 2] {
     [(Matrix::<N, 3>::identity(), Vector::<N, 3>::zeros()), (turn, random.vector(2.0))]
 }
 
-/// Returns random triangles close to the plane z = 0, nearly horizontal, so that the bottom of a
-/// solid on the plane is its supporting feature. On a grid, corners and sides of the outlines
-/// coincide.
+/// Returns random triangles close to the plane z = 0, tilted by less than 26°, so that the bottom
+/// of a solid on the plane is its supporting feature. With `on_grid`, the corners lie on a grid, so
+/// that corners and sides of the outlines coincide.
 fn triangles<N: Real>(random: &mut Xorshift, on_grid: bool) -> Vec<Corners<N>> {
     let mut corner = |at: usize| {
         let mut position = random.vector::<N>(2.0);
@@ -196,8 +198,8 @@ fn triangles<N: Real>(random: &mut Xorshift, on_grid: bool) -> Vec<Corners<N>> {
     all.filter(is_wide).collect()
 }
 
-/// Checks the contact points of a solid with random triangles, which are moved down by `lift` into
-/// the frame of the solid. Returns the numbers of undecided and of decided triangles.
+/// Checks the contact points of a solid with random triangles. In its own frame, the bottom of the
+/// solid is at height `-lift`. Returns the numbers of undecided and of decided triangles.
 fn check_all<N: Real>(
     outline: &Outline,
     (solid, lift): (&dyn Shape<N, 3>, N),

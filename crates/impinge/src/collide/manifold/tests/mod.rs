@@ -1,4 +1,4 @@
-//! Properties of every manifold, at random poses and in scenes computed by hand.
+//! Tests of manifolds: properties at random poses, and scenes with results computed by hand.
 
 mod clip;
 mod faces;

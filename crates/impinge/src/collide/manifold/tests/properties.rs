@@ -1,4 +1,4 @@
-//! Properties of every pair of solids at any pose.
+//! Properties of the manifolds of all pairs of kinds, at random poses near touching.
 
 use super::scene::{Scene, describe, fact, for_all_pairs, manifold, off_surface, request};
 use crate::collide::{ManifoldRequest, Pair, RawManifold, RawPoint};
@@ -90,8 +90,9 @@ fn is_same<N: Real, const D: usize>(
     (a - b.point1).norm() <= N::lit(3e-3) && features == [b.feature1, b.feature2]
 }
 
-/// Swaps the solids of all pairs. Returns the number of pairs without the same points and features,
-/// flipped, and the number of all pairs. Rounding may decide between equally good reductions.
+/// Swaps the solids of all pairs without a half-space. Returns the number of pairs for which the
+/// manifold of the swapped pair lacks one of the points, with its features, or has another number
+/// of points; and the number of all pairs. Rounding may decide between equally good reductions.
 fn swap_losses<N: Scene<D>, const D: usize>(wish: &ManifoldRequest<N>) -> (usize, usize) {
     let (mut lost, mut total) = (0, 0);
     for_all_pairs::<N, D>(60, 1.0, |pair| {

@@ -1,4 +1,4 @@
-//! Numbers of contact points of solids at rest, counted by hand.
+//! Compares the numbers of contact points of solids at rest with numbers counted by hand.
 
 use super::scene::{Scene, fact, manifold, request};
 use crate::collide::{ManifoldRequest, Pair, RawManifold};
@@ -9,8 +9,8 @@ use crate::shape::{
     TaperedCapsule, Tetrahedron,
 };
 
-/// A solid at rest on a surface whose top is at height zero: height of its origin, and its
-/// rotation.
+/// A solid at rest on a surface whose top is at height zero: the height of its origin, and its
+/// rotation vector.
 struct Rest<'a, const D: usize> {
     solid: &'a dyn Shape<f32, D>,
     height: f32,
@@ -38,7 +38,7 @@ where
         manifold(&pair, wish).1
     }
 
-    /// Returns the number of points on a half-space and on a large box.
+    /// Returns the numbers of points on a half-space and on a large box.
     fn counts(&self, wish: &ManifoldRequest<f32>) -> [usize; 2] {
         let plane = Plane::new(Unit::new_normalize(Self::up()));
         let mut half_extents = Vector::<f32, D>::repeat(5.0);
@@ -48,7 +48,7 @@ where
     }
 }
 
-/// Rotations about x and z, in radians, of the size of the rounding error of `f32`.
+/// Components x and z of rotation vectors, in radians: zero, or about the rounding error of `f32`.
 const TILTS: [f64; 5] = [0.0, 3e-8, -1e-7, 1.5e-7, -2e-7];
 
 fn box_rests<const D: usize>(expected: usize)
@@ -232,7 +232,7 @@ fn an_octagon_keeps_its_deepest_point_and_a_wide_area() {
     assert!(area(&few) > 0.6 * area(&all), "{} of {}", area(&few), area(&all));
 }
 
-/// Returns the area of points in convex position, projected along y.
+/// Returns the area of points in convex position around the y axis, projected along that axis.
 fn area(raw: &RawManifold<f64, 3>) -> f64 {
     let mut points: Vec<Point<f64, 3>> = raw.points.iter().map(|point| point.point1).collect();
     points.sort_by(|a, b| a.z.atan2(a.x).total_cmp(&b.z.atan2(b.x)));
@@ -301,8 +301,8 @@ fn a_prism_of_many_sides_stands_on_four_points() {
     assert_eq!(standing.counts(&wish), [20; 2], "all of them, if requested");
 }
 
-/// A hull whose bottom is a flat V: the ridge is nearest to the half-space, and the near vertices
-/// belong to two faces.
+/// Tests a hull whose bottom is a flat V: the ridge is nearest to the half-space, and the near
+/// vertices belong to two faces.
 #[test]
 fn near_vertices_of_several_faces_count_above_a_half_space() {
     let corners = [[-1.0, 0.01, 0.0], [1.0, 0.01, 0.0], [0.0, 0.0, -1.0], [0.0, 0.0, 1.0]];

@@ -1,4 +1,4 @@
-//! Pairs of solids in both dimensions and both scalars, for tests.
+//! Pairs of solids in 2D and 3D, in `f32` and `f64`, for tests.
 
 use super::super::{build2, build3};
 use crate::collide::{ManifoldRequest, Pair, RawManifold};
@@ -71,7 +71,7 @@ impl<N: Real> Scene<3> for N {
     }
 }
 
-/// Returns twelve points around the origin.
+/// Returns twelve random points in a cube (in 2D a square) around the origin.
 fn cloud<N: Real, const D: usize>(scale: f64, random: &mut Random) -> Vec<Point<N, D>> {
     let mut position = || random.vector::<f64, D>(1.0).map(|x| N::lit(x * scale));
     (0..12).map(|_| Point::from(position())).collect()
@@ -97,7 +97,8 @@ impl Random {
     }
 }
 
-/// Returns one solid of each kind, in the order of kinds, of random sizes around `scale`.
+/// Returns a random solid of each of several kinds, in the order of kinds, with sizes of about
+/// `scale`; the half-space is last.
 pub(crate) fn solids<N: Scene<D>, const D: usize>(
     scale: f64,
     random: &mut Random,
@@ -119,7 +120,8 @@ pub(crate) fn solids<N: Scene<D>, const D: usize>(
     all
 }
 
-/// Returns the separation of a pair, also from a half-space.
+/// Returns the separation of a pair by the general algorithm; with a half-space as second solid,
+/// from the support point of the first.
 pub(crate) fn fact<N: Scene<D>, const D: usize>(pair: &Pair<'_, N, D>) -> Separation<N, D> {
     let first = Geometry(pair.first).as_support_map().expect("the first is no half-space");
     let Kind::Plane(plane) = pair.second else {
@@ -159,9 +161,9 @@ pub(crate) fn request<N: Real>(prediction: f64, sine: f64) -> ManifoldRequest<N>
     ManifoldRequest { prediction: N::lit(prediction), sine: N::lit(sine), max_points: 4 }
 }
 
-/// Returns a pose at which the distance of the solids is a random number between `low * scale` and
-/// `high * scale`, only approximately if they overlap. The second solid is placed apart and moved
-/// along the normal.
+/// Returns a pose of the second solid at which the distance of the solids is a random number
+/// between `low * scale` and `high * scale`, only approximately if they overlap. The second solid
+/// is placed apart and moved along the normal.
 pub(crate) fn near_pose<N: Scene<D>, const D: usize>(
     solids: [Kind<'_, N, D>; 2],
     (scale, low, high): (f64, f64, f64),
@@ -177,8 +179,8 @@ pub(crate) fn near_pose<N: Scene<D>, const D: usize>(
     pose12
 }
 
-/// Runs a check on every pair of kinds at `count` random poses near touching; the half-space is
-/// always second.
+/// Runs a check on every pair of kinds, for `count` sets of random solids, each pair at a random
+/// pose within `0.1 * scale` of touching. The half-space is always second.
 pub(crate) fn for_all_pairs<N: Scene<D>, const D: usize>(
     count: u64,
     scale: f64,

@@ -1,5 +1,5 @@
-//! Segments and capsules against flat-faced solids, cylinders and cones: closed forms compared with
-//! the general algorithm.
+//! Compares the closed forms for segments and capsules against flat-faced solids, cylinders and
+//! cones with the general algorithm.
 
 use super::scene::{Random, Scene, describe};
 use crate::collide::Pair;
@@ -53,7 +53,9 @@ fn is_round<N: Real>(pair: &Pair<'_, N, 3>) -> bool {
     matches!(pair.second, Kind::Cylinder(..) | Kind::Cone(..))
 }
 
-/// Returns the tolerance; the general algorithm is accurate to 2⁻⁴⁰ of the size for curved solids.
+/// Returns the tolerance of distances: 256 epsilons of `scale`, but for cylinders and cones at
+/// least 8e-12 of it, because the general algorithm is accurate to 2⁻⁴⁰ of the size for curved
+/// solids.
 fn tolerance<N: Real>(pair: &Pair<'_, N, 3>, scale: f64) -> N {
     let least = if is_round(pair) { N::lit(8.0e-12) } else { N::ZERO };
     max(N::lit(256.0) * N::EPSILON, least) * N::lit(scale)
@@ -77,7 +79,8 @@ fn truth<N: Scene<3>>(pair: &Pair<'_, N, 3>) -> Separation<N, 3> {
     convex::separation(first, second, &pair.pose12, N::INFINITY).expect("no limit")
 }
 
-/// Visits pairs that are apart, touch or overlap.
+/// Visits 2400 random pairs. Two in three are moved along the normal, to a distance between -0.2
+/// and 0.1 of `scale`; the others have random translations of up to `scale`.
 fn visit<N: Scene<3>>(
     (seed, scale): (u64, f64),
     mut each: impl FnMut(&mut Pair<'_, N, 3>, usize, &mut Random),
@@ -102,7 +105,8 @@ fn visit<N: Scene<3>>(
     }
 }
 
-/// Asserts that the distances agree, and that normal and points match the distance.
+/// Asserts that the distances of both algorithms agree, that the normal is a unit vector, that the
+/// points lie at the distance from each other along the normal, and that limits are respected.
 fn separations<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
     visit::<N>((seed, scale), |pair, round, _| {
         let tolerance = tolerance(pair, scale);

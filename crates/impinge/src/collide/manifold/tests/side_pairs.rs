@@ -1,4 +1,5 @@
-//! Contacts of flat-sided 2D solids span the overlap interval of their supporting sides.
+//! Tests that the contacts of flat-sided 2D solids span the overlap interval of their supporting
+//! sides.
 
 use super::scene::{Random, Scene, describe, near_pose, off_surface, solids};
 use crate::collide::separation::separation_2d;
@@ -26,8 +27,8 @@ fn contacts<N: Real>(pair: &Pair<'_, N, 2>, request: &ManifoldRequest<N>) -> Raw
 /// A solid whose upper side is at height zero, and the world position of its origin.
 type Bench<N> = (Box<dyn Shape<N, 2>>, [f64; 2]);
 
-/// Returns one solid of each kind whose upper side extends from `low` to `high`; rounded solids
-/// have the radius 1/8.
+/// Returns flat-sided solids of six kinds whose upper side extends from `low` to `high`; the
+/// capsule and the rounded box have the radius 1/8.
 fn benches<N: Real>([low, high]: [f64; 2]) -> Vec<Bench<N>> {
     let (middle, half) = ((low + high) / 2.0, (high - low) / 2.0);
     let box_of = |height: f64| Cuboid::new(Vector::<N, 2>::new(N::lit(half), N::lit(height)));
@@ -69,7 +70,7 @@ impl Stack {
         [low1.max(low2), high1.min(high2)]
     }
 
-    /// Visits all pairs of kinds, with the pose of the first.
+    /// Visits all pairs of these kinds, with the pose of the first solid.
     fn visit<N: Real>(&self, mut visit: impl FnMut(&Pair<'_, N, 2>, &Pose<N, 2>)) {
         let [[low, high], [left, right]] = self.sides;
         let pivot = self.overlap()[0];
@@ -173,8 +174,9 @@ fn flat_sided<N: Scene<2>>(random: &mut Random) -> Vec<Box<dyn Shape<N, 2>>> {
     shapes
 }
 
-/// Returns a random pose near touching in even rounds. In odd rounds the pose is on a grid and
-/// almost unrotated, so that sides and corners coincide.
+/// Returns a random pose of the second solid, near touching, in even rounds. In odd rounds its
+/// translation is on a grid and its angle is at most 1e-3, so that sides and corners coincide or
+/// nearly do.
 fn pose_of<N: Scene<2>>(
     kinds: [Kind<'_, N, 2>; 2],
     round: usize,

@@ -29,12 +29,14 @@ pub(super) struct CorePoints<'a, N: Real> {
 pub(super) struct LaneTies<V> {
     /// Number of tied vertices, as a value of the scalar type. Coinciding vertices may count twice.
     pub(super) count: V,
-    /// Vector between the two tied vertices, if there are exactly two.
+    /// Vector parallel to the line through the tied vertices, if there are exactly two; of any
+    /// length and either sign.
     pub(super) along: [V; 3],
 }
 
 impl<N: Real, V> LaneCore<'_, N, V> {
-    /// Returns the vertex farthest along `direction`; the first vertex wins a tie.
+    /// Returns the vertex farthest along `direction`. In a tie, the first vertex of a list wins,
+    /// and the positive side of a box.
     #[inline(always)]
     pub(super) fn support<S: Simd>(&self, simd: S, direction: &[V; 3]) -> [V; 3]
     where
@@ -59,8 +61,8 @@ impl<N: Real, V> LaneCore<'_, N, V> {
         }
     }
 
-    /// Returns the vertices within `tolerance` of the farthest one along the unit vector
-    /// `direction`.
+    /// Counts the vertices whose height along the unit vector `direction` is within `tolerance` of
+    /// the largest height.
     #[inline(always)]
     pub(super) fn ties<S: Simd>(&self, simd: S, direction: &[V; 3], tolerance: V) -> LaneTies<V>
     where
@@ -120,7 +122,8 @@ fn farthest<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     best
 }
 
-/// Returns the support point of a hull for one pair, by the hull's own lookup.
+/// Returns the support point of a hull for one pair, computed by [`SupportMap::core_support`] of
+/// the hull.
 #[inline(always)]
 fn lone_support<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

@@ -1,13 +1,14 @@
 //! Nearest points of triangles, boxes and hulls in 3D that are well apart, for one pair or for 8
-//! pairs at a time. Both run the same code, so their results are bit-identical.
+//! pairs at a time. One pair and 8 pairs run the same code, so the results are bit-identical.
 //!
 //! The search follows E. Gilbert, D. Johnson and S. Keerthi ("A Fast Procedure for Computing the
 //! Distance Between Complex Objects in Three-Dimensional Space", 1988), without branches: each step
 //! computes all features of the simplex at its newest corner and selects the nearest ([`simplex`]).
-//! A result is returned only with a proof: its points are as far apart as two supporting planes.
-//! Without a proof the pair falls back to the algorithm of its kinds. This happens for cores nearer
-//! than 2⁻⁶ of the pair's size (`MIN_GAP`) or overlapping, for several pairs of nearest points, and
-//! if the bounds do not agree.
+//! A result is returned only with a proof: up to rounding, its points are as far apart as two
+//! supporting planes. Without a proof the pair falls back to the algorithm of its kinds. This
+//! happens for cores nearer than 2⁻⁶ of the pair's size (`MIN_GAP`) or overlapping, for several
+//! pairs of nearest points, for hulls of more than [`MAX_VERTICES`] vertices, and if the bounds do
+//! not agree.
 //!
 //! ```text
 //!        core 1             core 2        normal = nearest / |nearest|
@@ -44,8 +45,8 @@ use crate::shape::{Kind, SupportMap};
 /// Number of pairs in one packet.
 const LANES: usize = 8;
 
-/// Largest number of vertices. Hulls with more are passed to algorithms that do not visit every
-/// vertex in each step.
+/// Largest number of vertices of a hull in the search, which visits every vertex in each step.
+/// Larger hulls are passed to [`hulls`].
 const MAX_VERTICES: usize = 128;
 
 /// Returns the separation of two triangles, boxes or hulls: by the search if they are well apart,
@@ -71,7 +72,8 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     result(pair, limit, false).separation(pair, limit)
 }
 
-/// Returns the distance of [`separation`], or zero if the cores certainly overlap.
+/// Returns the distance of [`separation`], or zero if `limit` is zero or more and the cores
+/// certainly overlap.
 pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     result(pair, limit, limit >= N::ZERO).distance(pair, limit)
 }
@@ -95,8 +97,8 @@ pub(crate) fn distances<'p, 'a: 'p, N: Real>(
 }
 
 /// Searches up to [`LANES`] pairs and applies `convert` to the result of each. Returns `None` for
-/// all pairs if the machine has no SIMD vectors, or if the pairs do not share the vertices of their
-/// hulls.
+/// all pairs if [`Level::vectors`] returns `None`, or if a hull or triangle is not the same object
+/// in all pairs.
 #[inline]
 fn each<'p, 'a: 'p, N: Real, T: Copy>(
     pairs: impl Iterator<Item = &'p Pair<'a, N, 3>> + Clone,
@@ -142,8 +144,8 @@ enum GapResult<N: Real> {
 }
 
 impl<N: Real> GapResult<N> {
-    /// Returns the separation, `None` beyond `limit`; computes unproved pairs by the algorithm of
-    /// their kinds.
+    /// Returns the separation, `None` beyond `limit`; computes overlapping and unproved pairs by
+    /// the algorithm of their kinds.
     #[inline]
     fn separation(&self, pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
         match self {
@@ -188,9 +190,10 @@ fn result<N: Real>(pair: &Pair<'_, N, 3>, limit: N, with_overlap: bool) -> GapRe
 /// Two triangles, boxes or hulls, and the unit of length of the search.
 struct FlatPair<'a, N: Real> {
     solids: [FlatCore<'a, N, 3>; 2],
-    /// Radii around both cores.
+    /// Radii around both cores; zero, because these kinds have none.
     radii: [N; 2],
-    /// Unit of length in which the size of the cores is about 1.
+    /// Unit of length: the sum of both bounding radii and the distance of the origins is 1 to 2
+    /// units.
     units: Units<N>,
     /// Centres of the cores in their own frames, in units of the pair.
     middles: [Vector<N, 3>; 2],
@@ -223,7 +226,7 @@ impl<'a, N: Real> FlatPair<'a, N> {
     }
 
     /// Returns the limit for the distance of the cores, in units of the pair, raised so that
-    /// rounding rejects nothing within `limit`.
+    /// rounding rejects no pair within `limit`.
     #[inline]
     fn limit_of_cores(&self, limit: N) -> N {
         let limit = (limit + self.radii[0] + self.radii[1]) * self.units.shrink;

@@ -26,7 +26,8 @@ type LaneVectors<N> = [[N; LANES]; 3];
 
 /// Inputs of up to 8 pairs of the same kinds. Lanes without a pair stay zero.
 struct Packet<'a, N: Real> {
-    /// Both solids of each pair; `None` for lanes without a pair.
+    /// Both solids of each pair; `None` for lanes without a pair, and for pairs that
+    /// [`FlatPair::of`] rejects.
     pairs: [Option<FlatPair<'a, N>>; LANES],
     /// Columns of the rotations of `pose12`.
     rotation: [LaneVectors<N>; 3],
@@ -58,8 +59,8 @@ struct PacketGap<N: Real> {
 }
 
 /// Computes the results of up to 8 pairs of the same kinds, bit-identical to [`super::result`] and
-/// independent of the instruction set. `None` if the pairs do not share the vertices of their
-/// hulls.
+/// independent of the instruction set. `None` if a hull or triangle is not the same object in all
+/// pairs.
 pub(super) fn results<'p, 'a: 'p, N: Real>(
     vectors: Vectors,
     pairs: impl Iterator<Item = &'p Pair<'a, N, 3>>,
@@ -130,7 +131,7 @@ impl<'a, N: Real> Packet<'a, N> {
         packet
     }
 
-    /// Copies a pair into its lane; leaves the lane empty if the pair has no flat cores.
+    /// Copies a pair into its lane; leaves the lane empty if [`FlatPair::of`] returns `None`.
     fn put(&mut self, lane: usize, pair: &Pair<'a, N, 3>, limit: N) {
         let Some(solids) = FlatPair::of(pair) else { return };
         let (pose12, shrink) = (&pair.pose12, solids.units.shrink);
@@ -150,7 +151,7 @@ impl<'a, N: Real> Packet<'a, N> {
     }
 
     /// Returns whether each solid that is a hull or triangle is the same object in all lanes, so
-    /// that its vertices need no gathering.
+    /// that its vertices need no gathering. `false` if no lane has a pair.
     fn shares_vertices(&self) -> bool {
         let mut solids = self.pairs.iter().flatten();
         let Some(first) = solids.next() else { return false };

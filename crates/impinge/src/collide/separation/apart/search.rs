@@ -16,7 +16,8 @@ use crate::math::lanes::{
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, max};
 
-/// Cap on the number of support points. Most pairs take five or six.
+/// Cap on the number of steps, each with one support point of each core. Most pairs take five or
+/// six.
 const ROUNDS: usize = 32;
 
 /// Smallest distance of the cores, in units of the pair, at which the search returns a separation:
@@ -51,7 +52,8 @@ pub(super) struct LaneGap<V, M> {
     pub(super) normal: [V; 3],
     /// Nearest points of both cores.
     pub(super) points: [[V; 3]; 2],
-    /// Lanes whose cores are apart; `distance`, `normal` and `points` are proved only there.
+    /// Lanes whose cores are proved to be apart by more than [`MIN_GAP`], with a single pair of
+    /// nearest points. `distance`, `normal` and `points` are proved only there.
     pub(super) is_apart: M,
     /// Lanes whose cores are farther apart than the limit.
     pub(super) is_beyond: M,
@@ -119,9 +121,9 @@ impl<N: Real, V: Copy> LaneCores<'_, N, V> {
         LaneCorner { point: minus(&on2, &on1), on1 }
     }
 
-    /// Returns the lanes with a single pair of nearest points: no face or edge of one core is
-    /// parallel to a face or edge of the other. For several nearest pairs the result is their
-    /// middle, which other algorithms compute.
+    /// Returns the lanes with a single pair of nearest points: one of the nearest features is a
+    /// vertex, or both are edges that are not parallel. If there are several nearest pairs, the
+    /// points of a separation are in their middle, which other algorithms compute.
     #[inline(always)]
     fn is_unique<S: Simd>(&self, simd: S, normal: &[V; 3]) -> V::Mask
     where

@@ -16,8 +16,8 @@ use crate::math::lanes::{cross, dot, either, either_mask, lit, minus, negated, p
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
-/// The origin is clearly inside a simplex if its distance from each plane exceeds this: 2⁻¹⁰ of the
-/// pair's size.
+/// The origin is clearly inside a tetrahedron if its distance from the plane of each face exceeds
+/// this: 2⁻¹⁰ of the pair's size.
 const CLEAR: f64 = 1.0 / 1024.0;
 
 /// A point of the difference of two cores, and the point of the first core that it comes from.
@@ -56,7 +56,8 @@ pub(super) struct LaneSimplex<V> {
     pub(super) squared: V,
 }
 
-/// The feature nearest to the origin among the candidates so far.
+/// The nearest point to the origin on the candidate features so far, and the old corners of its
+/// feature.
 struct BestFeature<V> {
     nearest: [V; 3],
     squared: V,
@@ -112,10 +113,10 @@ impl<V: Copy> LaneSimplex<V> {
     }
 
     /// Adds a corner. Returns the simplex around the new nearest point, and the lanes where the
-    /// four corners contain a ball around the origin.
+    /// hull of the four corners contains the ball of radius [`CLEAR`] around the origin.
     ///
     /// In a lane with two corners the third is a copy, which adds no nearer point. If no lane has
-    /// three, the third corner's features are skipped.
+    /// three corners with a weight, the features of the third corner are skipped.
     #[inline(always)]
     pub(super) fn with<S: Simd, N: Real>(&self, simd: S, newest: &LaneCorner<V>) -> (Self, V::Mask)
     where
@@ -177,8 +178,8 @@ impl<'a, V: Copy> Fan<'a, V> {
         (feature, has_length)
     }
 
-    /// Returns the nearest point on a face at the newest corner, and the lanes where it lies inside
-    /// the face.
+    /// Returns the point nearest to the origin in the plane of a face at the newest corner, and the
+    /// lanes where this point lies inside the face and the face has an area.
     #[inline(always)]
     fn face<S: Simd, N: Real>(&self, simd: S, [one, two]: [usize; 2]) -> (BestFeature<V>, V::Mask)
     where

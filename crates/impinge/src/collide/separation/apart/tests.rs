@@ -3,7 +3,7 @@ use crate::collide::separation::hulls::tests::Random;
 use crate::math::simd::Level;
 use crate::shape::{ConvexHull, Cuboid, Shape, Triangle};
 
-/// Returns triangles, boxes and hulls, including flat and thin solids.
+/// Returns triangles, boxes and hulls, including a flat box and a triangle that is a segment.
 fn solids<N: Real>(random: &mut Random) -> Vec<Box<dyn Shape<N, 3>>> {
     let mut point = || Point::<N, 3>::from(random.vector::<N>());
     let many: Vec<_> = (0..48).map(|_| point()).collect();
@@ -17,7 +17,8 @@ fn solids<N: Real>(random: &mut Random) -> Vec<Box<dyn Shape<N, 3>>> {
     ]
 }
 
-/// Returns poses of the second solid: rotated at random or aligned, apart, near or overlapping.
+/// Returns poses of the second solid: rotated at random or aligned with the axes, at coordinates up
+/// to 0.5, 1.5, 3 and 50, so that pairs overlap, nearly touch or are apart.
 fn poses<N: Real>(random: &mut Random, count: usize) -> Vec<Pose<N, 3>> {
     let pose = |round: usize| {
         let mut pose = random.turn::<N>();

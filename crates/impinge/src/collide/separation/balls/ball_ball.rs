@@ -29,7 +29,8 @@ pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     })
 }
 
-/// Returns the distance of [`separation`], without a limit.
+/// Returns the distance of [`separation`], without a limit; the centre of the first ball is the
+/// origin.
 #[inline]
 pub(in crate::collide::separation) fn distance<N: Real, const D: usize>(
     center2: &Vector<N, D>,
@@ -38,7 +39,8 @@ pub(in crate::collide::separation) fn distance<N: Real, const D: usize>(
     apart(center2).1 - radii[0] - radii[1]
 }
 
-/// Returns the unit direction from the origin to the other centre, and the distance.
+/// Returns the unit direction from the origin to `center2`, and the length of `center2`. If both
+/// centres coincide, the direction is the first axis.
 #[inline]
 fn apart<N: Real, const D: usize>(center2: &Vector<N, D>) -> (Vector<N, D>, N) {
     unit(center2).unwrap_or((first_axis(), center2.norm()))

@@ -59,8 +59,8 @@ impl<N: Real> Section<N> {
 
     /// Returns the largest height of `p` above a side, and the normal of that side.
     ///
-    /// The directions +x and +y are also tried, after the sides: a cone without height or radius
-    /// has no side with this normal.
+    /// The directions +x and +y are also tried, after the sides. A cone without height or radius is
+    /// a disk or a segment, and no normal of a side points at points beyond its rim or apex.
     fn highest(&self, p: &Vector<N, 2>) -> (N, Vector<N, 2>) {
         let (x, y) = (Vector::<N, 2>::x(), Vector::<N, 2>::y());
         let mut best = (self.height(&-y, p), -y);
@@ -96,8 +96,8 @@ pub(in crate::collide::separation) fn project<N: Real>(
     if flat > N::ZERO {
         let point = section.nearest(&p);
         let (offset, distance) = unit(&(p - point)).unwrap_or((outward, flat));
-        // Close to the surface the offset is mostly rounding, and the normal of a flat side may be
-        // better.
+        // Close to the surface the offset is mostly rounding error. It is used only if the height
+        // along it is at least that along the best side normal, up to rounding.
         let rounding_error = rounding_error(section.rim.norm() + p.norm());
         let certain = offset.x >= N::ZERO && section.height(&offset, &p) + rounding_error >= flat;
         let outward = if certain { offset } else { outward };

@@ -81,7 +81,8 @@ impl<N: Real, const D: usize> ScaledEllipsoid<N, D> {
         Self { half_axes: *half_axes, least, excess, point: *point }
     }
 
-    /// Projects the point, by the root or, if the shortest axis alone decides, directly.
+    /// Projects the point by the positive root of f(t) = 1 (see [`Self::level`]), or by
+    /// [`Self::across`] if there is none.
     fn project(&self) -> Projection<N, D> {
         let low = (0..D).fold(N::ZERO, |low, axis| {
             let alone = self.half_axes[axis] * self.point[axis].abs() - self.excess[axis];
@@ -136,8 +137,8 @@ impl<N: Real, const D: usize> ScaledEllipsoid<N, D> {
         t
     }
 
-    /// Projects the point if the shortest half axis alone decides: the point lies in the symmetry
-    /// plane perpendicular to that axis and close enough to the centre, or that half axis is zero.
+    /// Projects the point if f(t) = 1 has no positive root: the point lies in the symmetry plane
+    /// perpendicular to that axis and close enough to the centre, or that half axis is zero.
     fn across(&self) -> Projection<N, D> {
         let shortest = |axis: &usize| self.excess[*axis] == N::ZERO;
         let first = (0..D).find(shortest).unwrap_or(0);

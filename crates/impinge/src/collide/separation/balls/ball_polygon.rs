@@ -60,8 +60,8 @@ fn project_from_outside<N: Real>(
             best = projected;
         }
     }
-    // Close to a corner the offset is mostly rounding error, and the normal of a side may be
-    // better.
+    // Close to a corner the offset is mostly rounding error. The normal of the highest side
+    // replaces it if the height along this normal is larger by more than rounding.
     if certain(&best) + rounding_error < highest.height_of(center) {
         best.outward = highest.normal;
     }

@@ -64,7 +64,8 @@ fn project_from_outside<N: Real>(
         }
     }
     let mut best = best.unwrap_or(*flat);
-    // Close to a side the offset is mostly rounding error, and the normal of a face may be better.
+    // Close to an edge or corner the offset is mostly rounding error. The normal of the highest
+    // face replaces it if the height along this normal is larger by more than rounding.
     if certain(&best) + rounding_error < flat.distance {
         best.outward = flat.outward;
     }

@@ -44,7 +44,7 @@ pub(in crate::collide::separation) fn project<N: Real, const D: usize>(
     Foot::new(*ends, center).projection()
 }
 
-/// Point of a segment nearest to the projected point.
+/// The point of a segment nearest to the projected point, and its offset.
 pub(in crate::collide::separation) struct Foot<N: Real, const D: usize> {
     ends: [Point<N, D>; 2],
     /// The nearest point of the segment.
@@ -73,8 +73,10 @@ impl<N: Real, const D: usize> Foot<N, D> {
         Projection { distance: self.distance, outward: self.outward(), point: self.point }
     }
 
-    /// Returns the unit direction from the segment to the point, or a perpendicular of the segment
-    /// if the offset is mostly rounding error.
+    /// Returns the unit direction from the segment to the projected point. Between the ends it is
+    /// the part of the offset perpendicular to the segment, beyond them the offset. If that is zero
+    /// or mostly rounding error, it is a fixed perpendicular of the segment, or the first axis for
+    /// a segment without length.
     fn outward(&self) -> Vector<N, D> {
         let direct = if self.is_inside { None } else { unit(&self.offset) };
         if let Some((outward, _)) = direct {

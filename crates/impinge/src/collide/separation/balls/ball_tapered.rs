@@ -11,9 +11,10 @@ use crate::shape::{FeatureId, Kind, TaperedCapsule};
 
 /// Returns the separation of a ball from a tapered capsule.
 ///
-/// A centre on the axis leaves along a fixed perpendicular, and a centre at an end of the axis
-/// leaves away from the other end. If one ball contains the other, the centre of the larger ball
-/// leaves along the first axis.
+/// A centre on the axis leaves along a normal of the side, in a fixed direction around the axis. If
+/// rounding puts a centre at an end of the axis beyond the side, it leaves along the axis, away
+/// from the other end. If one ball contains the other, the centre of the larger ball leaves along
+/// the first axis.
 pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -77,7 +78,8 @@ mod tests {
 
     type P = Point<f64, 3>;
 
-    /// Returns a tapered capsule whose side rises by 3 over 4, so that the sine of its tilt is 0.6.
+    /// Returns a tapered capsule whose radius grows by 3 over an axis of length 5, so that the
+    /// normals of the side tilt by an angle with the sine 0.6.
     fn club() -> TaperedCapsule<f64, 3> {
         TaperedCapsule::try_from_ends(P::origin(), P::new(0.0, 5.0, 0.0), [1.0, 4.0])
             .expect("finite")

@@ -34,7 +34,8 @@ pub(in crate::collide::separation) fn project<N: Real>(
         return Projection { distance, outward, point: center - outward * distance };
     }
     let mut projected = on_nearest_side(corners, center).projection();
-    // Close to a side the offset is mostly rounding, and the normal of the triangle may be better.
+    // Close to a side the offset is mostly rounding error. The normal of the triangle replaces it
+    // if the height along this normal is larger by more than rounding.
     let normal = toward(&front, &(center - corners[0]));
     if height(&normal, corners, center)
         > height(&projected.outward, corners, center) + rounding_error(reach(corners, center))
@@ -66,8 +67,8 @@ fn height_over<N: Real>(
     is_over.then(|| (max((center - corners[0]).dot(&normal), N::ZERO), normal))
 }
 
-/// Returns the nearest point of a triangle that is a segment up to rounding: its other sides lie on
-/// the longest one.
+/// Returns the point nearest to `center` of a triangle that is a segment up to rounding, on its
+/// longest side: the other two sides lie on that side.
 fn on_longest_side<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Foot<N, 3> {
     let side = longest_side(corners);
     Foot::new([corners[side], corners[(side + 1) % 3]], center)
@@ -95,7 +96,7 @@ fn longest_side<N: Real>(corners: &[Point<N, 3>; 3]) -> usize {
     longer(longer(0, 1), 2)
 }
 
-/// Returns the nearest point of the three sides; the first side wins a tie.
+/// Returns the point of the three sides nearest to `center`; the first side wins a tie.
 fn on_nearest_side<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Foot<N, 3> {
     let [a, b, c] = *corners;
     let mut best = Foot::new([a, b], center);
@@ -121,7 +122,7 @@ fn lies_over<N: Real>(corners: &[Point<N, 3>; 3], front: &Vector<N, 3>, p: &Poin
     })
 }
 
-/// Returns a bound of the distance of the corners and `p` from the origin.
+/// Returns the largest distance of the corners and `p` from the origin.
 fn reach<N: Real>(corners: &[Point<N, 3>; 3], p: &Point<N, 3>) -> N {
     corners.iter().fold(p.coords.norm(), |most, corner| max(corner.coords.norm(), most))
 }

@@ -23,7 +23,8 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     }
 }
 
-/// A side of a triangle whose inside is on its left.
+/// A directed side of a triangle, with the inside of the triangle on its left, and the height of
+/// the projected point above it.
 #[derive(Clone, Copy)]
 struct DirectedEdge<N: Real> {
     /// Start of the side.
@@ -47,13 +48,13 @@ impl<N: Real> DirectedEdge<N> {
         -perp(&self.along)
     }
 
-    /// Returns whether the point is outside this side and projects between its ends.
+    /// Returns whether `center` is outside this side and projects between its ends.
     fn is_below(&self, center: &Point<N, 2>) -> bool {
         let coordinate = self.along.dot(&(center - self.from));
         self.height > N::ZERO && coordinate > N::ZERO && coordinate < self.length
     }
 
-    /// Projects the point onto the line of the side.
+    /// Projects `center` onto the line of the side.
     fn projection(&self, center: &Point<N, 2>) -> Projection<N, 2> {
         let (distance, outward) = (self.height, self.outward());
         Projection { distance, outward, point: center - outward * distance }
@@ -104,8 +105,9 @@ fn has_area<N: Real>(sides: &[DirectedEdge<N>; 3]) -> bool {
     area > N::lit(64.0) * N::EPSILON
 }
 
-/// Projects the point onto the nearest corner; the first corner wins a tie. If it is so close that
-/// the direction is mostly rounding error, the normal of the highest side is used.
+/// Projects the point onto the nearest corner; the first corner wins a tie. If that corner is so
+/// close that the direction from it is mostly rounding error, the normal of the side `highest` is
+/// used.
 fn from_corner<N: Real>(
     corners: &[Point<N, 2>; 3],
     center: &Point<N, 2>,
@@ -165,7 +167,7 @@ mod tests {
         assert_eq!(project(&corners, &p(f64::NAN, 1.0)), None, "nowhere");
     }
 
-    /// Compares with the separation of outlines, for random triangles and points.
+    /// Compares [`project`] with the separation of outlines, for random triangles and points.
     #[test]
     fn as_outlines_have_it() {
         let (mut inside, mut tried) = (0, 0);

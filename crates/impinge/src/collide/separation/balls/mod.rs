@@ -1,5 +1,5 @@
-//! Balls against all other solids. A ball is a point with a radius, so each file projects a point
-//! onto one kind of solid.
+//! Balls against other solids. A ball is a point with a radius, so each file but `ball_ball`
+//! projects a point onto one kind of solid.
 
 pub(super) mod ball_ball;
 pub(super) mod ball_cone;

@@ -45,7 +45,7 @@ pub(crate) struct BoxAxis<N: Real> {
 }
 
 impl<N: Real> BoxPair<N> {
-    /// Returns the rounding error of lengths of this pair.
+    /// Returns the bound that is used for the rounding error of lengths of this pair.
     pub(crate) fn rounding_error(&self) -> N {
         let size = self.half1.sum() + self.half2.sum() + self.pose12.translation.amax();
         N::lit(4.0) * N::EPSILON * size
@@ -68,8 +68,8 @@ impl<N: Real> BoxPair<N> {
         }
     }
 
-    /// Returns the face normal with the largest gap; `abs_rotation` are the absolute values of the
-    /// rotation.
+    /// Returns the face normal with the largest gap; `abs_rotation` holds the absolute values of
+    /// the rotation matrix.
     fn best_face(&self, abs_rotation: &Matrix<N, 3>) -> (AxisKind, N) {
         let (t, mut best, mut gap) = (&self.pose12.translation, AxisKind::Face1(0), N::ZERO);
         for i in 0..3 {

@@ -12,9 +12,10 @@ use crate::shape::Kind;
 
 /// Returns the separation of two boxes.
 ///
-/// For overlapping boxes the separating axis test is exact. For boxes that are apart it gives a
-/// lower bound, which is the distance if the nearest points lie on a face or between edges. In the
-/// other cases (two corners, a corner and an edge) the general algorithm is used.
+/// For overlapping boxes the separating axis test is exact. For boxes that are apart the test gives
+/// a lower bound. The bound is the distance if a nearest point lies inside a face, or both inside
+/// edges that are not parallel. In other cases, such as two corners or a corner and an edge, the
+/// general algorithm is used.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -35,7 +36,8 @@ pub(in crate::collide::separation) fn decided_by_axes<N: Real>(
     is_decided.then(|| along_best(pair, limit, &boxes, &best))
 }
 
-/// Returns the distance of [`separation`], without points. For overlapping boxes it is the gap.
+/// Returns the distance of [`separation`]. For overlapping boxes it is the gap along the best axis,
+/// and no points are computed.
 pub(in crate::collide::separation) fn distance<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -56,7 +58,7 @@ fn of_pair<N: Real>(pair: &Pair<'_, N, 3>) -> BoxPair<N> {
     BoxPair { half1, half2, pose12: pair.pose12 }
 }
 
-/// Returns the separation, computed from `best`, the axis of the largest gap.
+/// Returns the separation, computed from `best`, the axis of the largest gap; `None` above `limit`.
 fn along_best<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -80,7 +82,8 @@ fn is_beyond<N: Real>(boxes: &BoxPair<N>, axis: &BoxAxis<N>, limit: N) -> bool {
     axis.gap > limit + N::lit(16.0) * boxes.rounding_error()
 }
 
-/// Returns the points of both boxes along an axis, with the gap as distance.
+/// Returns a separation with the normal and the gap of `axis`, and points of both boxes that face
+/// each other along it.
 fn along<N: Real>(boxes: &BoxPair<N>, axis: &BoxAxis<N>) -> Separation<N, 3> {
     let (normal, distance) = (axis.normal, axis.gap);
     let (point1, point2) = match axis.kind {
@@ -175,8 +178,9 @@ impl<N: Real> BoxReferenceFace<N> {
         across.iter().all(|&axis| point[axis].abs() <= self.half[axis])
     }
 
-    /// Returns the centroid of the other box's lowest points that project into this face. `pose` is
-    /// the pose of the other box in the frame of this one, `distance` its known signed height.
+    /// Returns the centroid of the lowest points of the other box among those that project into
+    /// this face, or, if none does, among all. `other` are the half extents of that box, `pose` its
+    /// pose in the frame of this box, and `distance` its known signed height above the face.
     fn deepest(&self, other: &Vector<N, 3>, pose: &Pose<N, 3>, distance: N) -> Point<N, 3> {
         let direction = Vector::<N, 3>::ith(self.axis, -self.sign());
         let facing = face_toward(other, &pose.inverse_vector(&direction));
@@ -190,8 +194,8 @@ impl<N: Real> BoxReferenceFace<N> {
                 return corner;
             }
         }
-        // Rounding may leave no point over a face without width. If the boxes are apart, there may
-        // be none.
+        // Rounding may leave no point over a face without width. If the boxes are apart, the other
+        // box may lie beside the face.
         let mut above = self.above(&facing, N::ZERO);
         if above.is_empty() {
             above = self.above(&facing, rounding_error);

@@ -57,8 +57,8 @@ const fn rank(axis: usize, is_positive: bool) -> usize {
     }
 }
 
-/// Gap, position of the side in the outline, axis, and whether the other box is on the positive
-/// side of the axis.
+/// Gap, position of the side in the outline, axis, and whether the second box lies in the positive
+/// direction of the axis from the first.
 type FoundAxis<N> = (N, usize, usize, bool);
 
 /// Returns the axis with the larger gap; in a tie, the axis whose side comes first in the outline.

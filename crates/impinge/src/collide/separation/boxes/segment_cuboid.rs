@@ -1,10 +1,10 @@
 //! Segments and capsules against boxes in 3D.
 //!
-//! The squared distance of a point from a box is a sum over the axes. Along a segment its slope is
-//! piecewise linear, with breaks where the segment crosses the planes of faces, so the nearest
-//! point is found between two breaks. If the two overlap, the separating axis test over three faces
-//! and three pairs of edges is exact. Results whose points are not as far apart as supporting
-//! planes fall back to the general algorithm. The test of
+//! The squared distance of a point from a box is a sum over the axes. Along a segment the slope of
+//! this sum is piecewise linear, with breaks where the segment crosses the planes of faces, so the
+//! nearest point is found between two breaks. If segment and box overlap, the separating axis test
+//! over three faces and three pairs of edges is exact. Results whose points are not as far apart as
+//! supporting planes fall back to the general algorithm. The separating axis test of
 //! [`hulls`](crate::collide::separation::hulls) takes twice as long.
 //!
 //! ```text
@@ -85,13 +85,14 @@ enum SegmentResult<N: Real> {
     Unproved,
 }
 
-/// Returns the rounding error of arithmetic on numbers up to 2.
+/// Returns the bound that is used for the rounding error of arithmetic on numbers up to 2.
 fn rounding_error<N: Real>() -> N {
     N::lit(16.0) * N::EPSILON
 }
 
 impl<'a, N: Real> LocalSegment<'a, N> {
-    /// Scales a segment; `None` if the size of the pair, or its reciprocal, is zero or not finite.
+    /// Scales a segment; `None` if the size of the pair is zero, or the size, its reciprocal or the
+    /// pose is not finite.
     fn new(ends: [&Point<N, 3>; 2], pose12: &'a Pose<N, 3>, reach: N) -> Option<Self> {
         let of_ends = max(max_component(&ends[0].coords), max_component(&ends[1].coords));
         let size = max(max(reach, max_component(&pose12.translation)), of_ends);
@@ -124,9 +125,9 @@ impl<'a, N: Real> LocalSegment<'a, N> {
         min(along.dot(&self.ends[0]), along.dot(&self.ends[1]))
     }
 
-    /// Returns the separation along the unit vector `outward`; `None` unless both points are as far
-    /// apart along it as the supporting planes. `extent` is the extent of the solid along
-    /// `outward`.
+    /// Returns the separation along the unit vector `outward`; `None` unless the vector between
+    /// both points is `outward` times the distance of the supporting planes, up to rounding.
+    /// `extent` is the extent of the solid along `outward`.
     fn proved(
         &self,
         outward: Vector<N, 3>,
@@ -225,7 +226,8 @@ impl<N: Real> LocalBox<'_, N> {
     }
 
     /// Returns the separation along the normal of a face; `None` unless the lowest point of the
-    /// segment projects into the face.
+    /// segment projects into the face. If the segment is parallel to the face, this point is the
+    /// middle of the part that projects into it.
     fn at_face(&self, axis: usize, sign: N, gap: N) -> Option<Parting<N>> {
         let [a, b] = &self.segment.ends;
         let climb = (b[axis] - a[axis]) * sign;
@@ -262,7 +264,8 @@ impl<N: Real> LocalBox<'_, N> {
     }
 
     /// Returns the separation along the common perpendicular of the segment and the box edges along
-    /// `axis`; `None` unless its points are as far apart as the gap.
+    /// `axis`; `None` unless the vector between the nearest points is `outward` times `gap`, up to
+    /// rounding.
     fn at_edge(&self, axis: usize, outward: &Vector<N, 3>, gap: N) -> Option<Parting<N>> {
         let mut ends = [Point::origin(); 2];
         for at in 0..3 {

@@ -35,7 +35,8 @@ pub(super) fn links<N: Real>(
     Some(())
 }
 
-/// Returns the bits of the segments beyond the limit, and the smallest distance from the centre.
+/// Returns the bits of the segments beyond the limit, and the smallest distance of the segments
+/// from the centre of the ball. `None` if a squared length is close to underflow or overflow.
 /// `level` selects the instruction set; the result does not depend on it.
 fn at<N: Real>(
     level: Level,

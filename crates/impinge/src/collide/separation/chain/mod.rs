@@ -3,8 +3,9 @@
 //! The kernels run the algorithms of [`polygon_polygon`](super::polygons::polygon_polygon),
 //! [`segment_lanes`](super::segments::segment_lanes) and
 //! [`ball_segment`](super::balls::ball_segment) in the same order of operations, so results are
-//! bit-identical. Most segments are culled as beyond the limit; for the others, the separation is
-//! computed from the axis found by the test.
+//! bit-identical to those of single segments. Segments beyond the limit are culled. For the others
+//! the separation is computed: against a polygon along the axis of the test, against a segment from
+//! the nearest points of the test, against a ball from the beginning.
 //!
 //! ```text
 //!   question.tiles   [0 1 2 3 4 5 6 7] [8 9 . . . . . .]    corners 0 and 1 of each `PartPacket`
@@ -34,7 +35,8 @@ use crate::shape::Kind;
 pub(crate) struct ChainQuestion<'a, N: Real> {
     /// Corners of the segments, 8 per packet, in the frame of the chain.
     pub(crate) tiles: &'a [PartPacket<N, 2>],
-    /// Number of segments; lanes of the last packet after them are ignored.
+    /// Number of segments. Results in later lanes of the last packet are dropped, but these lanes
+    /// must hold segments with a length, too.
     pub(crate) count: usize,
     /// Point in the frame of the chain that becomes the origin of the segments.
     pub(crate) origin: Vector<N, 2>,
@@ -64,8 +66,9 @@ impl<N: Real> Links<N> {
     }
 }
 
-/// Computes the separations of the segments from the solid and adds them to `links`. `None` if some
-/// lane has no result; then all segments have to be computed one by one.
+/// Computes the separations of the segments from the solid and adds them to `links`. `None` if the
+/// pose is not finite, the solid has no kernel, or some lane has no result; then all segments have
+/// to be computed one by one.
 pub(crate) fn links<N: Real>(question: &ChainQuestion<'_, N>, links: &mut Links<N>) -> Option<()> {
     links_at(Level::new(), question, links)
 }

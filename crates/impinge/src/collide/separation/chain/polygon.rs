@@ -9,7 +9,8 @@ use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Real, Vector, Wide, min};
 use crate::shape::Segment;
 
-/// Computes the separations of the segments from a polygon; `None` if some lane has no result.
+/// Computes the separations of the segments from a polygon; `None` for polygons of more than 8
+/// vertices and other solids, and if some lane has no result.
 pub(super) fn links<N: Real>(
     level: Level,
     question: &ChainQuestion<'_, N>,
@@ -91,7 +92,7 @@ impl<N: Real> PolygonExtents<N> {
 
 /// Best directions from 8 segments to a polygon.
 struct SegmentAxes<N> {
-    /// Signed distance along the best direction of each segment.
+    /// Signed distance along the best direction of each segment, without the radius of the polygon.
     gaps: Row<N>,
     /// Unit vectors from the segment to the polygon.
     normals: [Row<N>; 2],
@@ -168,7 +169,7 @@ fn of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let length = squared.sqrt();
     let front = [side[1] / length, -(side[0] / length)];
     let back = negated(&front);
-    // By the formula for the tips of an outline with two sides.
+    // Computed by the formula of [`PolygonOutline::tips`], for an outline with two sides.
     let tip = [front[1] - back[1], back[0] - front[0]];
     let tip = over(&tip, dot(&tip, &tip).sqrt());
     let (low, high) = heights(simd, &front, solid);

@@ -11,8 +11,8 @@ use crate::math::simd::{Level, Simd};
 use crate::math::{Point, Real, Vector, Wide, min};
 use crate::shape::{Kind, Segment};
 
-/// Computes the separations of the segments from a core with a radius; `None` if a length in some
-/// lane is close to underflow or overflow.
+/// Computes the separations of the segments from `core`, a segment with a radius; `None` if a
+/// length in some lane is close to underflow or overflow.
 pub(super) fn links<N: Real>(
     level: Level,
     question: &ChainQuestion<'_, N>,
@@ -64,12 +64,13 @@ struct SegmentGaps<N> {
     points: [[[N; LANES]; 2]; 2],
     /// Bits of the lanes whose values are valid.
     known: u8,
-    /// Lower bound of the distance of the segments from the centre of the solid.
+    /// Smallest distance of the segments from the centre of the solid, up to rounding.
     least: N,
 }
 
 impl<N: Real> SegmentGaps<N> {
-    /// Computes the gaps of a packet, with the two cores of each pair in canonical order.
+    /// Computes the gaps of a packet, with the two cores of each pair in canonical order; `None` if
+    /// a squared length is close to underflow or overflow.
     #[inline(always)]
     fn of<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,

@@ -7,7 +7,8 @@ use crate::collide::separation::polygons::polygon_polygon::tests::solid_of;
 use crate::collide::separation::separation_2d;
 use crate::shape::{Ball, Segment};
 
-/// Returns one to sixteen segments around an origin, and their packets.
+/// Returns one to sixteen random segments around `origin`, relative to it, and packets of these
+/// segments in the frame of the chain.
 fn segments_of<N: Real>(
     random: &mut Random,
     origin: &Vector<N, 2>,

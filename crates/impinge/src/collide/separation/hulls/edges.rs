@@ -25,7 +25,8 @@ use crate::shape::PolytopeEdge;
 /// Capacity for edges: 32 vertices have at most 3 · 32 - 6.
 pub(super) const MAX_EDGES: usize = 90;
 
-/// An edge of the solid with the reference face, in the frame of that solid.
+/// An edge that is compared with those of an [`EdgeBlock`], in the frame of the solid with the
+/// reference face: an edge of that solid or, in `segment`, the segment.
 pub(super) struct ReferenceEdge<N: Real> {
     pub(super) index: usize,
     /// First end, in units of the pair.
@@ -36,7 +37,8 @@ pub(super) struct ReferenceEdge<N: Real> {
     pub(super) squared: N,
 }
 
-/// Eight edges of the other solid, in the frame of the solid with the reference face.
+/// Eight edges of one solid, in the frame of the solid with the reference face and in units of the
+/// pair. In `segment` both are the same solid.
 pub(super) struct EdgeBlock<N: Real> {
     /// Index of the edge in each lane.
     pub(super) indices: [u8; LANES],
@@ -118,7 +120,7 @@ pub(super) struct EdgeQuery<N> {
 impl<N: Real> ReferenceFace<'_, '_, N> {
     /// Returns the edges of each solid that can hold the points of a result whose points are at
     /// most `max_distance` apart: those with an end close enough to the other solid along the
-    /// normal.
+    /// normal of the reference face.
     #[inline(always)]
     fn candidates<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -174,8 +176,9 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     }
 
     /// Queries the edge directions. Returns the pair of edges that forms a face of the Minkowski
-    /// difference and has the largest signed distance; `None` unless that exceeds the signed
-    /// distance along the reference face by more than rounding.
+    /// difference and has the largest signed distance, among those that [`Self::candidates`]
+    /// returns for `max_distance`. `None` unless this distance exceeds the signed distance along
+    /// the reference face by more than rounding.
     #[inline(always)]
     pub(super) fn query_edges<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -224,8 +227,9 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         self.proved::<S, V>(simd, &if is_outward { normal } else { -normal }, points)
     }
 
-    /// Returns the separation at the nearest edges of two solids that are apart; `None` unless
-    /// supporting planes prove it.
+    /// Returns the separation at the nearest pair of edges of two solids that are apart, among
+    /// those that [`Self::candidates`] returns for `max_distance`; `None` unless supporting planes
+    /// prove it.
     #[inline(always)]
     pub(super) fn nearest_edges<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -260,8 +264,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         nearest_points(&ends1, &ends2)
     }
 
-    /// Returns the separation along the unit vector `normal`; `None` unless both points are as far
-    /// apart along it as the supporting planes.
+    /// Returns the separation along the unit vector `normal`; `None` unless the vector between both
+    /// points is `normal` times the distance of the supporting planes, up to rounding.
     #[inline(always)]
     fn proved<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -286,9 +290,9 @@ pub(super) fn nearest_points<N: Real>(
 }
 
 /// Returns the unit direction from the first to the second nearest point of two edges: their common
-/// perpendicular, if it leads from one point to the other. It is accurate to rounding at any
-/// distance, unlike the difference of the points. `None` if the points coincide and the edges are
-/// parallel.
+/// perpendicular if it leads from one point to the other, else the direction of the difference. The
+/// perpendicular is accurate to rounding at any distance, unlike the difference. `None` if the
+/// points coincide and the edges are parallel.
 pub(super) fn normal_between<N: Real>(
     [from, to]: &[Vector<N, 3>; 2],
     across: &Vector<N, 3>,
@@ -305,8 +309,8 @@ pub(super) fn normal_between<N: Real>(
     }
 }
 
-/// Returns the separation along a unit vector; `None` unless the two points are as far apart along
-/// it as the supporting planes, whose distance is `distance`.
+/// Returns the separation along the unit vector `normal`; `None` unless the vector between the two
+/// points is `normal` times `distance`, the distance of the supporting planes, up to rounding.
 pub(super) fn proved<N: Real>(
     normal: &Vector<N, 3>,
     distance: N,

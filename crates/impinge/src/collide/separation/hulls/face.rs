@@ -20,7 +20,8 @@ pub(super) struct LocalSolid<'s, 'a, N: Real> {
     pub(super) heights: Heights<N>,
 }
 
-/// The face with the largest signed height of the other solid above it, with both solids.
+/// The reference face, with both solids: of all faces of both solids, the face with the largest
+/// signed height of the other solid above it.
 pub(super) struct ReferenceFace<'s, 'a, N: Real> {
     pub(super) own: LocalSolid<'s, 'a, N>,
     pub(super) other: LocalSolid<'s, 'a, N>,
@@ -96,8 +97,10 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         None
     }
 
-    /// Breaks with the separation by edges within `max_distance` of the plane, or with `None` if it
-    /// is not proved. Continues, unless `is_last`, if farther edges may give a better separation.
+    /// Queries the edges within `max_distance` of the plane. Breaks with the separation if they
+    /// determine it, and with `over`, the separation along the face's normal, if it is `Some` and
+    /// no pair of edges is better. Otherwise continues, or breaks if `is_last` is `true`, with
+    /// `None` if no result is proved.
     #[inline(always)]
     fn within<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -131,8 +134,9 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     }
 
     /// Returns whether no farther edge can improve a separation found by edges. This holds if the
-    /// solids are apart. It also holds if they have a point in common, because edges farther from
-    /// the plane than the depth along the face's normal cannot be better.
+    /// solids are apart. It also holds if both solids contain the middle of the two points of the
+    /// separation, because edges farther from the plane than the depth along the face's normal
+    /// cannot be better.
     #[inline(always)]
     fn is_certain<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -171,7 +175,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     }
 
     /// Returns the first vertex in the mask `lowest` that projects into the face. If an edge or a
-    /// face is lowest, the result may be another of its points.
+    /// face is lowest, the result may be another of its points. [`LowestPoint::Beside`] if no
+    /// lowest point projects into the face.
     fn lowest_point(&self, lowest: u32) -> LowestPoint<N> {
         let (mut max_distance, mut rest) = (N::INFINITY, lowest);
         while rest != 0 {
@@ -192,9 +197,10 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         self.other.heights.up_to::<S, V>(simd, self.other.heights.low + rounding_error())
     }
 
-    /// Returns the separation if the lowest vertex projects beside the face, but no edge is better
-    /// than the face by more than rounding. The solids are then nearly coplanar: an edge that is as
-    /// low up to rounding has a part over the face.
+    /// Returns the separation along the face's normal if the lowest vertex projects beside the
+    /// face, but no pair of edges is better than the face by more than rounding. Then an edge of
+    /// the other solid is nearly parallel to the face, and a point of it that is as low, up to
+    /// rounding, lies over the face. `None` if there is no such edge.
     #[inline(always)]
     fn nearly_over<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Option<Separation<N, 3>> {
         let most = self.other.heights.low + N::lit(3.0) * rounding_error();
@@ -254,8 +260,9 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         least.map(N::sqrt)
     }
 
-    /// Returns a point over the face that lies on an edge between the vertices `lowest`, or on a
-    /// face between them, above a corner of the reference face.
+    /// Returns a point over the reference face: the middle of the part of an edge whose ends are
+    /// both in the mask `lowest`, or the point above the first corner of the reference face on a
+    /// face whose vertices are all in the mask. `None` if there is no such point.
     fn point_among(&self, lowest: u32) -> Option<Vector<N, 3>> {
         let solid = self.other.solid;
         let is_lowest = |vertex: &u32| lowest >> *vertex & 1 == 1;
@@ -304,7 +311,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     fn is_under(&self, face: usize, point: &Vector<N, 3>) -> bool {
         let ring = self.other.solid.ring(face);
         let at = |corner: usize| self.other.vertices.at(ring[corner % ring.len()] as usize);
-        // It faces the opposite way, so its ring is clockwise about the normal.
+        // The covering face has the opposite normal, so its ring is clockwise about this face's
+        // normal.
         (0..ring.len()).all(|corner| {
             let (from, to) = (at(corner), at(corner + 1));
             cross(&self.normal, &(to - from)).dot(&(point - from)) <= N::ZERO

@@ -35,8 +35,8 @@
 //!
 //! [`Polytope`]: crate::shape::Polytope
 //!
-//! A triangle is a prism without height ([`polyhedral`]). Thin triangles, flat boxes and large
-//! hulls fall back as well.
+//! A triangle is a prism without height ([`polyhedral`]). Pairs with thin triangles, flat boxes or
+//! large hulls fall back without the test.
 
 mod edges;
 mod face;
@@ -116,7 +116,8 @@ impl<N: Real> SatResult<N> {
     }
 }
 
-/// Returns the rounding error of lengths, in units of the pair: 8 epsilon.
+/// Returns the bound that is used for the rounding error of lengths, in units of the pair: 8
+/// epsilon.
 pub(super) fn rounding_error<N: Real>() -> N {
     N::lit(8.0) * N::EPSILON
 }
@@ -128,7 +129,8 @@ pub(super) fn beyond_limit<N: Real>(units: &Units<N>, limit: N) -> N {
     limit + N::lit(16.0) * rounding_error::<N>() * (N::ONE + limit.abs())
 }
 
-/// Runs the test with the instruction set `level`, on which the result does not depend.
+/// Runs the test with the instruction set `level`, on which the result does not depend. Returns
+/// `Beyond` if the pose is not finite.
 fn sat<N: Real>(
     level: Level,
     solids: [&Polyhedral<'_, N>; 2],
@@ -141,7 +143,8 @@ fn sat<N: Real>(
     with_lanes!(level, simd => sat_in_lanes::<_, N, N::Lanes<_>>(simd, solids, pose12, limit))
 }
 
-/// Queries the faces of both solids, then computes the separation from the better face.
+/// Queries the faces of both solids, then computes the separation from the face with the larger
+/// height; the first solid's face wins a tie up to rounding.
 #[inline(always)]
 fn sat_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

@@ -25,7 +25,7 @@ pub(in crate::collide::separation) struct Polyhedral<'a, N: Real> {
     pub(in crate::collide::separation) planes: &'a [Planes<N, 3>],
     pub(in crate::collide::separation) edges: &'a [PolytopeEdge],
     rings: Rings<'a, N>,
-    /// Largest distance of a vertex from the origin.
+    /// Upper bound of the distance of the vertices from the origin ([`SupportMap::reach`]).
     pub(in crate::collide::separation) reach: N,
     /// Smallest half extent of a box, or height of a triangle; infinite for hulls.
     thickness: N,
@@ -80,7 +80,7 @@ impl<'a, N: Real> Polyhedral<'a, N> {
         }
     }
 
-    /// Returns the vertices around a face, counter-clockwise seen from outside.
+    /// Returns the indices of the vertices around a face, counter-clockwise seen from outside.
     pub(in crate::collide::separation) fn ring(&self, face: usize) -> &[u32] {
         match self.rings {
             Rings::Polytope(polytope) => polytope.face_vertices(&polytope.faces()[face]),

@@ -3,10 +3,10 @@
 //!
 //! A segment has no faces, so the reference face belongs to the solid. If the lower end of the
 //! segment projects into that face, the separation is along the face's normal. Otherwise edges
-//! decide. If the two overlap, the candidates are the edges between a face above whose plane the
-//! segment rises and a face above whose plane it does not: with the segment they form the faces of
-//! the Minkowski difference. If the two are apart, the candidates are the edges of the faces that
-//! some point of the segment lies above.
+//! decide. If segment and solid overlap, the candidates are the edges between a face above whose
+//! plane the segment rises and a face above whose plane it does not: with the segment these edges
+//! form faces of the Minkowski difference. If segment and solid are apart, the candidates are the
+//! edges of the faces that some point of the segment lies above.
 //!
 //! ```text
 //!    b *            `climbed`: bit f set if b is higher above plane f than a
@@ -51,7 +51,8 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     result.separation(pair, limit, general::of_flat_cores)
 }
 
-/// Runs the test for the cores of a pair.
+/// Runs the test for the cores of a pair; returns `Unproved` also for thin triangles and for hulls
+/// that do not fit the lanes or have fewer than 4 faces.
 pub(super) fn result<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> SatResult<N> {
     let (ends, _) = core(pair, &pair.first);
     let features = LocalFeatures::of(pair.second);
@@ -177,9 +178,9 @@ impl<N: Real> SegmentQuery<'_, N> {
         }
     }
 
-    /// Returns the separation along the normal of the highest face; `None` unless the lower end
-    /// projects into it. If the segment is parallel to the face, the points are at the middle of
-    /// the part that projects into the face.
+    /// Returns the separation along the normal of the highest face; `None` unless the lower end of
+    /// the segment projects into this face. If the segment is parallel to the face, the points are
+    /// at the middle of the part that projects into the face.
     fn over_face(
         &self,
         vertices: &Vertices<N>,
@@ -230,8 +231,8 @@ impl<N: Real> SegmentQuery<'_, N> {
     }
 
     /// Queries the edge directions. Returns the edge that forms a face of the Minkowski difference
-    /// with the segment and has the largest signed distance, with that distance. `None` unless it
-    /// exceeds the distance along the reference face by more than rounding.
+    /// with the segment and has the largest signed distance, with that distance. `None` unless this
+    /// distance exceeds the signed distance along the reference face by more than rounding.
     #[inline(always)]
     fn query_edges<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -294,8 +295,8 @@ impl<N: Real> SegmentQuery<'_, N> {
         self.proved::<S, V>(simd, vertices, &normal, points)
     }
 
-    /// Returns the separation at the nearest of the visible edges; `None` unless supporting planes
-    /// prove it.
+    /// Returns the separation at the nearest visible edge (an edge of a face that some point of the
+    /// segment lies above); `None` unless supporting planes prove it.
     #[inline(always)]
     fn nearest_edge<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -326,8 +327,8 @@ impl<N: Real> SegmentQuery<'_, N> {
         self.proved::<S, V>(simd, vertices, &normal_between(&points, &across)?, points)
     }
 
-    /// Returns the separation along the unit vector `normal`; `None` unless both points are as far
-    /// apart along it as the supporting planes.
+    /// Returns the separation along the unit vector `normal`; `None` unless the vector between both
+    /// points is `normal` times the distance of the supporting planes, up to rounding.
     #[inline(always)]
     fn proved<S: Simd, V: Wide<S, Scalar = N>>(
         &self,

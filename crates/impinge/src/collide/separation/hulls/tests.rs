@@ -30,7 +30,7 @@ impl Random {
         self.vector::<N>().try_normalize(N::lit(0.1)).unwrap_or_else(Vector::<N, 3>::x)
     }
 
-    /// Returns a pose with any rotation, a right angle, or a slight rotation.
+    /// Returns a pose without translation: with a random rotation, none, or a slight one.
     pub(crate) fn turn<N: Real>(&mut self) -> Pose<N, 3> {
         let size = [1.0, 1.0, 0.0, 1e-3, 1e-6][self.pick(5)];
         let [i, j, k] = [0; 3].map(|_: i32| self.next() * size);
@@ -50,8 +50,8 @@ impl Random {
         (0..count).find(|&n| share * count_f64(count) < count_f64(n + 1)).unwrap_or(0)
     }
 
-    /// Returns a hull of points on a sphere, a hull of a grid (with coplanar faces and parallel
-    /// edges), a box, or a triangle.
+    /// Returns a solid selected by `kind`: a hull of points on a sphere, a hull of grid points
+    /// (with parallel edges), a box, or a triangle. A box replaces a hull that cannot be built.
     fn solid<N: Real>(&mut self, kind: usize) -> Box<dyn Shape<N, 3>> {
         let points: Vec<Point<N, 3>> = match kind {
             0 => return Box::new(Cuboid::new(self.vector::<N>().abs())),
@@ -77,8 +77,12 @@ fn count_f64(count: usize) -> f64 {
     f64::from(u32::try_from(count).expect("a small number"))
 }
 
-/// Returns the largest error of a separation: of its distance, of its points, and of the gap along
-/// its normal.
+/// Returns the largest of four errors of `found`:
+///
+/// - the distance from `point1 + normal * distance` to `point2`;
+/// - the difference between `distance` and the gap of the solids along `normal`;
+/// - the amount by which `distance` is less than the distance of `truth`;
+/// - the distance of `point1` from the first solid's supporting plane with the normal `normal`.
 pub(in super::super) fn error<N: Real>(
     pair: &Pair<'_, N, 3>,
     found: &Separation<N, 3>,

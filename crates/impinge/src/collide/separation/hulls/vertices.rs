@@ -182,7 +182,8 @@ impl<N: Real> Vertices<N> {
     }
 }
 
-/// Returns the largest signed height of a point above the planes; negative inside the solid.
+/// Returns the largest signed height of a point above the planes, in units of the pair; negative
+/// inside the solid. `shrink` scales the planes to these units.
 #[inline(always)]
 pub(super) fn height_above<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

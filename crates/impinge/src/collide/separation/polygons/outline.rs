@@ -77,7 +77,8 @@ impl<N: Real> PolygonOutline<N> {
         Self::of_block([[point.x; LANES], [point.y; LANES]], [[N::ZERO; LANES]; 2], 1, radius)
     }
 
-    /// Returns the outline of a segment; without length it is a point.
+    /// Returns the outline of a segment, or of a point if both ends are equal. `None` if the
+    /// squared length is close to underflow or overflow.
     #[inline(always)]
     pub(in crate::collide::separation) fn of_segment<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
@@ -95,7 +96,7 @@ impl<N: Real> PolygonOutline<N> {
     }
 
     /// Returns the outline of a triangle, whose corners may be in either order; equal corners are
-    /// merged.
+    /// merged. `None` if the squared length of a side is close to underflow or overflow.
     #[inline(always)]
     fn of_triangle<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
@@ -327,7 +328,7 @@ pub(in crate::collide::separation) fn highest<S: Simd, N: Real, V: Wide<S, Scala
     (most, (is_most.trailing_zeros() as usize).min(LANES - 1))
 }
 
-/// Returns the vector in a lane.
+/// Returns the vector in a lane, as a point.
 #[inline(always)]
 pub(in crate::collide::separation) fn lane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     vectors: &[V; 2],

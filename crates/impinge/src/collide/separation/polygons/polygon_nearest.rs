@@ -1,6 +1,7 @@
-//! Nearest points of two polygons, from their best axis. In most cases they are a corner and a
-//! point of a side, or two corners. Otherwise each end of the two sides at the top vertex of one
-//! polygon is compared with both sides at the top vertex of the other, 8 pairs at a time.
+//! Nearest points of two polygons, from their best axis. In most cases these are a corner and a
+//! point of a side, or two corners. Otherwise each end of the two sides at the top of one polygon,
+//! its vertex farthest toward the other, is compared with both sides at the top of the other
+//! polygon, 8 pairs at a time.
 
 use super::outline::{PolygonOutline, highest, lane};
 use super::polygon_polygon::{Axis, in_middle};
@@ -36,8 +37,8 @@ impl<'a, N: Real> OutlinePair<'a, N> {
         Self { outlines, axis: *axis, tops: [top1, top2], rounding_error }
     }
 
-    /// Returns the separation of the outlines; `None` if the axis is not the direction of their
-    /// nearest points.
+    /// Returns the separation of the outlines; `None` if the gap is not finite, or the axis is not
+    /// the direction of their nearest points.
     #[inline(always)]
     pub(in crate::collide::separation) fn separation<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -52,8 +53,8 @@ impl<'a, N: Real> OutlinePair<'a, N> {
     }
 
     /// Returns the separation in the clear cases: the axis is the normal of a side with a corner
-    /// above it, the outlines certainly overlap, or corners next to the axis are the nearest
-    /// points. In these cases the best normal of a side suffices as axis.
+    /// above it, the outlines certainly overlap, or corners at the tops are the nearest points.
+    /// `None` in all other cases. In the clear cases the best normal of a side suffices as axis.
     #[inline(always)]
     pub(in crate::collide::separation) fn clear_case(&self) -> Option<Separation<N, 2>> {
         let gap = self.axis.gap;
@@ -93,8 +94,9 @@ impl<'a, N: Real> OutlinePair<'a, N> {
     }
 
     /// Returns whether the axis is the normal of a side at the top of outline `which` with the
-    /// other outline's top above that side. Also returns the end of the side nearer to that top or,
-    /// without such a side, the outline's own top.
+    /// other outline's top above that side. Also returns the end of that side nearer to the other
+    /// outline's top; if no side at the top is perpendicular to the axis, `false` and the top of
+    /// outline `which`.
     #[inline(always)]
     fn beside(&self, which: usize) -> (bool, usize) {
         let (outline, top) = (self.outlines[which], self.tops[which]);
@@ -113,8 +115,9 @@ impl<'a, N: Real> OutlinePair<'a, N> {
         (after > N::ZERO && before > N::ZERO, if before < after { other } else { top })
     }
 
-    /// Returns the separation at these corners; `None` unless each lies in front of both sides at
-    /// the other, so that they are the nearest points.
+    /// Returns the separation at the corners `ends`; `None` unless each corner lies in the vertex
+    /// region of the other, so that they are the nearest points, and their distance is more than
+    /// rounding.
     #[inline(always)]
     fn of_corners(&self, ends: [usize; 2]) -> Option<Separation<N, 2>> {
         let [point1, point2] = [self.outlines[0].at(ends[0]), self.outlines[1].at(ends[1])];
@@ -202,8 +205,8 @@ fn around<N: Real>(outline: &PolygonOutline<N>, vertex: usize) -> [Point<N, 2>; 
 ///   end      f  t  f  t  f  t  f  t      f: from, t: to
 /// ```
 ///
-/// In a tie the first is taken, in the order of sides of the first outline, sides of the second,
-/// ends of the first, ends of the second.
+/// In a tie the first pair is taken, in the order of sides of the first outline, sides of the
+/// second, ends of the first, ends of the second.
 #[inline(always)]
 pub(in crate::collide::separation) fn nearest_points<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

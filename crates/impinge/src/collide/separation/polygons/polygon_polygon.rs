@@ -2,8 +2,8 @@
 //!
 //! The signed distance of two convex sets is the largest gap that any direction leaves between them
 //! (negative if they overlap along all directions). If they overlap, a normal of one of their sides
-//! attains it. If they are apart, the gap is a concave function of the direction where it is
-//! positive, so the nearest points lie on the sides next to the best normal, ends included.
+//! has this largest gap. If they are apart, the gap is a concave function of the direction where it
+//! is positive, so the nearest points lie on the sides next to the best normal, ends included.
 //!
 //! Eight sides are tried at a time, each against all vertices of the other solid. If the best
 //! normal leads to the nearest points, as it does for most pairs ([`OutlinePair::clear_case`]), the
@@ -76,7 +76,7 @@ fn between<N: Real>(level: Level, pair: &Pair<'_, N, 2>, limit: N) -> OutlineRes
     with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, pair, known, limit))
 }
 
-/// Returns the best axis of two boxes, by their own formula; `None` for other kinds.
+/// Returns the best axis of two boxes, computed by [`Rectangles`]; `None` for other kinds.
 fn known_axis<N: Real>(pair: &Pair<'_, N, 2>) -> Option<Axis<N>> {
     let (Kind::Cuboid(cuboid1), Kind::Cuboid(cuboid2)) = (&pair.first, &pair.second) else {
         return None;
@@ -85,7 +85,8 @@ fn known_axis<N: Real>(pair: &Pair<'_, N, 2>) -> Option<Axis<N>> {
     Some(Rectangles { half1, half2, pose12: pair.pose12 }.best_axis())
 }
 
-/// Tries the normals of sides, then the tips of corners if the normals do not decide.
+/// Tries the normals of sides, or the axis `known`. If the normals do not decide, tries the tips of
+/// corners, too.
 #[inline(always)]
 fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -129,7 +130,7 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     found.map_or(OutlineResult::Undecided, OutlineResult::Found)
 }
 
-/// Returns the separation of two outlines along their best axis; `None` if that is not the
+/// Returns the separation of two outlines along their best axis; `None` if the axis is not the
 /// direction of the nearest points.
 #[inline(always)]
 pub(in crate::collide::separation) fn of_axis<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
@@ -163,7 +164,7 @@ fn best_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 }
 
 /// Returns the normal of a side of `own` with the largest gap to `other`; the first side wins a
-/// tie.
+/// tie. A point has no sides: its gap is minus infinity.
 #[inline(always)]
 fn best_side_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -327,8 +328,8 @@ pub(in crate::collide::separation) mod tests {
         assert!((inside.distance - expected).abs() < 1e-15, "to a side and beyond");
     }
 
-    /// Compares the search with the general algorithm for pairs of all kinds, on each instruction
-    /// set.
+    /// Compares the search with the general algorithm for random pairs from [`solid_of`] except two
+    /// balls, on each instruction set.
     fn eight_at_a_time<N: Real>(seed: u64) {
         use crate::collide::separation::hulls::tests::Random;
         let random = &mut Random(seed);

@@ -1,4 +1,5 @@
-//! Finds the point of a chord that is nearest to a cylinder or cone, or deepest inside it.
+//! Finds the point of a chord, a segment between two points of the flat solid, that is nearest to a
+//! cylinder or cone, or deepest inside it.
 
 use super::profile::Profile;
 use super::{DirectedPoint, NearestHull, still};
@@ -6,11 +7,13 @@ use crate::math::{Real, Vector, max, min};
 
 /// Cap on the number of points tried; about four are needed.
 const STEPS: usize = 16;
-/// Cap on the bisections among these points. They occur where the nearest part of the solid changes
-/// between two points and, inside the solid, at kinks of the distance.
+/// Cap on the bisections among these points. A bisection follows if the step of Newton's method
+/// leaves the bounds, because the nearest part of the solid changes between two points, and a step
+/// to the rim leaves them, too. Inside the solid the search gives up instead.
 const HALVINGS: usize = 4;
 
-/// A search along a chord: `bounds` are the parameters between which the slope changes its sign.
+/// A search along a chord for the point where the slope, the derivative of the distance along the
+/// chord, changes its sign.
 struct ChordSearch<N: Real> {
     /// Ends in the frame of the round solid, in units of the pair.
     ends: [Vector<N, 3>; 2],
@@ -19,15 +22,15 @@ struct ChordSearch<N: Real> {
     length: N,
     /// Parameters from 0 to 1 between which the slope changes its sign.
     bounds: [N; 2],
-    /// Whether the slope is known to fall at the lower bound and to rise at the upper one.
+    /// Whether the distance is known to fall at the lower bound, and to rise at the upper bound.
     is_known: [bool; 2],
     /// Number of bisections so far.
     halvings: usize,
 }
 
 impl<N: Real> ChordSearch<N> {
-    /// Starts the search. `falls` means that the slope is known to fall at the first end. `None`
-    /// for a chord without length.
+    /// Starts the search. `falls` says whether the distance is known to fall from the first end.
+    /// `None` for a chord without length.
     fn new(ends: [Vector<N, 3>; 2], falls: bool) -> Option<Self> {
         let along = ends[1] - ends[0];
         let length = along.norm();
@@ -78,8 +81,9 @@ impl<N: Real> ChordSearch<N> {
 
 impl<N: Real> Profile<N> {
     /// Returns the point of a chord nearest to the solid, with its direction, and the smallest hull
-    /// that contains it: this point or the chord. `falls` means that the distance falls from the
-    /// first end. `None` if the search does not converge.
+    /// that contains it: this point or the chord. `falls` says whether the distance is known to
+    /// fall from the first end. `None` for a chord without length, and if the search does not
+    /// converge.
     pub(super) fn along(
         &self,
         ends: [Vector<N, 3>; 2],

@@ -2,9 +2,9 @@
 //!
 //! The Minkowski difference of two solids about one axis is a solid about that axis. Its outline in
 //! a half-plane of the axis is the difference of two polygons. So the least depth is along the
-//! normal of a side of one of them. It is equal all around the axis, where a search over directions
-//! has no gradient. If the axes differ slightly, the best direction is near the ring of such a
-//! normal.
+//! normal of a side of one of them. This depth is equal all around the axis, so that a search over
+//! directions has no gradient. If the axes differ slightly, the best direction is near the ring of
+//! such a normal.
 //!
 //! ```text
 //!       axis |____ corners[0] (x, y)       x: distance from the axis, y: along it
@@ -28,7 +28,8 @@ use crate::shape::{Geometry, Kind};
 /// Two solids, in units of the pair, count as coaxial if their distance from a common axis is at
 /// most this: 2⁻¹².
 const NEAR: f64 = 1.0 / 4096.0;
-/// Ring normals that differ by at most this belong to one ring.
+/// Largest length of the difference of two normals in the half-plane at which they count as normals
+/// of one ring.
 const SAME_RING: f64 = 1.0 / 16.0;
 
 /// Returns the separation of two cylinders or cones by the general algorithm, with the known
@@ -59,8 +60,9 @@ impl<N: Real> Peaks<N, 3> for CoaxialPeaks<'_, '_, N> {
 }
 
 /// Returns the normal of least depth for the overlapping cores of two coaxial solids, each a
-/// segment, capsule, cylinder or cone. `None` for other kinds, and unless the axes nearly coincide.
-/// `shrink` is the factor from lengths of the shapes to units of the pair.
+/// segment, capsule, cylinder or cone. `None` for other kinds, unless the axes nearly coincide, and
+/// if another ring of normals may have less depth. `shrink` is the factor from lengths of the
+/// shapes to units of the pair.
 pub(in crate::collide::separation) fn peak<N: Real>(
     pair: &Pair<'_, N, 3>,
     shrink: N,
@@ -71,8 +73,8 @@ pub(in crate::collide::separation) fn peak<N: Real>(
     Coaxial::new(first, second)?.peak()
 }
 
-/// A solid about an axis, in the frame of the first solid and in units of the pair: in a half-plane
-/// of the axis, the hull of both corners and their mirror images.
+/// A solid about an axis, in the frame of the first solid and in units of the pair: in a plane
+/// through the axis, it is the hull of both corners and their mirror images.
 struct AxialOutline<N: Real> {
     /// Centre of the solid, in the frame of the first.
     middle: Vector<N, 3>,
@@ -186,8 +188,8 @@ impl<N: Real> Coaxial<N> {
         beside.map_or_else(|| perpendicular_to(&self.first.axis), |(aside, _)| aside)
     }
 
-    /// Returns the exit along the normal of a side; `normal` is in the half-plane of the solid
-    /// `whose`.
+    /// Returns the exit along the normal of a cap or side; `normal` is in the half-plane of the
+    /// solid `whose`.
     fn direction(
         &self,
         normal: Vector<N, 2>,
@@ -263,8 +265,8 @@ mod tests {
         }
     }
 
-    /// Compares with the general algorithm for solids that are coaxial up to an offset and a tilt
-    /// of size `slight`, the second solid upright or upside down.
+    /// Compares the separation with the general algorithm for solids that are coaxial up to an
+    /// offset and a tilt of size `slight`, the second solid upright or upside down.
     fn compare<N: Real>(seed: u64, slight: f64, accuracy: f64) {
         let random = &mut Random(seed);
         for round in 0..200 {

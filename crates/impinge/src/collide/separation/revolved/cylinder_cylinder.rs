@@ -3,11 +3,10 @@
 //! Tries the directions that can be the normal, each with a cheap proof: normals of caps, the
 //! common perpendicular of both axes, from an axis to the other rim, and from rim to rim. If the
 //! solids are apart, the proof is two points as far apart as a pair of supporting planes. If they
-//! overlap, the proof is a ball: if it is centred at a point of one solid and lies within the
-//! other, no separating translation is shorter than its radius. A point below a cap is the centre
-//! of such a ball if its distance from the side is at least its depth; for a side, the distance
-//! from the caps counts. Other cases, such as two overlapping rims, fall back to the general
-//! algorithm.
+//! overlap, the proof is a ball: if a ball centred at a point of one solid lies within the other,
+//! no separating translation is shorter than its radius. A point below a cap is the centre of such
+//! a ball if its distance from the side is at least its depth; for a side, the distance from the
+//! caps counts. Other cases, such as two overlapping rims, fall back to the general algorithm.
 
 use super::coaxial;
 use crate::collide::Pair;
@@ -86,7 +85,8 @@ impl<N: Real> RevolvedResult<N> {
     }
 }
 
-/// A separation in the frame of one solid, from it to the other, in units of the pair.
+/// A separation in the frame of one solid and in units of the pair; `normal` points from this solid
+/// to the other one.
 #[derive(Clone, Copy)]
 pub(in crate::collide::separation) struct RevolvedFound<N: Real> {
     pub(in crate::collide::separation) distance: N,
@@ -164,7 +164,7 @@ impl<N: Real> CylinderPair<N> {
         }
     }
 
-    /// Tries the directions in order: caps, both axes, sides, rims.
+    /// Tries the directions in order: caps, the common perpendicular of the axes, sides, rims.
     fn resolve(&self, beyond: N) -> RevolvedResult<N> {
         let [first, second] = &self.views;
         let tries: [(Attempt<'_, N>, bool); 6] = [
@@ -201,8 +201,9 @@ impl<N: Real> CylinderView<N> {
     }
 
     /// Returns the lowest point of the other solid along the normal of a cap. If several are lowest
-    /// up to `rounding_error`, returns the middle of those above the cap. `sine` is the sine of the
-    /// angle between the axes.
+    /// up to `rounding_error`, returns the middle of [`Self::over_disk`] for parallel caps, or the
+    /// point of the lowest line nearest to this axis. `sine` is the sine of the angle between the
+    /// axes.
     fn lowest_above_cap(&self, normal: &Vector<N, 3>, sine: N) -> Vector<N, 3> {
         let cosine = normal.dot(&self.axis);
         let end = if cosine < N::ZERO { self.axis } else { -self.axis } * self.other.half;
@@ -255,8 +256,8 @@ impl<N: Real> CylinderView<N> {
         let at_other = (cosine * self.center.y - along) / squared;
         let (margin1, margin2) = (self.own.half - at_own.abs(), self.other.half - at_other.abs());
         let is_between = margin1 >= -rounding_error::<N>() && margin2 >= -rounding_error::<N>();
-        // The proof is a ball around a point between the axes, or a ball in each solid with radii
-        // whose sum suffices.
+        // The proof for an overlap: two balls around one point between the axes, one in each solid,
+        // whose radii add up to the depth.
         let entry = away - self.other.radius;
         let least = max(self.own.radius - margin1, max(entry, N::ZERO));
         let most = min(entry + margin2, min(away, self.own.radius));
@@ -267,7 +268,8 @@ impl<N: Real> CylinderView<N> {
     }
 
     /// Tries the direction from the axis to the nearest point of the other rim or, for parallel
-    /// axes, of the other side. `None` if the other solid extends to the axis.
+    /// axes, of the other side. `None` if [`Self::toward_rim`] returns `None`, as for a solid that
+    /// extends to the axis.
     fn side(&self) -> Option<Tried<N>> {
         let start = unit(&radial(&self.center))?.0;
         let (normal, point) = self.toward_rim(start)?;
@@ -326,8 +328,8 @@ impl<N: Real> CylinderView<N> {
         Some((self.center + end + down, bend))
     }
 
-    /// For parallel axes, returns the middle of that part of the other solid's lowest line that is
-    /// beside this solid.
+    /// Returns the middle of that part of the other solid's lowest line that is beside this solid;
+    /// `None` unless the axes are parallel.
     fn beside_parallel(&self, down: &Vector<N, 3>) -> Option<Vector<N, 3>> {
         let extent = self.other.half * self.axis.y.abs();
         let is_parallel = radial(&self.axis).norm() * self.other.half <= rounding_error();
@@ -342,7 +344,7 @@ impl<N: Real> CylinderView<N> {
     }
 
     /// Tries rim against rim, for solids that are apart, by Newton's method on the sphere of
-    /// directions.
+    /// directions. `None` if they overlap or the method fails.
     fn rims(&self) -> Option<Tried<N>> {
         let mut normal = unit(&self.center)?.0;
         for _ in 0..STEPS {
@@ -364,7 +366,8 @@ impl<N: Real> CylinderView<N> {
     }
 
     /// Returns the point of a rim that is farthest along a direction: on this solid's rim if
-    /// `is_own`, else on the other solid's.
+    /// `is_own`, else on the other solid's. `None` if the direction is along the axis of that
+    /// solid.
     fn rim(&self, direction: &Vector<N, 3>, is_own: bool) -> Option<Rim<N>> {
         let (size, center, axis) = if is_own {
             (self.own, Vector::<N, 3>::zeros(), Vector::<N, 3>::y())
@@ -388,7 +391,7 @@ struct Rim<N: Real> {
     bend: N,
 }
 
-/// Returns the Newton step to a slope of zero; at most half a radian.
+/// Returns the change of `normal` by Newton's method for a slope of zero; at most half a radian.
 fn step<N: Real>(
     normal: &Vector<N, 3>,
     slope: &Vector<N, 3>,
@@ -429,7 +432,8 @@ pub(in crate::collide::separation) mod tests {
 
     type Solids<N> = [Box<dyn Shape<N, 3>>; 2];
 
-    /// Compares with the general algorithm, over pairs made of random sizes between 0 and 1.
+    /// Compares `separation` with the general algorithm, for pairs that `solids` makes from random
+    /// sizes between 0 and 1.
     pub(in crate::collide::separation) fn compare<N: Real>(
         seed: u64,
         rounds: usize,

@@ -5,14 +5,15 @@ use super::{DirectedPoint, FlatCore, NearestHull, RevolvedFound, RevolvedPair, s
 use crate::math::{Real, Vector};
 
 impl<N: Real> RevolvedPair<'_, N> {
-    /// Returns the separation along the face or cap with the least depth; `None` unless balls prove
-    /// it.
+    /// Returns the separation along the face of the flat solid with the least depth, else at the
+    /// lowest vertex over a cap of the round solid; `None` if neither is proved.
     pub(super) fn by_face(&self) -> Option<RevolvedFound<N>> {
         self.by_own_face().or_else(|| self.by_cap())
     }
 
-    /// Tries the faces of the flat solid; as a proof, it must contain the ball around the deepest
-    /// point.
+    /// Returns the separation along the face of the flat solid with the least depth. `None` unless
+    /// the flat solid contains the ball around the deepest point of the round solid with this depth
+    /// as radius.
     fn by_own_face(&self) -> Option<RevolvedFound<N>> {
         let mut best: Option<(N, DirectedPoint<N>)> = None;
         let mut try_face = |normal: &Vector<N, 3>, offset: N| {
@@ -43,8 +44,9 @@ impl<N: Real> RevolvedPair<'_, N> {
         is_proved.then(|| directed.proved(height)).flatten()
     }
 
-    /// Tries the caps of the round solid; as a proof, it must contain the ball around the lowest
-    /// vertex.
+    /// Tries the vertex of the flat solid that is lowest along the normal of a cap, for each cap of
+    /// the round solid. Returns the separation at the first such vertex that is also lowest along
+    /// the direction of its own distance.
     fn by_cap(&self) -> Option<RevolvedFound<N>> {
         self.profile.round.caps().iter().find_map(|&up| {
             let vertex = self.lowest(&(Vector::<N, 3>::y() * N::lit(up)));

@@ -8,7 +8,7 @@
 //!
 //! ```text
 //!      point *--------* low      low: lowest vertex of the flat solid along `outward`; if it is
-//!            |                   not lower than `point`, both solids have a plane there
+//!            |                   not lower than `point`, both solids have a supporting plane there
 //!    nearest *  ^ outward        outward: unit, out of the round solid; extent: the round solid's
 //!        .-------.               along `outward`
 //!        | round |               frame: of the round solid, axis y; units of the pair
@@ -64,7 +64,8 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     attempt(pair, limit).unwrap_or_else(otherwise)
 }
 
-/// Returns the distance of [`separation`]; for overlapping solids, any number that is not positive.
+/// Returns the distance of [`separation`]; for overlapping solids it may be any number that is not
+/// positive.
 pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     match (attempt(pair, limit), FlatCore::of(pair.first)) {
         (Some(found), _) => found.map(|found| found.distance),
@@ -133,7 +134,7 @@ struct DirectedPoint<N: Real> {
     extent: N,
 }
 
-/// The fewest points of the flat solid whose hull contains the nearest point.
+/// The smallest hull of points of the flat solid that contains the nearest point.
 #[derive(Clone, Copy)]
 enum NearestHull<N: Real> {
     Point(Vector<N, 3>),
@@ -142,8 +143,9 @@ enum NearestHull<N: Real> {
 }
 
 impl<N: Real> RevolvedPair<'_, N> {
-    /// Runs the search from the vertex that is lowest along the first direction; if it is
-    /// undecided, tries faces and caps.
+    /// Runs the search from the vertex that is lowest along the direction from the round solid to
+    /// the centre of the flat one. If no nearer point is found, or after [`ROUNDS`] steps, tries
+    /// faces and caps.
     fn resolve(&self, beyond: N) -> RevolvedResult<N> {
         let middle = self.placed(&self.flat.center().coords);
         let first = self.lowest(&self.profile.project(middle).outward);
@@ -178,8 +180,9 @@ impl<N: Real> RevolvedPair<'_, N> {
         (NearestHull::Point(point), DirectedPoint::of(&self.profile, &self.profile.project(point)))
     }
 
-    /// Returns the point nearest to the round solid in the hull of `directed` and the vertex `low`,
-    /// and the hull needed for it. `low` must be lower than the whole hull.
+    /// Returns the point nearest to the round solid in the hull of `hull` and the vertex `low` (for
+    /// a triangle, in the chord from `directed` to `low`), and the smallest hull that contains it.
+    /// `low` must be lower than all of `hull`. `None` if the search fails.
     fn nearer(
         &self,
         hull: &NearestHull<N>,
@@ -194,8 +197,9 @@ impl<N: Real> RevolvedPair<'_, N> {
         }
     }
 
-    /// Returns the point of the triangle `a b c` nearest to the round solid. The corner `c` is
-    /// lower than `directed`, the nearest point of the side `a b`.
+    /// Returns the point of the triangle `a b c` nearest to the round solid; `None` if it is not
+    /// found or not proved. The corner `c` is lower than `directed`, the nearest point of the side
+    /// `a b`.
     fn over(
         &self,
         [a, b, c]: [Vector<N, 3>; 3],
@@ -239,7 +243,8 @@ impl<N: Real> RevolvedPair<'_, N> {
         best
     }
 
-    /// Returns whether the flat solid contains the ball around a point, up to rounding.
+    /// Returns whether the flat solid contains the ball around `center`, up to rounding; always
+    /// `false` for segments, capsules and triangles.
     fn holds(&self, center: &Vector<N, 3>, radius: N) -> bool {
         let center = self.pose12.rotation * center + self.shift;
         let slack = rounding_error::<N>() - radius;
@@ -272,7 +277,8 @@ impl<N: Real> DirectedPoint<N> {
     }
 
     /// Creates the point of a view at which the distance is stationary along the unit vector
-    /// `along`, with a direction that is perpendicular to `along` up to rounding.
+    /// `along`, with a direction that is perpendicular to `along` up to rounding. `None` if the
+    /// direction of the view is parallel to `along`.
     fn across(
         profile: &Profile<N>,
         projected: &ProfileView<N>,
@@ -307,8 +313,8 @@ impl<N: Real> DirectedPoint<N> {
         is_lowest.then(|| in_second_frame(self.proved(height)))
     }
 
-    /// Returns the separation; `None` unless both points face each other and are as far apart as
-    /// supporting planes.
+    /// Returns the separation; `None` unless the vector between both points is `outward` times
+    /// `height`, up to rounding.
     fn proved(&self, height: N) -> Option<RevolvedFound<N>> {
         let aside = self.point - self.nearest - self.outward * height;
         let is_across = aside.norm_squared() <= rounding_error::<N>() * rounding_error();

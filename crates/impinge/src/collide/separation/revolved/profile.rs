@@ -48,8 +48,8 @@ pub(super) struct ProfileView<N: Real> {
     aside: N,
     /// Unit vector away from the axis, as (x, z).
     away: Vector<N, 2>,
-    /// For corners, the vector from the corner to the point, in the half-plane; for lines, their
-    /// unit normal.
+    /// For the rim and the apex, the vector from there to the point, in the half-plane; for a cap
+    /// or side, its unit normal.
     offset: Vector<N, 2>,
 }
 
@@ -145,8 +145,9 @@ impl<N: Real> ProfileView<N> {
         self.outward.dot(along)
     }
 
-    /// Returns the Newton step along `along` to the point nearest to the rim, whichever part is
-    /// nearest now. Used for points between the two lines of the outline that meet at the rim.
+    /// Returns the step of Newton's method along `along` that minimises the squared distance to the
+    /// rim, even if another part is nearest to the point. `None` if the second derivative of that
+    /// distance is not positive.
     pub(super) fn step_to_rim(&self, profile: &Profile<N>, along: &Vector<N, 3>) -> Option<N> {
         let Round { half, radius, is_cone } = profile.round;
         let end = if is_cone || self.point.y < N::ZERO { -half } else { half };
@@ -156,9 +157,10 @@ impl<N: Real> ProfileView<N> {
         (bend > N::ZERO).then(|| -(offset.x * out + offset.y * along.y) / bend)
     }
 
-    /// Returns how far the point has to move along `along` until the slope is zero, if its nearest
-    /// part does not change. `None` on a line, where the slope is constant. Exact except at a rim,
-    /// where it is a step of Newton's method for the squared distance.
+    /// Returns the multiple of `along` by which the point has to move until the slope is zero, if
+    /// its nearest part does not change. `None` if no such multiple exists: at a cap the slope is
+    /// constant, at a side it may have no zero. Exact except at a rim, where it is a step of
+    /// Newton's method for the squared distance.
     pub(super) fn descent(&self, along: &Vector<N, 3>) -> Option<N> {
         let (out, turn) = (self.away.dot(&radial(along)), cross2(&self.away, &radial(along)));
         let (across, up) = (out * out + turn * turn, along.y);
@@ -186,7 +188,8 @@ impl<N: Real> ProfileView<N> {
         }
     }
 
-    /// Returns the derivative of [`pull`](Self::pull) as the point moves along `along`.
+    /// Returns the derivative of the component of [`pull`](Self::pull) along `along` as the point
+    /// moves along `along`.
     pub(super) fn bend(&self, along: &Vector<N, 3>) -> N {
         let (out, turn) = (self.away.dot(&radial(along)), cross2(&self.away, &radial(along)));
         let turn_squared = turn * turn;

@@ -65,7 +65,7 @@ impl<N: Real> RoundView<N> {
         self.center + self.rotation * self.other.round.support(&toward)
     }
 
-    /// Tries the apex or a rim of the other solid.
+    /// Tries the apex and the rims of the other solid against this one.
     fn corners(&self, beyond: N) -> RevolvedResult<N> {
         let mut low = self.lowest(&self.own.project(self.center).outward);
         for _ in 0..TURNS {
@@ -78,8 +78,8 @@ impl<N: Real> RoundView<N> {
         RevolvedResult::Undecided
     }
 
-    /// Returns the apex if it is `low`, else the nearest point of the rim through `low`; `None` if
-    /// the search does not converge.
+    /// Returns the apex of the other solid if `low` is the apex, else the point nearest to this
+    /// solid on the rim through `low`; `None` if the search does not converge.
     fn at_corner(&self, low: &Vector<N, 3>) -> Option<DirectedPoint<N>> {
         let round = &self.other.round;
         let is_up = self.axis.dot(&(low - self.center)) > N::ZERO;
@@ -93,15 +93,15 @@ impl<N: Real> RoundView<N> {
         self.along_rim(&middle, out)
     }
 
-    /// Returns the unit vector of the part of `v` perpendicular to the other axis; `None` if that
-    /// part is within rounding error.
+    /// Returns the unit vector along the part of `v` perpendicular to the axis of the other solid;
+    /// `None` if that part is within rounding error.
     fn beside(&self, v: &Vector<N, 3>) -> Option<Vector<N, 3>> {
         let beside = v - self.axis * self.axis.dot(v);
         unit(&beside).filter(|(_, length)| *length > rounding_error()).map(|(beside, _)| beside)
     }
 
-    /// Returns the nearest point of the rim around `middle`, searched from the direction `out`;
-    /// `None` if the search does not converge.
+    /// Returns the point of the rim around `middle` nearest to this solid, searched from the
+    /// direction `out`; `None` if the search does not converge.
     fn along_rim(&self, middle: &Vector<N, 3>, mut out: Vector<N, 3>) -> Option<DirectedPoint<N>> {
         let radius = self.other.round.radius;
         for _ in 0..STEPS {
@@ -166,8 +166,8 @@ impl<N: Real> RoundView<N> {
         Some(DirectedPoint { point: point.coords, nearest: nearest.coords, outward, extent })
     }
 
-    /// Returns whether two balls around the midpoint of both points, one in each solid, have radii
-    /// that add up to the depth.
+    /// Returns whether two balls around the midpoint of the two points of `found`, one in each
+    /// solid, have radii that add up to the depth.
     fn is_deepest(&self, found: &RevolvedFound<N>) -> bool {
         let center = found.on_other - found.normal * (found.distance * N::HALF);
         let own = self.own.project(center).distance;

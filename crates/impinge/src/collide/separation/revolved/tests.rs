@@ -1,5 +1,5 @@
-//! Compares distances and depths with the general algorithm; asserts that most pairs need no
-//! fallback.
+//! Compares distances and depths with the general algorithm; asserts a minimum of pairs that need
+//! no fallback.
 
 use super::*;
 use crate::collide::separation as whole;
@@ -42,7 +42,8 @@ fn placed<'a, N: Real>(
     pair
 }
 
-/// Returns the number of decided pairs out of 100, the smallest over all combinations of solids.
+/// Returns the number of pairs at a signed distance that [`attempt`] decides, out of 100: the
+/// smallest number over all combinations of kinds.
 fn decided<N: Real>(distance: f64) -> usize {
     let random = &mut Random(7);
     let solids: [(Make<N>, Make<N>); 12] = [
@@ -80,7 +81,8 @@ fn most_pairs_are_decided() {
     }
 }
 
-/// Asserts that no sampled direction has less depth than the decided one.
+/// Asserts for overlaps that [`attempt`] decides that no sampled direction has less depth than the
+/// result.
 fn none_is_better<N: Real>(accuracy: f64) {
     let random = &mut Random(9);
     let solids: [(Make<N>, Make<N>); 7] = [
@@ -120,7 +122,8 @@ fn no_direction_is_better() {
     none_is_better::<f32>(2e-6);
 }
 
-/// Compares the distance of a point with a ball of radius zero, and its slope with differences.
+/// Compares the distance of a point with that of a ball of radius zero, and its slope with finite
+/// differences.
 #[test]
 fn projections_of_points() {
     let random = &mut Random(11);

@@ -24,8 +24,8 @@ use smallvec::SmallVec;
 use crate::math::{Mapped, Real, Vector, cross2, min, perp, unit};
 
 /// Cap on the directions computed for one arc. About twenty are enough in `f32`, forty in `f64`:
-/// the part around the best direction is halved until the bound is good enough, with as many parts
-/// on each side of it.
+/// each direction splits an arc near the best direction, on either side of it, until the bounds are
+/// good enough.
 const STEPS: usize = 256;
 
 /// Height of a point along the unit vectors `u` of a circle: `base + toward · u`.
@@ -93,7 +93,7 @@ impl<N: Real> Arc<N> {
     }
 
     /// Returns whether the depth is certainly at least `least` everywhere on the arc, by
-    /// [`are_above`].
+    /// [`are_above`]; `false` if a line has a positive `base`.
     fn is_above(&self, least: N) -> bool {
         let [from, to] = &self.ends;
         let has_base = self.lines.iter().any(|line| line.base > N::ZERO);

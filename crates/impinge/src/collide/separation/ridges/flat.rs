@@ -16,8 +16,8 @@ use crate::collide::separation::hulls::rounding_error;
 use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, cross, orthonormal_basis, unit};
 use crate::shape::{Cuboid, Kind, Polytope, Triangle};
 
-/// Largest number of vertices. Larger solids are passed to the general algorithm, which does not
-/// visit all their features.
+/// Largest number of vertices of a hull. Larger hulls are passed to the general algorithm, which
+/// does not visit all their features.
 const MAX_VERTICES: usize = 128;
 
 /// An edge: the indices of its ends, and of the ends of the arc of normals along which the edge is
@@ -46,8 +46,8 @@ pub(super) struct Flat<N: Real> {
 
 impl<N: Real> Flat<N> {
     /// Extracts the features of a solid; `pose12` is the pose of the round solid in the frame of
-    /// this one. `None` for other kinds, for solids without normals, and for more than
-    /// [`MAX_VERTICES`] vertices.
+    /// this one. `None` for other kinds, for segments without length and thin triangles, whose
+    /// normals are unknown, and for hulls of more than [`MAX_VERTICES`] vertices.
     pub(super) fn new(kind: &Kind<'_, N, 3>, pose12: &Pose<N, 3>, shrink: N) -> Option<Self> {
         let mut flat = Self {
             own_vertices: SmallVec::new(),

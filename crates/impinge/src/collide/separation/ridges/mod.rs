@@ -3,8 +3,8 @@
 //! The depth along a unit vector `m` is the support function of the Minkowski difference of the
 //! cores; the result is its minimum. A minimum on a smooth part of the sphere of directions
 //! requires that both radii of curvature of the difference are at least the depth. Vertices of the
-//! flat solid have radii zero, a rim has a radius only along itself, and an apex has none. So the
-//! minimum lies on one of these:
+//! flat solid have radii zero, a rim has a radius above zero only along itself, and an apex has
+//! radii zero. So the minimum lies on one of these:
 //!
 //! ```text
 //!   normals of faces and caps     points on the sphere       tried one by one
@@ -17,10 +17,13 @@
 //! towards a curved surface.
 //!
 //! Extents may be zero: an edge without length has an arc of normals of its vertex, which are valid
-//! directions too. Three cases fall back to the general algorithm: round solids, segments or
-//! triangles of almost no size, whose normals are unknown; polytopes that are flat up to rounding,
-//! whose vertices contradict the depth found along their normals; and rings of almost equal depths,
-//! where arcs along the ring would be split too often.
+//! directions too. These cases fall back to the general algorithm:
+//!
+//! - round solids, segments or triangles of almost no size, whose normals are unknown;
+//! - hulls with too many vertices;
+//! - polytopes that are flat up to rounding, whose vertices contradict the depth found along their
+//!   normals;
+//! - rings of almost equal depths, where arcs along the ring would be split too often.
 //!
 //! For two polytopes, restricting the search to faces and edges is the separating axis test. The
 //! search here applies the same argument to the parts of cylinders and cones.
@@ -44,7 +47,8 @@ use crate::shape::{Geometry, SupportMap};
 
 /// Returns the separation of a flat-sided solid, segment or capsule from a cylinder or cone.
 ///
-/// If the solids are apart, it is bit-identical to the general algorithm.
+/// If the solids are apart, the result is bit-identical to that of the general algorithm.
+/// [`OverlapPeaks`] finds the normal of an overlap.
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     let (flat, round) = cores(pair);
     let loosened = general::loosened(&flat, round, &pair.pose12, limit);
@@ -138,8 +142,8 @@ impl<N: Real> DepthSearch<'_, N> {
         if self.search_edges(&ends, gap).is_some() {
             return self.search_side(gap);
         }
-        // Normals around the axis have almost equal depths, so the bounds of arcs across them do
-        // not exclude most parts. The search over the side finds the best normal directly.
+        // Arcs are split too often if normals around the axis have almost equal depths, because the
+        // bounds then exclude few parts. The search over the side finds the best normal directly.
         self.search_side(gap)?;
         self.search_edges(&ends, gap)
     }
@@ -154,8 +158,9 @@ impl<N: Real> DepthSearch<'_, N> {
         }
     }
 
-    /// Returns whether all vertices confirm the depth found. It was computed with the vertices of
-    /// one face or edge, which are lowest only up to the accuracy of the face normals.
+    /// Returns whether all vertices confirm the depth found, up to 8 times `gap`. The depth was
+    /// computed with the vertices of one face or edge, which are lowest only up to the accuracy of
+    /// the face normals.
     fn is_confirmed(&self, gap: N) -> bool {
         let lowest = self.flat.vertices[self.flat.lowest(&self.normal)];
         let depth = self.normal.dot(&(self.round.support(&self.normal) - lowest));
@@ -163,7 +168,8 @@ impl<N: Real> DepthSearch<'_, N> {
     }
 
     /// Searches the normals of an edge, which is a point in the plane perpendicular to it. `ends`
-    /// are the support points of the round solid along the normals of the flat one.
+    /// are the support points of the round solid along the normals of the flat one. `None` if the
+    /// arc is split too often.
     fn search_edge(&mut self, edge: usize, ends: &[Vector<N, 3>], gap: N) -> Option<()> {
         let (round, vertices) = (self.round, &self.flat.vertices);
         let flat::Edge { vertices: ends_of_edge, normals: [first, second] } = self.flat.edges[edge];
@@ -202,7 +208,7 @@ impl<N: Real> DepthSearch<'_, N> {
         Some(())
     }
 
-    /// Searches the normals of the round side.
+    /// Searches the normals of the round side. `None` if an arc is split too often.
     fn search_side(&mut self, gap: N) -> Option<()> {
         let (flat, slope) = (self.flat, self.round.slope());
         let lift = |u: &Vector<N, 2>| {
@@ -251,8 +257,8 @@ impl<N: Real> DepthSearch<'_, N> {
         }
     }
 
-    /// Returns the vertices of the flat solid that may touch: both ends of an edge, else at most
-    /// 8.
+    /// Returns the vertices of the flat solid that may touch: both ends of the edge, or up to 8 of
+    /// the vertices that are lowest along the normal.
     fn touched(&self) -> SmallVec<[usize; 8]> {
         if let DepthFeature::Edge(edge) = self.at {
             return self.flat.edges[edge].vertices.iter().map(|&vertex| vertex as usize).collect();
@@ -266,8 +272,10 @@ impl<N: Real> DepthSearch<'_, N> {
     }
 }
 
-/// Returns the unit vector perpendicular to the first normal of an edge, on the side of the second:
-/// from the edge or from the normals, whichever is more accurate.
+/// Returns the unit vector perpendicular to the first normal of an edge, in the plane of both
+/// normals and towards the second. It is computed from the difference of the normals or from the
+/// cross product of the edge and the first normal: the longer of these vectors is more accurate.
+/// `None` if both are zero.
 fn across<N: Real>(edge: &Vector<N, 3>, [from, to]: [&Vector<N, 3>; 2]) -> Option<Vector<N, 3>> {
     let aside = unit(&(to - from * from.dot(to)));
     let Some((by_edge, length)) = unit(&cross(edge, from)) else { return Some(aside?.0) };

@@ -29,7 +29,8 @@ pub(in super::super) struct Round<N: Real> {
 }
 
 impl<N: Real> Round<N> {
-    /// Scales a cylinder or cone; `None` for other kinds, and for solids of size zero.
+    /// Scales a cylinder or cone; `None` for other kinds, and if half height or radius is within
+    /// rounding error.
     pub(in super::super) fn new(kind: &Kind<'_, N, 3>, shrink: N) -> Option<Self> {
         let (half, radius, is_cone) = match kind {
             Kind::Cylinder(cylinder, _) => (cylinder.half_height(), cylinder.radius(), false),
@@ -75,8 +76,8 @@ impl<N: Real> Round<N> {
         Slope { aside, along, extent: along * self.half }
     }
 
-    /// Returns points of this solid that are extreme along a direction; some convex combination of
-    /// them faces the points `below`.
+    /// Returns up to 8 points of this solid that are extreme along a direction; some convex
+    /// combination of them faces the points `below`, of which a cap uses the first four.
     pub(in super::super) fn touched<'a>(
         &self,
         direction: &Vector<N, 3>,

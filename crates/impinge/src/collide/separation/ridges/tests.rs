@@ -28,7 +28,7 @@ pub(in super::super) fn cuboid<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 
     Box::new(Cuboid::new(size))
 }
 
-/// Returns a thin octahedron with a half thickness of 0.002.
+/// Returns the hull of [`octahedron`] with a half thickness of 0.002.
 pub(in super::super) fn blade<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
     octahedron(Vector::<N, 3>::new(size.x + N::lit(0.1), N::lit(0.002), size.z + N::lit(0.1)))
 }
@@ -37,7 +37,7 @@ pub(in super::super) fn hull<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>
     octahedron(size.map(|x| x + N::lit(0.1)))
 }
 
-/// Returns an octahedron with displaced corners.
+/// Returns the hull of an octahedron's displaced corners and a seventh point.
 fn octahedron<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
     let point = |x: f64, y: f64, z: f64| {
         Point::<N, 3>::new(size.x * N::lit(x), size.y * N::lit(y), size.z * N::lit(z))
@@ -98,8 +98,8 @@ pub(in super::super) fn depth<N: Real>(pair: &Pair<'_, N, 3>, normal: &Vector<N,
     normal.dot(&first.support_point(normal).coords) - normal.dot(&pair.pose12.point(&end).coords)
 }
 
-/// Asserts that no sampled direction has less depth, and that the arcs decide each overlapping
-/// pair.
+/// Asserts for cores that overlap by more than 1e-4 that no sampled direction has less depth than
+/// the result, and that [`OverlapPeaks`] finds a normal.
 fn none_is_better<N: Real>(accuracy: f64) {
     let random = &mut Random(5);
     let mut deep = 0;
@@ -153,9 +153,10 @@ fn pair_of<'a, N: Real>(shapes: &'a Solids<N>, pose12: Pose<N, 3>) -> Pair<'a, N
     Pair { first, second, pose12 }
 }
 
-/// Asserts the depth of a thin cylinder in a box without thickness, at several offsets and
-/// rotations. The direction of least depth may lie at the end of an arc of normals. The half of the
-/// split arc without length must not contain the opposite normal.
+/// Asserts that the depth of a thin cylinder in a box without thickness is at most the depth along
+/// each axis, and equals the depth along the returned normal, at several offsets and rotations. The
+/// direction of least depth may lie at the end of an arc of normals. The half of the split arc
+/// without length must not contain the opposite normal.
 fn a_thin_cylinder_in_a_flat_box<N: Real>() {
     let flat_box = Cuboid::new(Vector::<N, 3>::new(N::ZERO, N::lit(0.95), N::lit(0.5)));
     let cylinder = Cylinder::new(N::lit(0.125), N::lit(0.001));

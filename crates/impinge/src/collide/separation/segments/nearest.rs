@@ -98,8 +98,8 @@ pub(in crate::collide::separation) fn nearest_of_ends<N: Real, const D: usize>(
 /// both feet lie on the segments.
 ///
 /// The solution by cross products has an error of about the rounding error divided by the sine of
-/// the angle between the lines. Two Newton steps from the residual each reduce the error by the
-/// same factor.
+/// the angle between the lines. Two Newton steps from the residual each multiply the error by about
+/// that quotient again.
 fn common_perpendicular<N: Real>(
     ends1: &[Point<N, 3>; 2],
     ends2: &[Point<N, 3>; 2],

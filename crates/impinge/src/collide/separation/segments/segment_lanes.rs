@@ -19,17 +19,17 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Point, Real, Wide};
 use crate::shape::Kind;
 
-/// Nearest point of a segment to another point.
+/// Nearest point of a segment to a given point.
 pub(crate) struct Nearest<V, M, const D: usize> {
     pub(crate) point: [V; D],
     /// Lanes where the nearest point lies between the ends.
     pub(crate) is_inside: M,
     /// Vector from the first end to the last.
     pub(crate) along: [V; D],
-    /// Coordinate of the other point along `along`, measured from the first end, times the length
+    /// Coordinate of the given point along `along`, measured from the first end, times the length
     /// of the segment.
     pub(crate) from_first: V,
-    /// Coordinate of the other point against `along`, measured from the last end, times the length
+    /// Coordinate of the given point against `along`, measured from the last end, times the length
     /// of the segment.
     pub(crate) to_last: V,
 }
@@ -73,8 +73,8 @@ pub(crate) struct SegmentGap<V, M> {
     pub(crate) gap: V,
     /// Nearest points of the first and the second segment.
     pub(crate) points: [[V; 2]; 2],
-    /// Lanes where the other fields are valid. In the others, the segments cross or touch, or a
-    /// squared length is near underflow or overflow.
+    /// Lanes where the other fields are valid. In the other lanes, the segments cross or touch, a
+    /// squared length is near underflow or overflow, or supporting lines do not confirm the gap.
     pub(crate) is_known: M,
 }
 
@@ -206,7 +206,7 @@ fn lowest<S: Simd, V: Wide<S>>([first, last]: &[[V; 2]; 2], direction: &[V; 2]) 
 }
 
 /// Returns the separation of two segments or capsules in 2D; `None` for other kinds, and if
-/// [`SegmentGap`] is not known.
+/// [`SegmentGap::is_known`] is false.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 2>,
 ) -> Option<Separation<N, 2>> {
@@ -220,7 +220,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     Some(cores.rounded(radius1, radius2))
 }
 
-/// Returns the separation of the cores of one pair; `None` if it is not known.
+/// Returns the separation of the cores of one pair; `None` if [`SegmentGap::is_known`] is false.
 fn alone<N: Real>(ends1: &[Point<N, 2>; 2], ends2: &[Point<N, 2>; 2]) -> Option<Separation<N, 2>> {
     let lone = |ends: &[Point<N, 2>; 2]| [Lone::each(&ends[0].coords), Lone::each(&ends[1].coords)];
     let found = SegmentGap::of(OneLane(0), [&lone(ends1), &lone(ends2)]);

@@ -10,8 +10,9 @@ use crate::math::{Mapped, Point, Real, Vector, cross, max, unit};
 
 /// Returns the separation of two segments or capsules in 3D.
 ///
-/// Crossing cores have distance zero, and their common perpendicular is the normal. Cores on one
-/// line get a fixed perpendicular of the line; two coinciding points get the first axis.
+/// Crossing cores have distance zero, and their common perpendicular is the normal. Overlapping
+/// cores on one line get a fixed perpendicular of the line; two coinciding points get the first
+/// axis.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -49,10 +50,10 @@ pub(in crate::collide::separation) fn distance<N: Real>(pair: &Pair<'_, N, 3>) -
 
 /// Returns the unit vector along which the gap between the segments is largest.
 ///
-/// In exact arithmetic it is the direction between the nearest points. If these are close to each
-/// other, that direction is mostly rounding error, and a direction computed from the segments
-/// themselves has a larger gap. The candidate with the largest gap is returned; among gaps that are
-/// equal up to rounding, the first candidate wins.
+/// In exact arithmetic it is the direction from one nearest point to the other. If these points are
+/// close to each other, the direction is mostly rounding error, and a direction computed from the
+/// segments themselves has a larger gap. The candidate with the largest gap is returned; among gaps
+/// that are equal up to rounding, the first candidate wins.
 fn best_normal<N: Real>(
     ends1: &[Point<N, 3>; 2],
     ends2: &[Point<N, 3>; 2],

@@ -285,8 +285,8 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         [low - top * self.shrink, bottom * self.shrink - high]
     }
 
-    /// Queries the face directions of the solid; `climbs` records which sides rise along each face
-    /// normal.
+    /// Queries the face directions of the solid and returns those with the largest gaps; `climbs`
+    /// records which sides rise along each face normal.
     #[inline(always)]
     fn query_faces(&self, climbs: &mut [[V::Mask; 3]; MAX_FACES]) -> TriangleAxis<V> {
         let (simd, zero) = (self.simd, V::all(self.simd, N::ZERO));
@@ -308,7 +308,7 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
     }
 
     /// Queries the directions perpendicular to an edge of the solid and a side of a triangle;
-    /// returns those with larger gaps than `face`, else `face`.
+    /// returns those whose gaps exceed those of `face` by more than rounding, else `face`.
     #[inline(always)]
     fn query_edges(
         &self,
@@ -362,8 +362,8 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
 }
 
 /// Returns the unit of each pair and its reciprocal, which is infinite if the size of the pair is
-/// zero or not finite. `own` is the largest size of the solid and of the distance between the
-/// origins.
+/// zero or not finite. `own` is the larger of the solid's bounding radius and the largest
+/// coordinate of the offset between the origins.
 #[inline(always)]
 fn units<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

@@ -1,12 +1,12 @@
 //! Triangles against a ball: finds the near triangles, 8 at a time, and those that a neighbour
-//! hides.
+//! hides (whose contact the surface would reject in favour of the neighbour's).
 //!
 //! A contact at a corner or edge belongs to the whole surface only if no triangle there extends
-//! along its normal: no direction into such a triangle has a positive component
+//! along its normal: no direction into such a triangle has a positive component along the normal
 //! (`shape/surface/seam.rs`). If one of these triangles is nearer to the centre of the ball than
 //! the corner or edge, the direction to its nearest point has such a component. So distances alone
 //! give the result of the rule for normals. Of all triangles around the point where a ball rests,
-//! only one remains. Close cases stay undecided.
+//! only one remains. In close cases no triangle counts as hidden.
 //!
 //! ```text
 //!           o  centre           kind 0, 1, 2: nearest on the side that starts at corner 0, 1, 2
@@ -35,7 +35,8 @@ const CORNER: f64 = 3.0;
 const ROUNDING: f64 = 128.0;
 /// Heights up to this many epsilons of all coordinates count as rounding.
 const HEIGHT: f64 = 64.0;
-/// Number of near packets before and after a triangle's own in which its neighbours are searched.
+/// Number of packets with near triangles, before and after the packet of a triangle, in which its
+/// neighbours are searched.
 const MAX_APART: usize = 8;
 
 /// A ball among triangles.
@@ -55,7 +56,8 @@ pub(crate) struct BallQuestion<'a, N: Real> {
 
 /// The triangles near a ball.
 pub(crate) struct CandidateTriangles<N> {
-    /// Lower bound of the distance from the centre to the triangles in the box; zero if unknown.
+    /// Lower bound of the distance from the centre to the triangles in the box; zero if unknown,
+    /// infinite if no triangle is in the box.
     pub(crate) from_middle: N,
     /// One entry for each packet with near triangles, in ascending order: its index, the bits of
     /// the triangles within the limit, and the bits of the hidden triangles among them.
@@ -64,7 +66,7 @@ pub(crate) struct CandidateTriangles<N> {
     pub(crate) hidden_from: N,
 }
 
-/// Finds the triangles near a ball. Unless `has_seams`, no triangle counts as hidden.
+/// Finds the triangles near a ball. If `has_seams` is `false`, no triangle counts as hidden.
 pub(crate) fn candidate_triangles<N: Real>(
     question: &BallQuestion<'_, N>,
     has_seams: bool,
@@ -157,7 +159,8 @@ struct NearestFeatures<N> {
     kinds: [N; LANES],
     /// Lower bounds of the squared distances.
     least: [N; LANES],
-    /// Upper bounds of the squared distances; infinite for triangles that hide nothing.
+    /// Upper bounds of the squared distances; infinite for triangles that must not hide others,
+    /// because they are thin or small.
     most: [N; LANES],
 }
 
@@ -226,7 +229,8 @@ impl<V> TrianglePacket<V> {
         Self { corners: [a, b, c], squares, along, area, shares, nearest, squared, farthest }
     }
 
-    /// Returns the nearest features, and the least lower bound of the distances.
+    /// Returns the nearest features, and the smallest of the lower bounds of the distances of all 8
+    /// triangles.
     #[inline(always)]
     fn nearest_features<S: Simd, N: Real>(
         &self,
@@ -277,7 +281,7 @@ impl<V> TrianglePacket<V> {
         let low = dot(nearest, a).smaller(dot(nearest, b)).smaller(dot(nearest, c));
         let slack = V::all(simd, N::lit(ROUNDING) * N::EPSILON) * size;
         let bound = low / length - slack;
-        // False for NaN, and for values that are inexact because of underflow.
+        // `is_bound` is false for NaN, and for values that are inexact because of underflow.
         let is_bound = bound.simd_gt(slack)
             & low.simd_gt(V::all(simd, N::MIN_POSITIVE / N::EPSILON))
             & size.simd_lt(V::all(simd, N::MAX.sqrt()));
@@ -300,8 +304,9 @@ impl<V> TrianglePacket<V> {
             & self.area.simd_lt(V::all(simd, N::MAX * N::EPSILON))
     }
 
-    /// Returns the side or corner nearest to the centre, and how far the centre is inside its
-    /// Voronoi region; if that is not positive, the feature is unknown.
+    /// Returns the side or corner nearest to the centre, and the distance by which the centre is
+    /// inside the Voronoi region of this feature; if the distance is not positive, the feature is
+    /// unknown.
     #[inline(always)]
     fn beside<S: Simd, N: Real>(&self, simd: S) -> (V, V)
     where
@@ -334,8 +339,8 @@ impl<V> TrianglePacket<V> {
     }
 }
 
-/// Returns whether some triangle that is not thin contains the nearest side or corner of triangle
-/// `lane`, and is nearer to the centre.
+/// Returns whether some triangle of `features` that is not thin contains the nearest side or corner
+/// of triangle `lane` of `own`, and is nearer to the centre.
 #[inline(always)]
 fn is_hidden<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -405,7 +410,8 @@ mod tests {
     use super::*;
     use crate::collide::separation::hulls::tests::Random;
 
-    /// Returns two rows of triangles with shared corners, around a ball near the origin.
+    /// Returns a strip of 10 triangles with shared corners around the origin, between two rows of
+    /// points; copies of the last triangle fill the packets.
     fn strip<N: Real>(random: &mut Random) -> Vec<PartPacket<N, 3>> {
         let mut points: Vec<Point<N, 3>> = Vec::new();
         for at in 0..12_u32 {

@@ -3,10 +3,12 @@
 //!
 //! For most triangles a surface needs only the touched side or corner; contacts along a face are
 //! computed later. A case is plain if a side and an edge cross well inside both, or if a single
-//! corner is nearest to a face and projects into its inside. Then the direction gives the distance
-//! for certain. All other triangles are passed to the separation of the pair. So are triangles
-//! whose distance differs from the prediction only by rounding, because the separation decides, for
-//! queries and manifolds alike, whether a pair is within the prediction.
+//! corner is nearest to a face and projects into its inside. Then the gap is certainly the
+//! distance. If the best direction is the triangle's own normal, the case is plain, too, but
+//! without a feature, and the gap is only a lower bound. All other triangles are passed to the
+//! separation of the pair. So are triangles whose gap differs only by rounding from the prediction,
+//! the largest distance of contacts, because the separation decides, for queries and manifolds
+//! alike, whether a pair is within the prediction.
 //!
 //! ```text
 //!   tiles   [. x . x x . . .] [x . . x . . . .] ...    `masks`: bits of the selected ones
@@ -15,8 +17,8 @@
 //!                                                      the visitor counts on over all packets
 //! ```
 //!
-//! Both are [`PartPacket`]s of `collide/packet.rs`. Callers: `collide/mesh/faces.rs`, and
-//! `collide/mesh/ball.rs` for balls.
+//! Tiles and packets are [`PartPacket`]s of `collide/packet.rs`. Callers: `collide/mesh/faces.rs`,
+//! and `collide/mesh/ball.rs` for balls.
 
 mod axes;
 mod ball;
@@ -44,7 +46,7 @@ const CLEAR: f64 = 64.0;
 /// Smallest length of a side of a plain case, in rounding errors.
 const LONG: f64 = 8192.0;
 
-/// Returns the rounding error of arithmetic on numbers up to 2.
+/// Returns the bound that is used for the rounding error of arithmetic on numbers up to 2.
 fn rounding_error<N: Real>() -> N {
     N::lit(16.0) * N::EPSILON
 }
@@ -61,7 +63,7 @@ pub(crate) struct TiledTriangles<'a, N: Real> {
 /// Distance of a triangle and a solid, in the frame of the triangle.
 #[derive(Clone, Copy)]
 pub(crate) struct TriangleGap<N: Real> {
-    /// Signed distance along the normal.
+    /// Signed gap along `normal`: the distance if `touched` is `Some`, else a lower bound of it.
     pub(crate) distance: N,
     /// Unit vector from the triangle to the solid.
     pub(crate) normal: Vector<N, 3>,
@@ -85,8 +87,9 @@ impl<N: Real> TiledTriangles<'_, N> {
 
 /// Visits the triangles that are not certainly farther than `limit` from a solid, with the gap if
 /// the case is plain. `pose12` is the pose of the solid in the frame of the triangles, relative to
-/// their origin. Returns `false`, without a visit, for solids without a kernel here. `limit` is
-/// `prediction` plus the distance that rotations may add.
+/// their origin. Returns `false`, without a visit, for solids of which [`Polyhedral::of`] returns
+/// `None`, and for hulls of fewer than 4 faces. `limit` is `prediction` plus the distance that
+/// rotations may add.
 pub(crate) fn gaps3<N: Real>(
     parts: &TiledTriangles<'_, N>,
     solid: Kind<'_, N, 3>,
@@ -206,7 +209,7 @@ impl<N: Real> PlacedTriangle<'_, N> {
     }
 
     /// Returns the corner of the triangle nearest to a face of the solid, if no other corner is
-    /// about as near and it projects into the face's inside; else `None`.
+    /// about as near, and the nearest corner projects into the inside of the face; else `None`.
     fn corner_over(&self, face: usize) -> Option<FeatureId> {
         let outward = -self.normal;
         let heights = self.corners.each_ref().mapped(|corner| outward.dot(corner));

@@ -75,7 +75,7 @@ fn by_axes<N: Real>(
     let is_edge = edges.gap > face.gap + rounding_error;
     let found = if is_edge { of_edges() } else { of_face().or_else(of_edges) };
     match found {
-        // False for NaN.
+        // The comparison is false for NaN.
         Some(found) if inexact <= found.distance + rounding_error => {
             SatResult::Found(found.scaled(units.scale))
         }
@@ -106,7 +106,7 @@ impl<N: Real> PlacedTriangle<N> {
         let across = cross(&sides[0], &sides[1]);
         let area = across.norm();
         let least = N::TWO * hulls::rounding_error() * longest.sqrt();
-        // False for NaN.
+        // `is_wide` is false for NaN.
         let is_wide = area > N::lit(THIN) * longest && area > least && area < N::INFINITY;
         is_wide.then(|| Self { corners, sides, squared, normal: across / area })
     }
@@ -233,7 +233,7 @@ impl<N: Real> EdgeAxis<N> {
         let (arm, along) = (start2 - start1, cross(side1, side2));
         let squared = self.length * self.length;
         let shares = [cross(&arm, side2), cross(&arm, side1)].mapped(|turn| turn.dot(&along));
-        // False for NaN.
+        // `is_inside` is false for NaN.
         let is_inside = shares.iter().all(|share| *share >= N::ZERO && *share <= squared);
         is_inside.then(|| Separation {
             distance: self.gap,
@@ -263,7 +263,8 @@ mod tests {
         }
     }
 
-    /// Returns the share of overlapping triangles that are proved, with corners from `corner`.
+    /// Returns the share of proved results among 600 overlapping pairs of triangles, with corners
+    /// from `corner`. Asserts that proved distances agree with the general algorithm.
     fn share<N: Real>(mut corner: impl FnMut() -> Point<N, 3>) -> f64 {
         let (mut proved, mut overlapping) = (0, 0);
         while overlapping < 600 {

@@ -127,8 +127,8 @@ impl<N: Real> Grid<N> {
     }
 }
 
-/// Returns the box of all cells, in x and z including holes and ghosts; `None` if there is no other
-/// cell.
+/// Returns the box of the field: in x and z around all cells, in y around the parts that are
+/// neither holes nor ghosts. `None` if there are no such parts.
 pub(super) fn whole<N: Real>(field: &impl GridCells<N>) -> Option<GridExtent<N>> {
     let pyramid = field.pyramid();
     let span = pyramid.span(pyramid.top(), &|row, column| field.cell_span(row, column));

@@ -1,7 +1,7 @@
 //! Height fields: a line in 2D, a surface in 3D, given by heights over a grid.
 //!
 //! Triangles, boxes and seams are computed from the heights on demand. Instead of a tree, only the
-//! minimum and maximum height of blocks of cells is stored ([`Pyramid`]). [`grid`] has the code
+//! minimum and maximum height of blocks of cells is stored ([`Pyramid`]). [`mod@grid`] has the code
 //! that 2D and 3D share; `segments.rs` is 2D, `triangles.rs` is 3D.
 //!
 //! ```text

@@ -42,7 +42,7 @@ impl<N: Real> HeightField<N, 2> {
         Ok(field)
     }
 
-    /// Makes a cell a hole if `is_hole(cell)` is true, and no hole otherwise.
+    /// Makes each cell a hole for which `is_hole(cell)` is true, and every other cell no hole.
     #[must_use]
     pub fn with_holes(mut self, mut is_hole: impl FnMut(usize) -> bool) -> Self {
         let cells = self.num_cells();
@@ -53,8 +53,8 @@ impl<N: Real> HeightField<N, 2> {
         self
     }
 
-    /// Returns the field scaled along the axes of its frame, about its origin, by multiplying its
-    /// own scale.
+    /// Returns the field scaled along the axes of its frame, about its origin: the scale of the
+    /// field is multiplied by `scale`.
     ///
     /// # Errors
     /// If a factor is zero or not finite, or a scaled coordinate is not finite.

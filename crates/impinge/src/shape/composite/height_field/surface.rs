@@ -91,9 +91,9 @@ impl<N: Real> OwnSurface<N, 3> for HeightField<N, 3> {
 /// of the cell's corners.
 type FanTriangle = (usize, usize, usize);
 
-/// For each corner of a cell, the triangles at it: the index of the triangle and its two other
-/// corners. The corners a, b, c, d have the indices 0 to 3. The first table is for a forward
-/// diagonal, the second for a backward one; see `corners_in`.
+/// For each corner of a cell, the triangles at that corner. The corners a, b, c, d have the indices
+/// 0 to 3. The first table is for a forward diagonal, the second for a backward diagonal; see
+/// `corners_in`.
 const FANS: [[&[FanTriangle]; 4]; 2] = [
     [&[(0, 1, 2), (1, 2, 3)], &[(0, 2, 0)], &[(0, 0, 1), (1, 3, 0)], &[(1, 0, 2)]],
     [&[(0, 1, 3)], &[(0, 3, 0), (1, 2, 3)], &[(1, 3, 1)], &[(0, 0, 1), (1, 1, 2)]],
@@ -291,8 +291,8 @@ impl<N: Real> HeightField<N, 3> {
     }
 
     /// Returns whether the field admits `normal` at a grid point; `normal` is not the normal of the
-    /// triangle itself. `own` has the front normal of the triangle, and whether another triangle at
-    /// the point is known not to be coplanar with it.
+    /// queried triangle. `own` has the front normal of that triangle, and whether another triangle
+    /// at the point is known not to be coplanar with it.
     fn point_admits_from(
         &self,
         at: GridPoint,
@@ -340,8 +340,8 @@ impl<N: Real> HeightField<N, 3> {
     }
 }
 
-/// A triangle at a grid point: the unit vectors along its two sides that leave the point (zero
-/// without length), and its front normal.
+/// A triangle at a grid point: the unit vectors along its two sides that leave the point (zero for
+/// a side without length), and its front normal.
 struct StarFace<N: Real> {
     edges: [Vector<N, 3>; 2],
     front: Vector<N, 3>,

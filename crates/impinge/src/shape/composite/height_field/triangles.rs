@@ -60,8 +60,8 @@ impl<N: Real> HeightField<N, 3> {
         self
     }
 
-    /// Makes both triangles of a cell holes if `is_hole(row, column)` is true, and neither
-    /// otherwise.
+    /// Makes both triangles of each cell holes for which `is_hole(row, column)` is true, and all
+    /// other triangles no holes.
     #[must_use]
     pub fn with_holes(mut self, mut is_hole: impl FnMut(usize, usize) -> bool) -> Self {
         let [rows, columns] = self.pyramid.cells();
@@ -75,8 +75,8 @@ impl<N: Real> HeightField<N, 3> {
         self
     }
 
-    /// Returns the field scaled along the axes of its frame, about its origin, by multiplying its
-    /// own scale.
+    /// Returns the field scaled along the axes of its frame, about its origin: the scale of the
+    /// field is multiplied by `scale`.
     ///
     /// # Errors
     /// If a factor is zero or not finite, or a scaled coordinate is not finite.
@@ -243,8 +243,8 @@ impl<N: Real> HeightField<N, 3> {
         self.refresh(row, column);
     }
 
-    /// Changes the diagonal of a cell; its parts keep their indices and stay or become no holes as
-    /// before.
+    /// Changes the diagonal of a cell. Its parts keep their indices, and a part that is a hole
+    /// stays a hole.
     ///
     /// # Panics
     /// If there is no such cell.

@@ -40,9 +40,9 @@ pub trait MeshByDimension<N: Real, const D: usize> {
         normals: [&Vector<N, D>; 2],
     ) -> [bool; 2];
 
-    /// Runs [`Self::mesh_admits_in_turn`] at a corner, for normals that differ from the triangle's
-    /// own. `corner` has the index of the corner, and whether another triangle there is known not
-    /// to be coplanar with this triangle.
+    /// Runs [`Self::mesh_admits_in_turn`] at a corner, for normals that differ from the normal of
+    /// the triangle. `corner` has the index of the corner, and whether another triangle at the
+    /// corner is known not to be coplanar with this triangle.
     fn mesh_corner_admits_in_turn(
         mesh: &TriMesh<N, D>,
         part: u32,

@@ -8,7 +8,7 @@ use crate::shape::composite::mesh_error::{MeshError, or_panic};
 
 impl<N: Real, const D: usize> TriMesh<N, D> {
     /// Returns whether the mesh is a body, not a skin: `solid` was called, and no joined vertices
-    /// have been moved apart since. Always false in 2D, where triangles are filled.
+    /// are apart after a move. Always false in 2D, where triangles are filled.
     #[must_use]
     pub const fn is_solid(&self) -> bool {
         self.is_solid && self.is_cycle
@@ -51,7 +51,7 @@ impl<N: Real> TriMesh<N, 3> {
     /// Later calls of [`Self::set_vertices`] are not checked: while joined vertices are apart, the
     /// mesh is a one-sided skin. [`Self::flipped`] makes it a skin permanently.
     ///
-    /// The cost is O(n), and O(log n) for each wall of a cavity.
+    /// The cost is O(n), plus a search of the mesh for each inner surface.
     ///
     /// # Errors
     /// - [`MeshError::NotClosed`] or [`MeshError::NotOriented`] if the mesh does not [bound a

@@ -61,8 +61,8 @@ impl<N: Real> TriMesh<N, 2> {
         }
     }
 
-    /// Returns whether the corner admits `normal`: no side that leaves the corner rises along it,
-    /// and the two highest sides do not form a straight border.
+    /// Returns whether the corner admits `normal`: no side that leaves the corner rises along
+    /// `normal`, and the two highest sides do not form a straight border.
     fn corner_admits(&self, part: u32, corner: usize, normal: &Vector<N, 2>) -> bool {
         let joint = self.joint_ends(part, corner)[0];
         // The side that rises highest along `normal` to its left, and to its right. Both start as

@@ -94,9 +94,8 @@ impl<N: Real> TriMesh<N, 3> {
         let other = self.topology.single_across(part, side)?;
         let fronts = [part, other].map(|face| self.normals[face as usize]);
         let find = || {
-            // If both triangles traverse the side in the same direction, their fronts disagree and
-            // they lie on the same side of it. Then there is no edge angle, but the side may be a
-            // rim.
+            // If both triangles traverse the side in the same direction, their fronts disagree.
+            // Then there is no edge angle, but the side may be a rim.
             let ends = self.joint_ends(part, side);
             let is_opposite = self
                 .side_between(other, ends)

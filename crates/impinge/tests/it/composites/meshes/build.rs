@@ -210,8 +210,8 @@ fn triangles_without_area_have_no_normal() {
     }
 }
 
-/// Asserts that all corners lie in the box and the sphere, and that the box is not much larger than
-/// the smallest one.
+/// Asserts that all corners lie in the box and the sphere, and that each upper face of the box is
+/// at most `looseness` beyond the corners.
 fn check_boxes<N: Space<3>>(mesh: &TriMesh<N, 3>, looseness: N) {
     let mut random = Random::new(5);
     for _ in 0..20 {

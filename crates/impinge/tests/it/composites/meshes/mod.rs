@@ -48,8 +48,8 @@ fn surface<N: Real, const D: usize>(shape: &dyn CompositeShape<N, D>) -> &dyn Su
 }
 
 /// Returns a grid of squares in the plane of the first two coordinates, each cut into two
-/// counter-clockwise triangles. Triangles `2 (i + side j)` and the next one form the square at (i,
-/// j).
+/// counter-clockwise triangles. Triangle `2 (i + side j)` and the next triangle form the square at
+/// (i, j).
 fn grid<const D: usize>(side: u32, at: impl Fn(f64, f64) -> [f64; D]) -> GridOf<D> {
     let numbers = || (0..=side).flat_map(|j| (0..=side).map(move |i| (i, j)));
     let vertices = numbers().map(|(i, j)| at(f64::from(i), f64::from(j))).collect();

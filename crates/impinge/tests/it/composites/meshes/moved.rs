@@ -14,8 +14,8 @@ fn probe<N: Real, const D: usize>(random: &mut Random) -> Aabb<N, D> {
     Aabb::new(corner, corner + size)
 }
 
-/// Compares the searches of a refitted tree with those of a new one, which other tests compare with
-/// a scan of all boxes.
+/// Compares the searches of a refitted tree with those of a new tree, which other tests compare
+/// with a scan of all boxes.
 fn check_search<N: Space<D>, const D: usize>(tree: &BoxTree<N, D>, random: &mut Random) {
     tree.validate().expect("sound");
     let anew = BoxTree::from_boxes(tree.boxes());

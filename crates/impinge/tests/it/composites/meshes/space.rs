@@ -89,7 +89,8 @@ fn a_filler_without_area_is_no_seam() {
     assert_eq!(whole.snapped(2, &unit([0.0, 1.0, 1.0])), None, "the filler has no face");
 }
 
-/// Returns two squares that meet along the x axis; the one at negative y slopes down by `degrees`.
+/// Returns two squares that meet along the x axis; the square at negative y slopes down by
+/// `degrees`.
 fn roof<N: Real>(degrees: f64) -> TriMesh<N, 3> {
     let (sine, cosine) = degrees.to_radians().sine_cosine();
     let vertices = [
@@ -235,8 +236,8 @@ fn edges_of_a_sphere_have_its_normals_and_no_others() {
     }
 }
 
-/// Returns whether the feature is the highest along the normal among all triangles at it; `None` if
-/// the heights are too close to decide.
+/// Returns whether the vertex or edge is the highest place, along the normal, of the triangles that
+/// share it; `None` if the heights are too close to decide.
 fn is_highest(mesh: &TriMesh<f64, 3>, ends: &[usize], normal: &Vector<f64, 3>) -> Option<bool> {
     let at = mesh.vertices()[ends[0]].coords.dot(normal);
     let around = mesh.triangles().iter().filter(|t| ends.iter().all(|&e| t.contains(&number(e))));

@@ -14,8 +14,8 @@ use impinge::shape::{Ball, Compound, Cuboid, Shape, ShapeHandle, TriMesh};
 use query_support::random::Random;
 use query_support::samples::{SPACE, sample3};
 
-/// Returns the distance to the nearest triangle, and the extent of the solid behind the plane
-/// through the nearest point, perpendicular to the normal.
+/// Returns the distance between the solid and the nearest triangle, and the distance by which the
+/// solid must move along their normal to lie entirely beyond the nearest point of that triangle.
 fn brute<N: Space<3>>(mesh: &TriMesh<N, 3>, m2: &Isometry3<N>, solid: &dyn Shape<N, 3>) -> (N, N) {
     let here = Isometry3::identity();
     let mut nearest = N::INFINITY;
@@ -63,7 +63,8 @@ fn against_brute_force<N: Space<3>>() {
             }
             assert_eq!(found.is_some(), holds == Some(true), "{m2:?} {middle:?}");
             if let Some(found) = found {
-                // Normals are not compared: triangles at equal distances may give different ones.
+                // Normals are not compared: triangles at equal distances may have different
+                // normals.
                 let gap = distance(
                     &Isometry3::identity(),
                     &skin((mesh.vertices().to_vec(), mesh.triangles().to_vec())),

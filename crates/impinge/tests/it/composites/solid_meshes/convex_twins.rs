@@ -22,7 +22,9 @@ fn twins<N: Space<3>>(soup: Soup<N>) -> Twins<N> {
     Twins { hull: ConvexHull::try_from_points(&soup.0).expect("a volume"), mesh: solid(soup) }
 }
 
-/// Compares the distances of both twins from a solid, in both orders.
+/// Asserts that a solid has the same distance from both twins, and that all queries of the mesh
+/// agree, in both orders, on whether the solid touches the mesh. Returns `true` for a solid that
+/// touches the mesh.
 fn compare<N: Space<3>>(
     twins: &Twins<N>,
     m1: &Isometry3<N>,
@@ -60,7 +62,8 @@ fn compare<N: Space<3>>(
     of_mesh == N::ZERO
 }
 
-/// Asserts that moving by the depth of the contact separates the two, and that both orders agree.
+/// Asserts that moving by the depth of the contact separates the solid and the mesh, and that both
+/// orders agree.
 fn check_way_out<N: Space<3>>(
     Twins { mesh, hull }: &Twins<N>,
     m1: &Isometry3<N>,

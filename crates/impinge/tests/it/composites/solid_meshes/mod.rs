@@ -35,7 +35,7 @@ fn inverted<N: Real>((corners, triangles): Soup<N>) -> Soup<N> {
     (corners, triangles.iter().map(|&[a, b, c]| [a, c, b]).collect())
 }
 
-/// Returns one surface that consists of several.
+/// Joins several surfaces into one.
 fn joined<N: Real>(bodies: &[Soup<N>]) -> Soup<N> {
     let (mut corners, mut triangles) = (Vec::new(), Vec::new());
     for (own, named) in bodies {

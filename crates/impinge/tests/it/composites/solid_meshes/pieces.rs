@@ -39,7 +39,7 @@ fn a_part_inside_is_enough() {
     let seen = witness(&at([0.0; 3]), &body, &at([3.0, 0.0, 0.0]), &pair, 1.0).expect("near");
     assert_eq!((seen.distance, seen.part2), (-1.25, 0));
     // A part that crosses the surface and a part that is deep inside: the contact is that of the
-    // deeper one.
+    // deeper part.
     let pair = Compound::new(vec![(at([0.0; 3]), small()), (at([4.0, 0.0, 0.0]), small())]);
     let (_, found) = between(&body, [0.0, 2.0, 0.0], &pair);
     assert_eq!(found, Some((2.25, V3::y())));
@@ -82,7 +82,7 @@ fn cavities_are_outside() {
         "sunk in"
     );
     assert_eq!(between(&hollow, [4.125, 0.0, 0.0], &small), (0.0, Some((0.125, V3::x()))));
-    // A body in the cavity, and one in the wall.
+    // A solid mesh in the cavity, and the same solid mesh in the wall.
     let crate_ = solid(cuboid([0.5; 3], [0.0; 3]));
     assert_eq!(between(&hollow, [0.0; 3], &crate_), (1.5, None));
     assert_eq!(between(&hollow, [3.25, 0.0, 0.0], &crate_), (0.0, Some((1.25, V3::x()))));

@@ -19,7 +19,7 @@ fn contacts() -> GeometricQueryType<f64> {
     GeometricQueryType::Contacts(0.01, 0.0)
 }
 
-/// Returns a world of a solid mesh and a small ball in it.
+/// Returns a world with a solid mesh at the origin and a small ball at `place`, and both handles.
 fn stage(
     body: TriMesh<f64, 3>,
     query: GeometricQueryType<f64>,

@@ -223,8 +223,8 @@ where
     }
 
     /// Returns the error of a contact in units of `self.unit`, and a description of the case. The
-    /// contact of two convex solids must lie exactly on both surfaces. A contact of composites is
-    /// the deepest point of a manifold, whose normal is that of a face.
+    /// contact that `contact` returns for two convex solids must lie exactly on both surfaces. A
+    /// contact of composites is the deepest point of a manifold, whose normal is that of a face.
     fn error(&self, found: &Contact<N, D>, source: &str) -> (f64, String) {
         let unit = self.unit;
         let of_composites =

@@ -108,7 +108,8 @@ where
         truth.is_settled(1e-17).then_some(truth)
     }
 
-    /// Returns a length of the pair. Depths are measured in units of epsilon times this length.
+    /// Returns the sum of both bounding radii and of the distance between the origins of the
+    /// solids. Errors of depths are measured in units of epsilon times this length.
     fn size(&self) -> f64 {
         let at = self.scene.poses.each_ref().map(|pose| pose.translation.vector.map(N::as_f64));
         self.scene.forms[0].reach + self.scene.forms[1].reach + (at[1] - at[0]).norm()
@@ -143,8 +144,8 @@ where
         }
     }
 
-    /// Law 2: each point lies on both surfaces, and its two positions are opposite each other along the one unit
-    /// normal.
+    /// Law 2: each point lies on both surfaces, and its two positions are opposite each other along
+    /// the one unit normal of the manifold.
     fn on_both(&mut self, found: &Points<N, D>) {
         let allowed = points_promised::<N, D>(self.names, self.scene.is_degenerate);
         // Several points may be equally deep up to rounding, so one of them must satisfy the strict
@@ -226,7 +227,8 @@ where
         self.holds("5 flipped query", one == other, || format!("{one:?}, flipped {other:?}"));
     }
 
-    /// Law 5: scaling a scene by a power of two scales everything exactly, except where numbers underflow.
+    /// Law 5: scaling a scene by a power of two scales everything exactly, except where numbers
+    /// underflow.
     fn scales(&mut self, found: &Points<N, D>) {
         for scale in [1.0 / 1_048_576.0, 1_048_576.0] {
             let scene = self.stage.scaled(self.scene, scale);
@@ -254,8 +256,8 @@ where
     }
 
     /// Law 6: `contact` returns a contact exactly if the manifold has points, with the same depth.
-    /// They may differ if the prediction equals the distance up to rounding, unless the prediction
-    /// is zero.
+    /// Only one of them may be empty if the prediction is not zero and equals the distance up to
+    /// rounding.
     fn agrees(&mut self, found: &Points<N, D>) {
         let ([pose1, pose2], [shape1, shape2]) = (&self.scene.poses, self.scene.shapes());
         let unit = N::EPSILON.as_f64() * self.size();

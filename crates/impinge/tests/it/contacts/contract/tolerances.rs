@@ -23,8 +23,8 @@ pub(crate) fn promised<N: Real, const D: usize>(names: [&str; 2]) -> f64 {
     }
 }
 
-/// Returns `true` if the depth is guaranteed to be the least. It is not if one solid is a tapered
-/// capsule and one lies in the middle of the other, much larger one.
+/// Returns `true` if the depth is guaranteed to be the least. It is not guaranteed if one of the
+/// solids is a tapered capsule and the smaller solid lies in the middle of a much larger one.
 pub(crate) fn is_promised(names: [&str; 2], is_swallowed: bool) -> bool {
     !(is_swallowed && names.iter().any(|name| name.contains("tapered")))
 }

@@ -10,7 +10,8 @@ use super::points::P3;
 pub(crate) struct Measured {
     /// Greatest height of a given point above the highest vertex of a face, along its normal.
     pub(crate) outside: f64,
-    /// Greatest depth of a vertex of a face below its highest one.
+    /// Greatest depth of a vertex of a face below the highest vertex of that face, along the
+    /// normal.
     pub(crate) bent: f64,
 }
 
@@ -35,8 +36,8 @@ fn sides<N: Real>(hull: &IndexedHull<N>) -> Vec<(usize, usize)> {
     hull.faces.iter().flat_map(around).collect()
 }
 
-/// Asserts that the surface is closed and a single sphere, that every vertex is used, and that no
-/// loop repeats one.
+/// Asserts that the surface is closed and has the topology of a sphere, that every vertex is on a
+/// face, and that no directed side occurs twice.
 fn topology<N: Real>(hull: &IndexedHull<N>) {
     assert!(hull.vertices.windows(2).all(|pair| pair[0] < pair[1]), "ascending");
     let mut used = hull.faces.concat();
@@ -96,8 +97,8 @@ fn cut_off<N: Real>(points: &[P3], hull: &IndexedHull<N>) -> f64 {
     missing.fold(0.0, f64::max)
 }
 
-/// Returns the hull of points given as `f64`. It is computed with the scalar `N` and checked
-/// against the documented tolerance of 8 units.
+/// Computes the hull of points, given as `f64`, with the scalar `N`, and returns it. Asserts the
+/// documented tolerance of 8 units.
 pub(crate) fn hull_of<N: Real>(name: &str, points: &[P3]) -> IndexedHull<N> {
     hull_within::<N>(8.0, name, points)
 }

@@ -35,7 +35,7 @@ fn points2<N: Real>(value: &Value) -> Vec<Point<N, 2>> {
     points.iter().map(numbers).map(|p| Point::<N, 2>::new(N::lit(p[0]), N::lit(p[1]))).collect()
 }
 
-/// Returns the points of the convex shapes of all pair cases.
+/// Returns the lists of points of all shapes of these kinds in the pair cases of both files.
 fn shapes(kinds: &[&str]) -> Vec<Value> {
     let mut shapes = Vec::new();
     for file in ["narrow_phase_cases.json", "regression_cases.json"] {

@@ -76,8 +76,8 @@ fn dimension<N: Space<3>>(shape: &ShapeHandle<N, 3>) -> usize {
     if is_flat { 2 } else { 3 }
 }
 
-/// Asserts that hulls have the dimension that their points span, from a single point to a solid, at
-/// any position and size.
+/// Asserts that hulls have the dimension that their points span, from a single point to a solid,
+/// rotated, at three scales and away from the origin.
 fn hulls_are_what_their_points_span<N: Real>() {
     let flat = |points: Vec<P3>| -> Vec<P3> {
         points.into_iter().map(|p| P3::new(p.x, p.y, 0.25)).collect()

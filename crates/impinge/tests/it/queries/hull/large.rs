@@ -26,7 +26,7 @@ fn on_a_cube() -> Vec<P3> {
     corners
 }
 
-/// Returns `COUNT` points: the given points, each repeated.
+/// Returns `COUNT` points, which repeat the given points in turn.
 fn doubled(points: &[P3]) -> Vec<P3> {
     points.iter().cycle().take(COUNT).copied().collect()
 }

@@ -119,8 +119,8 @@ fn a_feature_that_is_not_there_is_named() {
     let _ = ConvexHull::<f32>::from_points(&cast(&cube())).vertex(FeatureId::Vertex(8));
 }
 
-/// Asserts that boxes and spheres contain the support points, that boxes touch them, and that
-/// `reach` bounds their distance.
+/// Asserts that boxes and spheres contain the support points, and that `reach` bounds the distance
+/// of the support points from the origin.
 fn bounds<N: Real, const D: usize>(
     shape: &dyn Shape<N, D>,
     directions: &[Vector<N, D>],
@@ -202,7 +202,7 @@ fn bounds_hold_in_the_plane() {
     bounds_in_the_plane::<f64>();
 }
 
-/// The box of a hull is the least one up to rounding: each face of the box touches a vertex.
+/// The upper faces of the box of a hull each touch a vertex up to rounding.
 #[test]
 fn boxes_of_hulls_are_tight() {
     let pose = Isometry3::rotation(Vector::<f64, 3>::new(0.4, 0.5, -0.2));

@@ -105,8 +105,8 @@ fn points_of_small_grids() {
     small_grids::<f64>();
 }
 
-/// Tests clouds of points, a few rounding units in size, around the corners of a solid, on its
-/// edges and on its faces.
+/// Tests clouds of points, up to a thousand rounding units in size, around the corners of a prism
+/// and around segments between its corners.
 fn noise<N: Real>() {
     let mut numbers = Numbers::new(17);
     for units in [0.5, 1.0, 2.0, 4.0, 8.0, 30.0, 1e3] {
@@ -174,7 +174,8 @@ fn slabs<N: Real>() {
     }
 }
 
-/// Tests prisms barely thicker than rounding: every corner of the outline is a vertex of the hull.
+/// Tests prisms barely thicker than rounding: the hull passes all checks, or points at most 5 units
+/// in thickness are refused as flat.
 fn sheets<N: Real>() {
     for sides in [3, 5, 16, 40] {
         for units in [1e3, 30.0, 10.0, 7.0, 5.0, 4.0] {

@@ -15,7 +15,7 @@ use impinge_reference::random::Random;
 
 use super::{Found, Inertia, assert_alike, p3, unit};
 
-/// Returns the number of cells along each axis in `D` dimensions.
+/// Returns the number of cells of the sampling grid along each axis in `D` dimensions.
 fn cells<const D: usize>() -> usize {
     [0, 0, 300, 44][D]
 }
@@ -92,7 +92,7 @@ where
     }
 }
 
-/// Returns the shapes of the table of all shapes that have a volume.
+/// Returns the bounded convex shapes of the table that have an area in 2D, or a volume in 3D.
 fn solids_of<const D: usize>(mut shapes: Shapes<f64, D>) -> Shapes<f64, D> {
     let others = [
         "segment",
@@ -157,7 +157,7 @@ fn compounds_with_densities() {
     let densities = |path: &[u32]| if path == [0, 1] { 3.0 } else { 1.0 };
     let body = impinge::query::mass_properties_with(&nested, &mut |path| densities(path));
     let one = count(&nested, |p| nested.contains_point(&Isometry::identity(), &Point::from(*p)));
-    // Counts the ball a second time, since it has twice the density.
+    // Adds the ball twice more, since it has three times the density.
     let (center, mass) = (
         at(-2.0, 0.0, 2.0) * at(0.0, 1.5, 0.0) * Point::origin(),
         unit::<f64, 3>(&Ball::new(0.5)).0,

@@ -13,7 +13,8 @@ use impinge::shape::Shape;
 /// Mass properties at density one in `f64`: mass, centre, and inertia about the centre.
 pub(super) type Found<const D: usize> = (f64, Vector<f64, D>, Matrix<f64, D>);
 
-/// Returns the inertia as a matrix; in 2D only the element of the moment is not zero.
+/// Scalars and dimensions whose inertia is read as a matrix. In 2D the moment of inertia is the
+/// element in the first row and column; all other elements are zero.
 pub(super) trait Inertia<const D: usize>: Space<D> {
     fn inertia_of(body: &MassProperties<Self, D>) -> Matrix<f64, D>;
 }

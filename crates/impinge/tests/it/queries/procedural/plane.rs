@@ -16,7 +16,7 @@ fn point<N: Real>(p: [f64; 2]) -> Point<N, 2> {
 }
 
 /// Asserts that the outline is closed, convex and counter-clockwise, with its corners on the
-/// surface and the middles of its sides at most `gap` below it. Returns the greatest gap found.
+/// surface and seven points of each side at most `gap` inside it. Returns the greatest gap found.
 fn check_round<N: Real>(points: &[Point<N, 2>], solid: &Solid<2>, size: f64, gap: f64) -> f64 {
     let points = doubles(points);
     let noise = 8.0 * epsilon::<N>() * size;

@@ -1,4 +1,5 @@
-//! A slow and simple broad phase, and random sequences of calls that compare it with the library's.
+//! A slow and simple broad phase, and random sequences of calls that compare the library's broad
+//! phase with it.
 
 use std::collections::BTreeMap;
 
@@ -31,7 +32,8 @@ struct Object<N: Real, const D: usize> {
     waiting: Option<Aabb<N, D>>,
 }
 
-/// Compares all pairs at every update; a decision of the filter holds as long as the overlap lasts.
+/// A broad phase that tests every two objects at every update. A result of the filter holds as long
+/// as the loosened boxes overlap, or until the pair is filtered again.
 pub(crate) struct Model<N: Real, const D: usize> {
     margin: N,
     objects: BTreeMap<u32, Object<N, D>>,
@@ -39,7 +41,7 @@ pub(crate) struct Model<N: Real, const D: usize> {
     decided: BTreeMap<(u32, u32), bool>,
     again: Vec<u32>,
     is_all_again: bool,
-    /// Rule of the filter; it changes with recomputations.
+    /// Seed of the filter, [`allows`]; changes whenever all pairs are filtered again.
     rule: u32,
 }
 
@@ -148,7 +150,7 @@ struct Run<N: Space<D>, const D: usize> {
     plan: Plan,
     random: Random,
     model: Model<N, D>,
-    /// The broad phase under test; its data are serial numbers.
+    /// The broad phase under test; the data of an object are its serial number.
     tested: DBVTBroadPhase<N, Aabb<N, D>, u32>,
     /// Uids by serial number.
     uids: Vec<u32>,
@@ -159,8 +161,8 @@ fn uid(handle: ProxyHandle) -> u32 {
     u32::try_from(handle.uid()).expect("small")
 }
 
-/// Returns a coordinate on a grid of quarters; every third one is moved by 1/3, so that `f32` does
-/// not represent it exactly.
+/// Returns a coordinate on a grid of quarters. A third of them on average are moved by 1/3, so that
+/// `f32` does not represent them exactly.
 fn coordinate<N: Real>(random: &mut Random, size: u32) -> N {
     let quarters = N::lit(f64::from(random.below(size * 4)) / 4.0);
     if random.one_in(3) { quarters + N::lit(1.0 / 3.0) } else { quarters }
@@ -186,8 +188,9 @@ impl<N: Space<D>, const D: usize> Run<N, D> {
         }
     }
 
-    /// Returns a box: mostly about one cell large, some of extent zero, a few large, a few
-    /// unbounded, some beyond the range of `f32`.
+    /// Returns a random box. Most have extents of 0 to 1.75 cells; some are points, a few are as
+    /// large as the world, unbounded, or extend to the largest number of `N` (for `f64` beyond the
+    /// range of `f32`).
     fn random_box(&mut self) -> Aabb<N, D> {
         let random = &mut self.random;
         let kind = random.below(60);
@@ -241,7 +244,8 @@ impl<N: Space<D>, const D: usize> Run<N, D> {
         self.tested.deferred_set_bounding_volume(object.handle, aabb);
     }
 
-    /// Moves an object: a little, by jitter within the margin, or anywhere.
+    /// Moves a random object: anywhere, or by up to 1/4 or 3/4 of a cell along each axis. In one of
+    /// ten calls, a second box replaces the first before the update.
     fn move_one(&mut self) {
         let Some(uid) = self.any() else { return };
         let object = &self.model.objects[&uid];
@@ -328,7 +332,8 @@ impl<N: Space<D>, const D: usize> Run<N, D> {
         }
     }
 
-    /// Returns the uids of objects known to the last update whose exact box passes.
+    /// Returns the uids of the objects known to the last update for whose exact box `pass` returns
+    /// `true`.
     fn expected(&self, pass: impl Fn(&Aabb<N, D>) -> bool) -> Vec<u32> {
         let known = self.model.objects.iter().filter_map(|(uid, o)| Some((*uid, o.known?.0)));
         known.filter(|(_, exact)| pass(exact)).map(|(uid, _)| uid).collect()
@@ -365,7 +370,8 @@ impl<N: Space<D>, const D: usize> Run<N, D> {
         self.reached.query_misses += usize::from(hit.is_empty());
     }
 
-    /// The search visits hits in the order of entry; a returned limit cuts off the rest.
+    /// Asserts that the search visits hits in order of their times of entry, and that it visits no
+    /// hit beyond the limit that the visitor returns.
     fn compare_order(&self, ray: &Ray<N, D>, hit: &[u32]) {
         let time = |uid: &u32| {
             let exact = self.model.objects[uid].known.expect("known").0;

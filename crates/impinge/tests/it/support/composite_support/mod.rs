@@ -102,7 +102,7 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Pieces<N, D> {
     }
 }
 
-/// A search that always proposes every part; the results must be the same.
+/// A search that always proposes every part. Queries must have the same results as with a tree.
 #[derive(Debug)]
 pub struct Everything(pub u32);
 

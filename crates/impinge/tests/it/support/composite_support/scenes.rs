@@ -8,14 +8,15 @@ use super::{Piece, Pieces, Slow};
 use crate::support::query_support::random::Random;
 use crate::support::query_support::samples::Sample;
 
-/// The kinds of solids and the rotations that differ by dimension.
+/// The kinds of solids of a dimension, and the functions that make random solids and rotations.
 pub struct Maker<N: Real, R, const D: usize> {
     pub kinds: &'static [ShapeKind],
     pub sample: Sample<N, D>,
     pub turn: fn(&mut Random) -> R,
 }
 
-/// The parts, and their poses as isometries.
+/// A composite of random parts, with a tree (`fast`) and with a search that proposes all parts
+/// (`slow`), and the poses of the parts as isometries.
 pub struct Scene<N: Real, R, const D: usize> {
     pub places: Vec<Isometry<N, R, D>>,
     pub fast: Pieces<N, D>,
@@ -41,8 +42,9 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Maker<N, R,
         ShapeHandle::from_arc((self.sample)(kinds[at], random, scale).into())
     }
 
-    /// Returns `count` parts of size `scale`, within a distance of five times `scale`. A third are
-    /// triangles and a third segments, both in the frame of the composite.
+    /// Returns `count` parts of size `scale`, whose centres are at most five times `scale` from the
+    /// origin. On average a third are triangles and a third segments, both in the frame of the
+    /// composite.
     pub fn scene(&self, random: &mut Random, count: usize, scale: N) -> Scene<N, R, D> {
         let mut parts = Vec::new();
         for _ in 0..count {

@@ -61,7 +61,7 @@ fn time<N: Real, const D: usize>(
     (enter <= leave).then_some(enter)
 }
 
-/// Returns the parts that a search found, sorted by index; each may occur once only.
+/// Returns the parts that a search found, sorted by index. Asserts that each occurs only once.
 fn sorted<T>(mut found: Vec<(u32, T)>) -> Vec<(u32, T)> {
     found.sort_by_key(|(part, _)| *part);
     for two in found.windows(2) {
@@ -228,8 +228,9 @@ fn check_bounds(found: &[(u32, f64)], all: &[(u32, f64)], limit: f64, epsilon: f
     }
 }
 
-/// Searches with points of the parts, in the frame of the whole: a search must find them whatever
-/// its boxes are. Returns the number of hits.
+/// Asserts that searches with random boxes find each part of which a listed point is in the box,
+/// near the box or on its path. The points are in the frame of the composite. Returns the number of
+/// points found in boxes.
 pub fn check_points<N: Real, const D: usize>(
     search: &dyn PartSearch<N, D>,
     points: &[(u32, Point<N, D>)],

@@ -270,7 +270,8 @@ impl Hasher for Digest {
     }
 }
 
-/// Asserts that manifolds read in pieces equal those read at once, in order.
+/// Asserts that the views read in pieces have the pairs, the numbers of contacts and the deepest
+/// contacts of the views read at once, in the same order.
 fn assert_pieces_agree<N: Space<D>, const D: usize, T: Sync>(world: &CollisionWorld<N, D, T>) {
     for most in [0, 1, 3, 50, usize::MAX] {
         let pieces = world.contact_view_pieces(most);

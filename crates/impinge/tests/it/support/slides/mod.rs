@@ -46,8 +46,8 @@ pub enum Pattern {
 pub const PATTERNS: [Pattern; 5] =
     [Pattern::Slash, Pattern::Backslash, Pattern::Zigzag, Pattern::Random, Pattern::Soup];
 
-/// Returns a floor of `2 n²` triangles: `n` cells of size `cell` in each direction around `center`.
-/// `height` returns the y coordinate of each vertex.
+/// Returns a floor of `2 n²` triangles: a square of `n` × `n` cells of size `cell`, centred at
+/// `center`. `height` returns the y coordinate of each vertex.
 pub fn grid<N: Real + Space<3>>(
     n: u32,
     cell: f64,

@@ -23,7 +23,7 @@ impl Rng {
         Self::scaled(seed, 1.0)
     }
 
-    /// Returns a generator whose lengths are the lengths of `new` times a power of two.
+    /// Returns a generator whose lengths are the lengths of `new` times `scale`, a power of two.
     pub(crate) fn scaled(seed: u64, scale: f64) -> Self {
         Self { state: seed, scale }
     }

@@ -60,7 +60,7 @@ pub(crate) fn near<N: Real>(margin: f64) -> GeometricQueryType<N> {
     GeometricQueryType::Proximity(N::lit(margin))
 }
 
-/// Adds an object that interacts with everything.
+/// Adds an object at `x` on the first axis, which may interact with every object.
 pub(crate) fn add<N: Stage<D>, const D: usize>(
     world: &mut CollisionWorld<N, D, ()>,
     x: f64,

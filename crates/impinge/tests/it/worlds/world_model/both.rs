@@ -96,7 +96,7 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         }
     }
 
-    /// Performs a random operation on both.
+    /// Performs a random operation on the world and its twin.
     pub(crate) fn operate(&mut self) {
         match self.random.below(124) {
             0..10 => self.add(),
@@ -292,7 +292,7 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         self.tally.near += self.world.contact_pairs().count();
     }
 
-    /// Describes the pairs on which the two differ.
+    /// Describes the pairs on which the world and its twin differ.
     fn describe(&self) -> String {
         let mut text = String::new();
         let (world, naive) =
@@ -344,7 +344,7 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         assert!(disjoint, "each proximity has ended");
     }
 
-    /// Compares queries of both, at any moment.
+    /// Compares queries of the world and its twin, also between changes and the next update.
     fn ask(&mut self) {
         let (groups, naive_groups) = draw::groups(&mut self.random);
         let (a, b) = (draw::point::<D>(&mut self.random), draw::point::<D>(&mut self.random));

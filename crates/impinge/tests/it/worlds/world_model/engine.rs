@@ -12,7 +12,7 @@ use super::twins;
 const LENT: &str = "lent";
 
 impl<N: Grid<D>, const D: usize> Both<N, D> {
-    /// Performs a random operation of this kind on both.
+    /// Performs a random operation for authors of engines on the world and its twin.
     pub(super) fn operate_as_engine(&mut self) {
         match self.random.below(20) {
             0..3 => self.change_fixed(),
@@ -93,7 +93,7 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         }
     }
 
-    /// Computes a pair of the world between updates, or a pair that may not exist.
+    /// Computes a pair of the world between updates, mostly a pair that exists.
     fn update_pair(&mut self) {
         let Some((one, _)) = self.someone() else { return };
         let partners: Vec<_> = self.world.pairs_with(one).map(CollisionObject::handle).collect();

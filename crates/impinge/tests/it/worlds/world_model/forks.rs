@@ -1,5 +1,5 @@
-//! Random operations with marks, rewinds, forks and copies: the world must end up as a new one on
-//! which the same operations are performed from the start.
+//! Random operations with marks, rewinds, forks and copies: the world must end up like a new world
+//! on which the same operations are performed from the start.
 
 use std::collections::VecDeque;
 use std::hash::{Hash, Hasher};
@@ -42,7 +42,7 @@ pub(super) fn position<N: Grid<D>, const D: usize>(random: &mut Random) -> N::Is
     N::posed(at, random).0
 }
 
-/// Returns a convex shape, or a compound of some.
+/// Returns a convex shape, or a compound of one or two convex shapes.
 fn shape<N: Grid<D>, const D: usize>(random: &mut Random) -> ShapeHandle<N, D> {
     if random.chance(0.8) {
         return draw::shape::<N, D>(random).0;

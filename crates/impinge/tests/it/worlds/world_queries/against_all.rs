@@ -38,7 +38,7 @@ struct Scene<N: Space<D>, const D: usize> {
 
 type Counts<N, const D: usize> = dyn Fn(&Object<N, D>) -> bool;
 
-/// Returns a filter for the world, and the equivalent condition for the test.
+/// A filter for the world, and the equivalent condition for the test.
 struct Choice<'a, N: Space<D>, const D: usize> {
     filter: Filter<'a, N, D>,
     counts: Box<Counts<N, D>>,

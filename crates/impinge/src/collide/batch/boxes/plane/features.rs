@@ -35,7 +35,7 @@ const fn parts(axis: usize, is_positive: bool) -> PartFeatures {
     [side(axis, is_positive), vertex(axis, is_positive, false), vertex(axis, is_positive, true)]
 }
 
-/// Returns the index in `parts` of the feature `id`; `None` if it belongs to another side.
+/// Returns the index in `parts` of the feature `id`; `None` if the feature belongs to another side.
 #[inline(always)]
 fn part(parts: &PartFeatures, id: FeatureId) -> Option<usize> {
     let end = usize::from(id == parts[1]) + 2 * usize::from(id == parts[2]);
@@ -61,8 +61,8 @@ const SIDES_AT: u32 = 7;
 const MARK: u32 = 1 << 31;
 
 impl SideFeatures {
-    /// Returns 0 for a slot between the ends of the other side, 1 at its first end, 2 at its
-    /// second.
+    /// Returns where the candidate in `slot` lies on the other side: 0 between its ends, 1 at its
+    /// first end, 2 at its second end.
     #[inline(always)]
     const fn at_end(self, slot: usize) -> u8 {
         self.at_ends >> (2 * slot) & 3

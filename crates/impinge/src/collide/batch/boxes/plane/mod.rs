@@ -1,4 +1,6 @@
-//! Boxes in 2D: separating axis test and overlap of both sides, for several pairs at a time.
+//! Boxes in 2D: the separating axis test and the overlap of two facing sides, one of each box, for
+//! several pairs at a time. The lower side is the side of the separating axis, and the upper side
+//! is a side of the other box ([`sides`]).
 //!
 //! ```text
 //!    upper   0 *---.___            slot 0, 1   ends of the upper side
@@ -10,8 +12,9 @@
 //!   Bits of the byte `sides` of a pair, of which `features` encodes bits 0 to 5 in a code:
 //!     0  lower side is perpendicular to y        4  lower side belongs to the second box
 //!     1  lower side is at the positive end       5  ends of the upper side are swapped
-//!     2  upper side is perpendicular to its y    6  pair is beyond the prediction
+//!     2  upper side is perpendicular to y        6  pair is beyond the prediction
 //!     3  upper side is at the positive end       7  slots are filled
+//!   In bits 0 to 3, y and the positive end belong to the frame of the side's own box.
 //! ```
 
 mod axis;
@@ -45,14 +48,14 @@ pub(in super::super) struct LaneSides<N: Real, const L: usize> {
     size: [N; L],
     /// Unit normal from the first box to the second, in the frame of the first.
     normal: [[N; L]; 2],
-    /// Flags of the pairs, in the order of the figure: before `turn` one mask over the lanes for
-    /// each flag, after it one byte for each pair.
+    /// Flags of the pairs, in the order of the figure: before [`Self::turn`] one mask over the
+    /// lanes for each flag, then one byte for each pair.
     sides: [u8; 8],
-    /// Two masks for each slot: lanes where it is at the first and at the second end of the other
-    /// side. After `turn`, one byte for each pair.
+    /// Two masks for each slot: the lanes where its candidate is at the first end of the other
+    /// side, and those where it is at the second. After [`Self::turn`], one byte for each pair.
     at_ends: [u8; 2 * SLOTS],
-    /// One byte for each pair after `turn`: in the low half the filled slots, in the high half the
-    /// slots whose height is the gap, up to rounding.
+    /// After [`Self::turn`], one byte for each pair: in the low half the filled slots, in the high
+    /// half the slots whose height is the gap, up to rounding.
     filled: [u8; 8],
 }
 
@@ -113,8 +116,8 @@ impl<N: Real> Batch<N, 2> for Boxes2 {
 }
 
 impl<N: Real, const L: usize> LaneSides<N, L> {
-    /// Runs the kernel: axis, sides, slots. Returns after the axis if no lane of the batch is a
-    /// candidate.
+    /// Runs the kernel: axis, sides, slots. Returns after the axis test if no lane has a supported
+    /// pair within the prediction.
     #[inline(always)]
     fn find<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, inputs: &Inputs<N, 2, L>) {
         let (boxes, prediction) = (inputs.boxes::<S, V>(simd), inputs.prediction::<S, V>(simd));
@@ -167,7 +170,7 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
         (self.sides, self.at_ends) = (per_pair(self.sides), per_pair(self.at_ends));
     }
 
-    /// Replaces the manifold of the pair in `lane`; returns `false` if it has to fall back.
+    /// Replaces the manifold of the pair in `lane`; returns `false` if the pair has to fall back.
     #[inline(always)]
     fn write_manifold(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 2>) -> bool {
         let features = SideFeatures { sides: self.sides[lane], at_ends: self.at_ends[lane] };

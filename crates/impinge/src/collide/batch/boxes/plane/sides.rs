@@ -1,9 +1,10 @@
 //! The reference side and the incident side of `L` pairs, and the ends of their overlap.
 //!
-//! The lower side is the side of the separating axis, an interval along an axis of its own box. The
-//! upper side is the side of the other box most aligned with it; it may be tilted. The contact
-//! points are the ends of their overlap interval. If the upper side is tilted too far, only its
-//! lower end is used: the corner that faces the other box.
+//! The lower side (the reference side) is perpendicular to the separating axis; it is an interval
+//! along an axis of its own box. The upper side (the incident side) is the side of the other box
+//! most aligned with the lower side; it may be tilted. The contact points are the ends of their
+//! overlap interval. If the tilt exceeds atan(1/2) ≈ 26.6° ("tilted too far"), only the lower end
+//! of the upper side is used: the corner that faces the other box.
 //!
 //! ```text
 //!      height |    *-- ends[1]               coordinate: along the lower side, zero in its middle;
@@ -26,7 +27,7 @@ use crate::shape::FACING_SINE_SQUARED;
 pub(super) struct BoxSides<V, M> {
     /// Lanes where the lower side is perpendicular to the y axis of its box.
     pub(super) is_y: M,
-    /// Lanes where the lower side is at the positive end of that axis.
+    /// Lanes where the lower side is at the positive end of the axis that it is perpendicular to.
     pub(super) is_upward: M,
     /// Coordinate of the lower side along the axis perpendicular to it.
     level: V,
@@ -34,14 +35,14 @@ pub(super) struct BoxSides<V, M> {
     half: V,
     /// Lanes where the upper side is perpendicular to the y axis of its own box.
     pub(super) is_own_y: M,
-    /// Lanes where the upper side is at the positive end of that axis.
+    /// Lanes where the upper side is at the positive end of the axis that it is perpendicular to.
     pub(super) is_positive: M,
     /// Lanes where the end of the upper side with the smaller `coordinate` is at the positive end,
     /// in the frame of the upper box.
     pub(super) is_reversed: M,
     /// Ends of the upper side, in the order of their coordinates along the lower side.
     ends: [End<V>; 2],
-    /// Length of the upper side projected onto the lower one.
+    /// Length of the upper side, projected onto the lower side.
     length: V,
     /// Lanes where the upper side is tilted too far, so that only its lower end is used.
     is_corner: M,
@@ -124,8 +125,9 @@ impl<V, M> BoxSides<V, M> {
         }
     }
 
-    /// Fills the slots with the ends of the overlap interval. Returns two masks for each slot:
-    /// lanes where it is at the first end of the other side, and at the second.
+    /// Fills the slots with the ends of the overlap interval. Returns two masks for each slot: the
+    /// lanes where its candidate is at the first end of the other side, and those where it is at
+    /// the second.
     #[inline(always)]
     pub(super) fn share<S: Simd, N: Real, const L: usize>(
         &self,
@@ -159,9 +161,9 @@ impl<V, M> BoxSides<V, M> {
         at_ends
     }
 
-    /// Returns the point on the first box, in the frame of the first, for a `coordinate` along the
-    /// lower side and a `height` above it. If the lower side is the second box's (`is_second`), the
-    /// point lies on the upper side, at `height`; it is transformed with the rounding of
+    /// Returns the point on the first box, in that box's frame, for a `coordinate` along the lower
+    /// side and a `height` above it. If the lower side belongs to the second box (`is_second`), the
+    /// point lies on the upper side, at `height`, and is transformed with the rounding of
     /// `Pose::point`.
     #[inline(always)]
     pub(super) fn point1<S: Simd, N: Real>(
@@ -237,7 +239,7 @@ impl<V, M> BoxSides<V, M> {
     }
 }
 
-/// The upper side: the side of the other box that is most aligned with the lower one.
+/// The upper side: the side of the other box that is most aligned with the lower side.
 struct Upper<V, M> {
     /// Fields as in [`BoxSides`]; `is_aligned` is the negation of `is_corner`.
     is_own_y: M,
@@ -249,9 +251,9 @@ struct Upper<V, M> {
 }
 
 impl<V, M> Upper<V, M> {
-    /// Finds the incident side of the other box, above the reference side. `level` is the
-    /// coordinate of the reference side along the axis perpendicular to it; `is_upward` are the
-    /// lanes where the side is at the positive end of that axis.
+    /// Finds the upper side. `level` is the coordinate of the lower side along the axis
+    /// perpendicular to it; `is_upward` are the lanes where the lower side is at the positive end
+    /// of that axis.
     #[inline(always)]
     fn facing<S: Simd, N: Real>(
         simd: S,
@@ -301,7 +303,8 @@ impl<V, M> Upper<V, M> {
         );
         let is_reversed = far.coordinate.simd_lt(near.coordinate);
         let ends = [in_order(is_reversed, far, near), in_order(is_reversed, near, far)];
-        // The sine's sign selects the lower end in box order; swapped ends invert the selection.
+        // The sign of `sine` gives the lower end in the order of the box; where the ends are
+        // swapped, it gives the other end.
         let is_second_lower = is_reversed ^ !sine.simd_lt(zero);
         Self { is_own_y, is_positive, is_reversed, ends, is_second_lower, is_aligned }
     }

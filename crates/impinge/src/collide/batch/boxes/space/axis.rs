@@ -24,8 +24,8 @@ pub(super) struct BestAxis<V, M> {
     pub(super) is_finite: M,
 }
 
-/// Selects in each lane the vector `three[k]` for which `is[k]` is set; the last if neither of the
-/// first two is.
+/// Selects in each lane the vector `three[k]` for which `is[k]` is set; the last if neither `is[0]`
+/// nor `is[1]` is.
 #[inline(always)]
 pub(super) fn of_three<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], three: [&[V; 3]; 3]) -> [V; 3] {
     filled(
@@ -77,7 +77,8 @@ impl<V> Boxes<V, 3> {
         let rounding_error = self.rounding_error(simd);
         let (edges, bound) =
             self.best_edges(simd, &abs_rotation, (gap + rounding_error).larger(gap));
-        // Both indices in `edges` are -1 if no pair of edges exceeds the gap of the faces.
+        // Both indices in `edges` are -1 if no pair of edges has a larger gap than the faces, up to
+        // rounding.
         let is_edges = V::all(simd, N::ZERO).simd_le(edges[0]);
         let is_second = is_second & !is_edges;
         let ends = [is_edges.select(edges[0], face), is_edges.select(edges[1], face)];
@@ -156,9 +157,9 @@ impl<V> Boxes<V, 3> {
         (best, bound)
     }
 
-    /// Returns the unit vector of a face or a pair of edges, pointing from the first box to the
-    /// second, in the frame of the first. `ends` are the indices of the axes of both edges, or the
-    /// index of the face's axis twice.
+    /// Returns the unit vector perpendicular to a face or to a pair of edges, pointing from the
+    /// first box to the second, in the frame of the first. `ends` are the indices of the axes of
+    /// both edges, or the index of the face's axis twice.
     #[inline(always)]
     fn direction<S: Simd, N: Real>(
         &self,

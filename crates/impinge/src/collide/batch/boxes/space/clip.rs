@@ -1,4 +1,5 @@
-//! Corners of the overlap area of two faces, for `L` pairs, each in its own slot.
+//! Corners of the overlap area of the rectangle and the parallelogram of [`faces`](super::faces),
+//! for `L` pairs, each in its own slot.
 //!
 //! ```text
 //!   slot  0..4    corner of the parallelogram         signs of slot, by both axes of its own face:
@@ -23,8 +24,8 @@ use crate::math::lanes::bits;
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
-/// The first 8 slots are corners; their features depend on the part of the other face below or
-/// above them.
+/// Number of slots for corners of the two faces; they come first. The features of such a candidate
+/// depend on the part of the other face below or above the corner.
 pub(super) const CORNERS: usize = 8;
 
 /// Signs of the two coordinates of a corner on its own face, in the order of the slots.
@@ -34,9 +35,11 @@ pub(super) const SIGNS: [[bool; 2]; 4] =
 /// Positions of the 8 corners relative to the other face, as masks over the lanes, indexed by axis
 /// of the other face.
 pub(super) struct Corners {
-    /// Lanes where the corner is at an end of the other face along that axis, up to the tolerance.
+    /// Lanes where the corner is at an end of the other face along that axis, within the tolerance,
+    /// or beyond the end.
     pub(super) at_end: [[u8; CORNERS]; 2],
-    /// Lanes where the corner is on the positive side of that axis.
+    /// Lanes where the coordinate of the corner along that axis, measured from the centre of the
+    /// other face, is positive.
     pub(super) beyond: [[u8; CORNERS]; 2],
 }
 
@@ -54,10 +57,11 @@ struct CornerPosition<V, M> {
     height: V,
     /// Lanes where the corner is inside the other face, or outside by at most twice the tolerance.
     is_inside: M,
-    /// For each axis of the other face: lanes where the corner is at one of its ends, up to the
-    /// tolerance.
+    /// For each axis of the other face: lanes where the corner is at one of its ends, within the
+    /// tolerance, or beyond it.
     at_end: [M; 2],
-    /// For each axis of the other face: lanes where the corner is on the positive side.
+    /// For each axis of the other face: lanes where the coordinate of the corner along it, measured
+    /// from the centre of that face, is positive.
     beyond: [M; 2],
 }
 
@@ -66,8 +70,8 @@ fn signed<S: Simd, V: Wide<S>>(value: V, is_positive: bool) -> V {
     if is_positive { value } else { -value }
 }
 
-/// Returns the signs of one end of the parallelogram's side at the end `sign` of `arm`. `upper` is
-/// the sign of this end along the other arm.
+/// Returns the signs, along both arms, of an end of one side of the parallelogram. The side is at
+/// the end `sign` of the arm `arm`; its end is at the end `upper` of the other arm.
 const fn ends(arm: usize, sign: bool, upper: bool) -> [bool; 2] {
     if arm == 0 { [sign, upper] } else { [upper, sign] }
 }
@@ -82,7 +86,8 @@ pub(super) struct Clip<'a, S, N: Real, V, M, const L: usize> {
     admission: Admission<V>,
     slots: &'a mut Slots<N, 3, SLOTS, L>,
     corners: &'a mut Corners,
-    /// Set if one of the faces is tilted too far in some lane.
+    /// Set if one of the faces is tilted too far in some lane, so that parts of faces have to be
+    /// excluded.
     is_partial: bool,
 }
 
@@ -129,7 +134,8 @@ where
         self.admission
     }
 
-    /// Returns coordinates `u`, `v` and height of the corner of the parallelogram with these signs.
+    /// Returns the coordinates `u`, `v` and the height of the parallelogram's corner with the signs
+    /// `signs` along both arms.
     #[inline(always)]
     fn arm_end(&self, signs: [bool; 2]) -> ([V; 2], V) {
         let (center, arms, climbs) = (&self.faces.center, &self.faces.arms, &self.faces.climbs);
@@ -175,9 +181,9 @@ where
         position
     }
 
-    /// Compares a point with the other face. `inside` are its signed distances to the nearest sides
-    /// along both axes, positive inside. Only the signs of `coordinates`, along these axes, are
-    /// used.
+    /// Compares a corner of one face with the other face. `inside` are its signed distances to the
+    /// nearest sides of that face along both axes, positive inside. Only the signs of
+    /// `coordinates`, along these axes, are used.
     #[inline(always)]
     fn compare(
         &self,
@@ -285,7 +291,7 @@ fn drop_coincident<S: Simd, V, M: SimdMask<S>>(
     }
 }
 
-/// Returns the lanes where the corner has these signs of the coordinates on the other face.
+/// Returns the lanes where the coordinates of the corner on the other face have the signs `signs`.
 #[inline(always)]
 fn is_at<S: Simd, V, M: SimdMask<S>>(position: &CornerPosition<V, M>, signs: [bool; 2]) -> M {
     let [x, y] = position.beyond;

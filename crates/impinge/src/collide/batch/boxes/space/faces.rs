@@ -15,7 +15,8 @@
 //! cyclic order ("in turn"), along the sides. `across` are half the lengths of these sides.
 //! `height` is the height of `c` above the rectangle, along the normal; `climbs` is the height of
 //! each arm's end above `c`, and `widths` are the distances of `c` from the sides at the ends of
-//! the arms.
+//! the arms. A face is "tilted too far" if the angle between its normal and the separating axis
+//! exceeds atan(1/2) ≈ 26.6° ([`SupportingParts::is_all`]).
 
 use super::super::{Boxes, other, tolerance};
 use super::axis::{BestAxis, of_three, which};
@@ -43,9 +44,11 @@ pub(super) struct FacesInLanes<V, M> {
     pub(super) across: [V; 2],
     /// Components of the normal along `u` and `v`: its tilt.
     tilt: [V; 2],
-    /// For each axis of the parallelogram's box, the lanes where it is perpendicular to the face.
+    /// For each axis of the parallelogram's box, the lanes where it is perpendicular to the
+    /// parallelogram's face.
     pub(super) is_m: [M; 3],
-    /// Lanes where the parallelogram's face is at the positive end of that axis.
+    /// Lanes where the parallelogram's face is at the positive end of the axis that it is
+    /// perpendicular to.
     pub(super) is_positive: M,
     /// Components, along the sides of the parallelogram's face, of the unit normal from its box
     /// towards the rectangle.
@@ -146,8 +149,8 @@ fn below<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
 }
 
 /// For lanes whose separating axis is perpendicular to two edges, returns the normal away from the
-/// box whose face becomes the rectangle. The mask has all lanes where the rectangle belongs to the
-/// second box, also for other separating axes.
+/// box whose face becomes the rectangle, in the frame of that box. The mask has all lanes where the
+/// rectangle belongs to the second box, also for other separating axes.
 #[inline(always)]
 fn between_edges<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     simd: S,
@@ -174,7 +177,7 @@ fn is_supporting<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask
     SupportingParts::is_all(simd, [u, v])
 }
 
-/// Returns, in each lane, the selected one of three axes times `length`.
+/// Returns, in each lane, the axis selected by `is`, times `length`.
 #[inline(always)]
 fn arm<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], axes: [&[V; 3]; 3], length: V) -> [V; 3] {
     let [x, y, z] = of_three(is, axes);
@@ -269,10 +272,10 @@ impl<V, M> FacesInLanes<V, M> {
         [below, SupportingParts::of(simd, self.is_m[1], self.tilt_above)]
     }
 
-    /// Returns the point on the first box, in the frame of the first, from the coordinates `u`, `v`
-    /// and the height. If the rectangle is the second box's, the point lies at `height` above it,
-    /// along the normal; it is transformed with the rounding of `Pose::point`. Such a rectangle may
-    /// be tilted against the normal only if `is_partial`.
+    /// Returns the point on the first box, in that box's frame, from the coordinates `u`, `v` and
+    /// the height. If the rectangle belongs to the second box, the point lies at `height` above it,
+    /// along the normal, and is transformed with the rounding of `Pose::point`. Such a rectangle
+    /// may be tilted against the normal only if `is_partial`.
     #[inline(always)]
     pub(super) fn point1<S: Simd, N: Real>(
         &self,

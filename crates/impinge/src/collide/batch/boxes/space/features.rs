@@ -77,8 +77,8 @@ const fn index_of(id: FeatureId) -> usize {
     if number < NUMBERS { NUMBERS * kind + number } else { usize::MAX }
 }
 
-/// Returns a vertex. Each pair holds an axis and whether the vertex has a positive coordinate
-/// there.
+/// Returns a vertex. Each pair holds an axis and whether the vertex has a positive coordinate on
+/// that axis.
 const fn vertex([a, b, c]: [(usize, bool); 3]) -> FeatureId {
     FeatureId::Vertex((a.1 as u32) << a.0 | (b.1 as u32) << b.0 | (c.1 as u32) << c.0)
 }
@@ -214,13 +214,13 @@ const MARK: u32 = 1 << 31;
 const PAIR_BITS: u32 = 127;
 
 impl BoxPairFeatures {
-    /// Computes the features for two faces. `bits` encodes the faces `sides` in one byte; `parts`
-    /// is the result of [`parts_at`].
+    /// Computes the features for the two faces `sides`. `bits` is the byte that `sides` was decoded
+    /// from; `parts` is the result of [`parts_at`].
     #[inline(always)]
     pub(super) fn new(sides: &FaceSides, bits: u8, parts: u64) -> Self {
         let mut pairs = OWN_PAIRS;
-        // For each corner a byte: the contribution of its own face, to which that of the other face
-        // is added.
+        // A byte for each corner: the contribution of the corner's own face. The contribution of
+        // the other face is added.
         let own = u64::from_le_bytes([
             pairs[0], pairs[1], pairs[2], pairs[3], pairs[4], pairs[5], pairs[6], pairs[7],
         ]);
@@ -239,7 +239,8 @@ impl BoxPairFeatures {
 }
 
 impl BoxPairFeatures {
-    /// Returns the pair of parts that own two features; `None` if one belongs to another face.
+    /// Returns the pair of parts that own two features; `None` if one of the features belongs to
+    /// another face.
     #[inline(always)]
     fn pair(&self, [first, second]: [FeatureId; 2]) -> Option<usize> {
         let (below, above) = if self.is_second { (second, first) } else { (first, second) };

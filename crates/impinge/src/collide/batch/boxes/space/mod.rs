@@ -1,4 +1,5 @@
-//! Boxes in 3D: the separating axis test, and the corners of the common area of both faces.
+//! Boxes in 3D: the separating axis test, and the corners of the overlap area of two facing faces,
+//! one of each box. [`faces`] defines the rectangle and the parallelogram.
 //!
 //! ```text
 //!   find:            axis -> faces -> clip (24 slots) -> admit    a mask per slot or flag
@@ -51,7 +52,7 @@ pub(in super::super) struct LaneFaces<N: Real, const L: usize> {
     sides: [u8; 8],
     /// Bits of the lanes beyond the prediction, which have no points.
     is_apart: u8,
-    /// Bits of the lanes with filled slots. Lanes in neither mask fall back.
+    /// Bits of the lanes with filled slots. Lanes in neither `is_apart` nor `is_built` fall back.
     is_built: u8,
     columns: Columns,
 }
@@ -115,7 +116,8 @@ impl<N: Real> Batch<N, 3> for Boxes3 {
 }
 
 impl<N: Real, const L: usize> LaneFaces<N, L> {
-    /// Runs the kernel: axis, faces, slots. Returns after the axis if no lane is a candidate.
+    /// Runs the kernel: axis, faces, slots. Returns after the axis test if no lane has a supported
+    /// pair within the prediction.
     #[inline(always)]
     fn find<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, inputs: &Inputs<N, 3, L>) {
         let (boxes, prediction) = (inputs.boxes::<S, V>(simd), inputs.prediction::<S, V>(simd));
@@ -160,7 +162,7 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
         self.columns = Columns::of(self);
     }
 
-    /// Replaces the manifold of the pair in `lane`; returns `false` if it has to fall back.
+    /// Replaces the manifold of the pair in `lane`; returns `false` if the pair has to fall back.
     #[inline(always)]
     fn write_manifold(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 3>) -> bool {
         if self.is_apart >> lane & 1 == 1 {

@@ -1,5 +1,5 @@
-//! Supporting feature on the most aligned face of a box, for `L` pairs, by the rule of
-//! `SupportMap::core_feature`: the face, its nearest side, or its nearest corner.
+//! Supporting feature on the face of a box most aligned with the normal, for `L` pairs, by the rule
+//! of `SupportMap::core_feature`: the face itself, its nearest side, or its nearest corner.
 //!
 //! ```text
 //!    is_free     [1, 1]  the whole face     [1, 0] or [0, 1]  one side     [0, 0]  one corner
@@ -24,7 +24,8 @@ pub(super) struct SupportingParts<M> {
 impl<M> SupportingParts<M> {
     /// Computes the part from the components `tilt` of a unit vector along the two axes of the
     /// face. `is_middle` are the lanes where the face is perpendicular to the second axis of the
-    /// box, where a tie frees the second axis of the face.
+    /// box; if both tilts are equal there, the second axis of the face counts as the less tilted
+    /// one, else the first.
     #[inline(always)]
     pub(super) fn of<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>>(
         simd: S,
@@ -50,8 +51,8 @@ impl<M> SupportingParts<M> {
         }
     }
 
-    /// Returns the lanes where a face is not tilted too far; `[u, v]` are the components of the
-    /// unit normal along the face.
+    /// Returns the lanes where a face is tilted by at most atan(1/2) ≈ 26.6°, so that the whole
+    /// face is the feature. `[u, v]` are the components of the unit normal along the face.
     #[inline(always)]
     pub(super) fn is_all<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>>(
         simd: S,
@@ -60,7 +61,7 @@ impl<M> SupportingParts<M> {
         (u * u + v * v).simd_le(lit::<S, N, V>(simd, FACING_SINE_SQUARED))
     }
 
-    /// Returns the lanes where the whole face is the feature.
+    /// Returns the lanes where the part is the whole face.
     #[inline(always)]
     pub(super) fn is_whole<S: Simd>(&self) -> M
     where
@@ -101,8 +102,8 @@ impl<M> SupportingParts<M> {
             & (self.is_free[1] | (at_end[1] & !y & self.is_free[0]))
     }
 
-    /// For lanes where the part does not extend along `axis`, returns those where it is at the
-    /// given end.
+    /// For lanes where the part does not extend along `axis`, returns the lanes where it is at the
+    /// positive or negative end of `axis`.
     #[inline(always)]
     fn is_at<S: Simd>(&self, axis: usize, is_positive: bool) -> M
     where
