@@ -62,6 +62,8 @@ pub(crate) fn face_contacts<N: Real>(
         });
     found.clip();
     found.drop_missing();
+    // The generic path, which computes the contacts instead, does not look for backs.
+    arena.are_fronts &= is_served;
     is_served
 }
 

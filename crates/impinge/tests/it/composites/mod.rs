@@ -16,6 +16,7 @@ mod height_field_seams;
 mod height_fields;
 mod internal_edges;
 mod internal_edges_of_lines;
+mod large_hulls;
 mod meshes;
 mod solid_meshes;
 mod thin_triangles;

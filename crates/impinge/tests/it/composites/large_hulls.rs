@@ -1,0 +1,86 @@
+//! Tests that the contacts of a hull with a surface do not depend on features that are far from it.
+//!
+//! A prism and a prism with a dome of many vertices on its far end touch a surface with equal faces.
+//! The first is computed in lanes; the second has too many features for them.
+
+use impinge::dim3::math::{Isometry, Point, Vector};
+use impinge::dim3::query::{ContactManifold, ContactPrediction, contact_manifolds};
+use impinge::dim3::shape::{ConvexHull, TriMesh};
+
+use crate::support::samples::samples;
+use crate::support::slides::Random;
+
+/// Returns a prism with eight sides of half width 1 between the heights -1 and 1. With `is_domed`
+/// its upper end is a dome of 300 vertices.
+fn prism(is_domed: bool) -> ConvexHull<f64> {
+    let ring = |count: u32, radius: f64, height: f64| {
+        (0..count).map(move |k| {
+            let angle = f64::from(k) * std::f64::consts::TAU / f64::from(count);
+            Point::new(radius * angle.cos(), height, radius * angle.sin())
+        })
+    };
+    let mut points: Vec<_> = ring(8, 1.0, -1.0).chain(ring(8, 1.0, 1.0)).collect();
+    if is_domed {
+        for level in 1..=12_u32 {
+            let angle = f64::from(level) * 0.12;
+            points.extend(ring(25, 0.9 * angle.cos(), 1.0 + 0.5 * angle.sin()));
+        }
+    }
+    ConvexHull::from_points(&points)
+}
+
+/// Returns a two-sided surface of terraces: flat steps, walls between them, and some slopes.
+fn terraces(random: &mut Random) -> TriMesh<f64> {
+    let (columns, rows) = (14_u32, 8_u32);
+    let mut vertices = Vec::new();
+    let mut x = -3.5;
+    for column in 0..columns {
+        // A wall where the next column is at the same place.
+        x += if column % 2 == 0 { 0.5 } else { 0.02 };
+        for row in 0..rows {
+            let height = 0.2 * f64::from(column / 2 % 2) + 0.02 * random.unit();
+            vertices.push(Point::new(x, height - 0.3, f64::from(row) * 0.6 - 2.1));
+        }
+    }
+    let cell = |c: u32, r: u32| {
+        let [a, b] = [c * rows + r, (c + 1) * rows + r];
+        [[a, a + 1, b + 1], [a, b + 1, b]]
+    };
+    let cells = (0..columns - 1).flat_map(|c| (0..rows - 1).flat_map(move |r| cell(c, r)));
+    TriMesh::new(vertices, cells.collect())
+}
+
+/// Returns the normal, depth and number of points of each manifold, in order.
+fn summary(manifolds: &[ContactManifold<f64>]) -> Vec<(Vector<f64>, f64, usize)> {
+    let of = |manifold: &ContactManifold<f64>| {
+        let deepest = manifold.deepest_contact().expect("not empty").contact;
+        (deepest.normal.into_inner(), deepest.depth, manifold.len())
+    };
+    manifolds.iter().map(of).collect()
+}
+
+#[test]
+fn contacts_depend_on_near_features_only() {
+    let (small, large) = (prism(false), prism(true));
+    let (mut random, mut several) = (Random::new(7), 0);
+    let (here, near) = (Isometry::identity(), ContactPrediction::new(0.01, 0.0, 0.0));
+    for case in 0..samples(300) {
+        let surface = terraces(&mut random);
+        let position = Vector::new(random.unit() * 2.0, 0.72 + 0.2 * random.unit(), random.unit());
+        // Upright, rotated about the vertical, or a little tilted.
+        let tilt = if case % 3 == 0 { 0.0 } else { 0.05 };
+        let turn = Vector::new(tilt * random.unit(), random.unit() * 3.0, tilt * random.unit());
+        let there = Isometry::new(position, if case % 6 == 0 { Vector::zeros() } else { turn });
+        let [one, other] = [&small, &large]
+            .map(|hull| summary(&contact_manifolds(&here, &surface, &there, hull, &near, None)));
+        let are_equal = one.len() == other.len()
+            && one.iter().zip(&other).all(|(one, other)| {
+                (one.0 - other.0).norm() < 1e-9
+                    && (one.1 - other.1).abs() < 1e-9
+                    && one.2 == other.2
+            });
+        assert!(are_equal, "case {case}: {one:?} and with a dome {other:?}");
+        several += usize::from(one.len() > 1);
+    }
+    assert!(several > 20, "{several} poses with several manifolds");
+}
