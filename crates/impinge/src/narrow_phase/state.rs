@@ -63,7 +63,8 @@ impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
     }
 }
 
-/// Returns two placed solids as a pair, with the solid first in whose frame contacts are stored.
+/// Returns two placed solids as a pair, whose first solid is the one in whose frame contacts are
+/// stored.
 fn ordered_pair<'a, N: Real, const D: usize>(
     placed: &[Placed<'a, N, D>; 2],
     is_swapped: bool,

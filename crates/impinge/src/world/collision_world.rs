@@ -55,9 +55,9 @@ pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
     pub(super) objects: CollisionObjects<N, D, T>,
     pub(super) broad_phase: Box<WorldBroadPhase<N, D>>,
     pub(super) narrow_phase: Box<dyn WorldsNarrowPhase<N, D, T>>,
-    /// The broad phase and, in the next field, the narrow phase that take over at the next update;
-    /// `None` for a phase that is not replaced.
+    /// The broad phase that replaces the present one at the next update; `None` if there is none.
     pub(super) next_broad_phase: Option<Box<WorldBroadPhase<N, D>>>,
+    /// The narrow phase that replaces the present one at the next update; `None` if there is none.
     pub(super) next_narrow_phase: Option<Box<dyn WorldsNarrowPhase<N, D, T>>>,
     pub(super) filters: Filters<N, D, T>,
     /// The events of the last update.
@@ -83,9 +83,9 @@ pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Creates an empty world.
     ///
-    /// `margin` is the distance by which the broad phase loosens each box on every side. An object
-    /// costs little while its box stays within the loosened box. A fiftieth of the size of a
-    /// typical object is a good value. The margin never affects exact results.
+    /// `margin` is the distance by which the broad phase loosens each box on every side. An update
+    /// spends little time on an object whose box stays within its loosened box. A fiftieth of the
+    /// size of a typical object is a good value. The margin never affects exact results.
     ///
     /// # Panics
     /// If the margin is negative or not finite; [`Self::try_new`] returns an error instead.

@@ -71,8 +71,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         found.map(|(object, _, impact)| (object, impact))
     }
 
-    /// Returns all objects on the path of a moving solid that no object stops, each with its first
-    /// impact, in ascending order of time, then of handle. See [`Self::cast_shape`] for the
+    /// Returns all objects that a solid hits if it moves on through every object, each with its
+    /// first impact, in ascending order of time, then of handle. See [`Self::cast_shape`] for the
     /// arguments.
     #[must_use]
     pub fn cast_shape_all(
