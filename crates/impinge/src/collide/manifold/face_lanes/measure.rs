@@ -143,7 +143,7 @@ impl<N: Real> FaceClip<N> {
         }
     }
 
-    /// Measures the lanes of one SIMD run.
+    /// Measures the triangles in the lanes of one SIMD run.
     pub(super) fn measure(
         &mut self,
         run: Run,
@@ -204,8 +204,8 @@ impl<N: Real> FaceClip<N> {
     }
 
     /// Measures the corners of the triangles against the sides and the plane of the ring. Returns
-    /// the lanes where all sides of the ring are longer than two tolerances and the distances from
-    /// its plane are not NaN.
+    /// the lanes where all sides of the ring are longer than two tolerances in projection, and the
+    /// distances from its plane are not NaN.
     #[inline(always)]
     fn measure_face<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,

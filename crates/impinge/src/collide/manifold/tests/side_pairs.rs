@@ -70,7 +70,8 @@ impl Stack {
         [low1.max(low2), high1.min(high2)]
     }
 
-    /// Visits all pairs of these kinds, with the pose of the first solid.
+    /// Calls `visit` with a pair for each two kinds of [`benches`], and with the world pose of the
+    /// lower solid, the first of the pair.
     fn visit<N: Real>(&self, mut visit: impl FnMut(&Pair<'_, N, 2>, &Pose<N, 2>)) {
         let [[low, high], [left, right]] = self.sides;
         let pivot = self.overlap()[0];
@@ -89,7 +90,8 @@ impl Stack {
     }
 }
 
-/// Returns whether `flipped`, the manifold of the swapped pair, has the same points and features.
+/// Returns whether `flipped`, the manifold of the swapped pair, has the same points, up to `close`,
+/// and the same features as `raw`.
 fn is_flipped<N: Real>(
     pair: &Pair<'_, N, 2>,
     raw: &RawManifold<N, 2>,
