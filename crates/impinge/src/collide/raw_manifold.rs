@@ -64,8 +64,9 @@ pub(crate) struct RawPoint<N: Real, const D: usize> {
 pub(crate) type RawPoints<N, const D: usize> = SmallVec<[RawPoint<N, D>; 32]>;
 
 impl<N: Real, const D: usize> RawPoint<N, D> {
-    /// Swaps the solids: moves the point to the frame of the second solid, in which the pose of the
-    /// first is `pose21`, and clears its code.
+    /// Swaps the solids: sets `point1` to the contact point on the second solid, in the frame of
+    /// the second solid, swaps the features and clears the code. `pose21` is the pose of the first
+    /// solid in that frame; `normal` still points from the first solid to the second.
     pub(crate) fn flip(&mut self, pose21: &Pose<N, D>, normal: &Vector<N, D>) {
         self.point1 = pose21.point(&(self.point1 + normal * self.distance));
         core::mem::swap(&mut self.feature1, &mut self.feature2);

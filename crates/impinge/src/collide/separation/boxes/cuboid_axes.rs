@@ -93,7 +93,8 @@ impl<N: Real> BoxPair<N> {
     /// Returns the pair of edges with the largest gap, if the gap exceeds `least`.
     ///
     /// The length of the cross product of two axes is the sine of their angle. Dividing a negative
-    /// gap by the sine can only lower it, so most pairs need no square root. The product's
+    /// gap by the sine can only lower it. So a pair of edges is skipped without a square root if
+    /// its undivided gap is at most zero and at most the largest gap so far. The product's
     /// components on the axes of the second box are differences of two products, which are small if
     /// the sine is small. They equal entries of the rotation only up to rounding, and that error
     /// would be divided by the sine as well; so the differences are used.

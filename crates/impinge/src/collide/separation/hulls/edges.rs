@@ -37,8 +37,8 @@ pub(super) struct ReferenceEdge<N: Real> {
     pub(super) squared: N,
 }
 
-/// Eight edges of one solid, in the frame of the solid with the reference face and in units of the
-/// pair. In `segment` both are the same solid.
+/// Eight edges of the other solid, in the frame of the solid with the reference face and in units
+/// of the pair. In module `segment`, they are edges of the polyhedron, in its own frame.
 pub(super) struct EdgeBlock<N: Real> {
     /// Index of the edge in each lane.
     pub(super) indices: [u8; LANES],

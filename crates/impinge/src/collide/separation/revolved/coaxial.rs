@@ -265,8 +265,9 @@ mod tests {
         }
     }
 
-    /// Compares the separation with the general algorithm for solids that are coaxial up to an
-    /// offset and a tilt of size `slight`, the second solid upright or upside down.
+    /// Asserts that the separation agrees with the general algorithm within `accuracy`, for solids
+    /// that are coaxial up to an offset and a tilt of size `slight`. The second solid is upright or
+    /// upside down.
     fn compare<N: Real>(seed: u64, slight: f64, accuracy: f64) {
         let random = &mut Random(seed);
         for round in 0..200 {

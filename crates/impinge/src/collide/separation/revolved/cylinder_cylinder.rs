@@ -268,8 +268,8 @@ impl<N: Real> CylinderView<N> {
     }
 
     /// Tries the direction from the axis to the nearest point of the other rim or, for parallel
-    /// axes, of the other side. `None` if [`Self::toward_rim`] returns `None`, as for a solid that
-    /// extends to the axis.
+    /// axes, of the other side. `None` if the centre of the other solid is on the axis, or if
+    /// [`Self::toward_rim`] returns `None`, as for a solid that extends to the axis.
     fn side(&self) -> Option<Tried<N>> {
         let start = unit(&radial(&self.center))?.0;
         let (normal, point) = self.toward_rim(start)?;
@@ -391,7 +391,8 @@ struct Rim<N: Real> {
     bend: N,
 }
 
-/// Returns the change of `normal` by Newton's method for a slope of zero; at most half a radian.
+/// Returns the change of `normal` by one step of Newton's method towards a slope of zero; at most
+/// half a radian. `None` if the change is zero or not finite.
 fn step<N: Real>(
     normal: &Vector<N, 3>,
     slope: &Vector<N, 3>,
@@ -432,8 +433,8 @@ pub(in crate::collide::separation) mod tests {
 
     type Solids<N> = [Box<dyn Shape<N, 3>>; 2];
 
-    /// Compares `separation` with the general algorithm, for pairs that `solids` makes from random
-    /// sizes between 0 and 1.
+    /// Asserts that `separation` agrees with the general algorithm within `accuracy` times the size
+    /// of the pair. `solids` makes the pairs from random sizes between 0 and 1.
     pub(in crate::collide::separation) fn compare<N: Real>(
         seed: u64,
         rounds: usize,

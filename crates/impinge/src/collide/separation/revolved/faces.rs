@@ -11,9 +11,10 @@ impl<N: Real> RevolvedPair<'_, N> {
         self.by_own_face().or_else(|| self.by_cap())
     }
 
-    /// Returns the separation along the face of the flat solid with the least depth. `None` unless
-    /// the flat solid contains the ball around the deepest point of the round solid with this depth
-    /// as radius.
+    /// Returns the separation along the normal of that face of the flat solid above which the round
+    /// solid lies highest. `None` unless the solids overlap along this normal and the flat solid
+    /// contains the ball around the deepest point of the round solid with the depth as radius. Also
+    /// `None` for segments, capsules and triangles.
     fn by_own_face(&self) -> Option<RevolvedFound<N>> {
         let mut best: Option<(N, DirectedPoint<N>)> = None;
         let mut try_face = |normal: &Vector<N, 3>, offset: N| {
