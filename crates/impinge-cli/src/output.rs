@@ -115,7 +115,7 @@ pub(crate) fn complain(error: &CliError) {
 }
 
 /// Writes a message of one line. Control characters are escaped here, whatever the source of the
-/// text. Long texts should be shortened by the caller.
+/// text. The text is cut after [`MAX_WORDS`] words, and [`Printable`] shortens long words.
 fn message(style: Style, kind: &str, text: &dyn fmt::Display) {
     let text = text.to_string();
     let words = text.split_inclusive(' ').take(MAX_WORDS);

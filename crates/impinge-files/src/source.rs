@@ -99,7 +99,7 @@ fn place(text: &str, byte: usize) -> (usize, usize) {
 }
 
 /// Returns the first [`MAX_VALUE`] characters of a value, with white space replaced by single
-/// spaces.
+/// spaces, and `...` in place of omitted characters.
 fn shortened(text: &str) -> String {
     let mut line = String::new();
     let mut count = 0;

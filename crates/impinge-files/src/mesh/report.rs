@@ -85,8 +85,9 @@ impl MeshReport {
         self.is_closed() && self.non_manifold_edges.count == 0 && self.inconsistent_edges.count == 0
     }
 
-    /// Returns `true` if all faces of the file were kept, none of their vertices was welded, and no
-    /// edge is non-manifold or inconsistent. The surface may be open or closed.
+    /// Returns `true` if the report has no defects other than boundary edges: no face was dropped,
+    /// no vertex is duplicate or not finite, and no edge is non-manifold or inconsistent. The
+    /// surface may be open or closed.
     #[must_use]
     pub fn is_clean(&self) -> bool {
         self.defects().all(|(_, defects)| defects.count == 0)
@@ -100,7 +101,7 @@ impl MeshReport {
         found.map(|(what, defects)| format!("{} {what}: {defects}", defects.count)).collect()
     }
 
-    /// Returns the defects of each kind, with the name of the kind.
+    /// Returns the defects of each kind except boundary edges, with the name of the kind.
     fn defects(&self) -> impl Iterator<Item = (&'static str, &Defects)> {
         [
             ("vertices that are not finite", &self.non_finite_vertices),

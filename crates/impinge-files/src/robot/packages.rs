@@ -43,8 +43,8 @@ impl Packages {
         if !matches!((parts.next(), parts.next()), (Some(Component::Normal(_)), None)) {
             return Err(unknown());
         }
-        // If a searched folder has the name of the package, it is the package. Otherwise the
-        // package is a subfolder.
+        // A searched folder with the name of the package is the package itself. In any other
+        // searched folder, the package is the subfolder with this name, if there is one.
         let found = self.folders.iter().find_map(|folder| {
             let inner = folder.join(package);
             if folder.file_name().is_some_and(|name| name == package) {

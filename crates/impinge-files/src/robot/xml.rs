@@ -77,7 +77,8 @@ impl XmlFile {
         FileError::whole(&self.path, problem)
     }
 
-    /// Returns an error at the element with this tag and name.
+    /// Returns an error at the first element with this tag and name; without a line if there is
+    /// none.
     pub(super) fn error(&self, tag: &str, name: &str, problem: Problem) -> FileError {
         let path = format!("{tag} {}", Quoted(name));
         let Ok(document) = self.parse() else { return self.whole(problem) };

@@ -15,7 +15,8 @@ const GROUPS: usize = 30;
 ///
 /// Groups disable the pairs, so that a recording needs no pair filter. For each pair, one link is
 /// the only member of a group that the other link blacklists. Only groups that the document does
-/// not name are used. Objects whose membership is not given are members of all groups except these.
+/// not name are used for this. An object without a `membership` in the document is a member of all
+/// groups except those that disable pairs.
 #[derive(Debug)]
 pub(super) struct GroupPlan {
     /// The groups that the document does not name and that are not taken, in ascending order. The
@@ -35,14 +36,16 @@ impl DisabledPair {
         Self([a.min(b), a.max(b)])
     }
 
-    /// Returns the other index of the pair; `None` if the pair does not contain `object`.
+    /// Returns the index that the pair contains besides `object`; `None` if the pair does not
+    /// contain `object`.
     fn partner(self, object: usize) -> Option<usize> {
         let [a, b] = self.0;
         if a == object { Some(b) } else { (b == object).then_some(a) }
     }
 }
 
-/// The groups that an object gets from its disabled pairs.
+/// The groups that an object gets from its disabled pairs: the group of which it is the only
+/// member, if any, and the groups that it blacklists.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OwnGroups {
     member: Option<usize>,

@@ -256,15 +256,16 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         Some(ChainLink { chain: self, parts, segment, known, found: *found, tolerance })
     }
 
-    /// Converts a direction of [`ChainLink::pair`], from its first solid to its second in the frame
-    /// of the first, into the direction from the solid to the chain, in the frame of the solid.
+    /// Takes a normal of [`ChainLink::pair`], which points from the first solid of this pair to the
+    /// second, in the frame of the first. Returns it as a vector from the solid to the chain, in
+    /// the frame of the solid.
     fn outward(&self, normal: &Vector<N, 2>) -> Vector<N, 2> {
         if self.comes_first { *normal } else { -self.turn.vector(normal) }
     }
 
-    /// Converts a direction from the solid to the chain, in the frame of the solid, into a
-    /// direction of [`ChainLink::pair`]: from its first solid to its second, in the frame of the
-    /// first.
+    /// Takes a normal that points from the solid to the chain, in the frame of the solid. Returns
+    /// it as a normal of [`ChainLink::pair`]: from the first solid of this pair to the second, in
+    /// the frame of the first.
     fn inward(&self, normal: &Vector<N, 2>) -> Vector<N, 2> {
         if self.comes_first { *normal } else { -self.turn.inverse_vector(normal) }
     }

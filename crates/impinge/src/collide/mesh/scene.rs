@@ -418,15 +418,17 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         self.relative.turn.inverse_vector(direction)
     }
 
-    /// Converts a direction from the first body to the second, in the first body's frame, into the
-    /// direction from the first shape to the second, in the first shape's frame.
+    /// Takes a normal that points from the first body to the second, in the frame of the first
+    /// body. Returns it as a vector from the first shape to the second, in the frame of the first
+    /// shape: rotated, and negated if the order of kinds swaps the shapes.
     pub(super) fn outward(&self, normal: &Vector<N, D>) -> Vector<N, D> {
         let normal = self.relative.frame.vector(normal);
         if self.relative.is_swapped { -normal } else { normal }
     }
 
-    /// Converts a direction from the first shape to the second, in the first shape's frame, into
-    /// the direction from the first body to the second, in the first body's frame.
+    /// Takes a normal that points from the first shape to the second, in the frame of the first
+    /// shape. Returns it as a vector from the first body to the second, in the frame of the first
+    /// body: rotated, and negated if the order of kinds swaps the shapes.
     pub(super) fn inward(&self, normal: &Vector<N, D>) -> Vector<N, D> {
         let normal = self.relative.frame.inverse_vector(normal);
         if self.relative.is_swapped { -normal } else { normal }

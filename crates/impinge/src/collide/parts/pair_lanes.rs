@@ -110,8 +110,8 @@ fn in_lanes_3d<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let (own, others) = (sides(&held.one), sides(&held.other));
     let [normal, other_normal] = [cross(&own[0], &own[1]), cross(&others[0], &others[1])];
     if limit > N::ZERO {
-        // The other axes seldom separate distant coplanar pairs, so the centroids are compared
-        // first.
+        // The other axes seldom separate distant coplanar pairs, so the line through the means of
+        // the corners is tested first.
         held.between_middles();
         if bits(held.beyond) == u8::MAX {
             return held.masks(false);
@@ -209,8 +209,9 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         self.within &= gap.simd_le(self.limits[1] * length);
     }
 
-    /// Tests the line through the centroids and updates `beyond` only, because this axis cannot
-    /// prove an overlap.
+    /// Tests the line through the means of the corners of both parts (an end of a segment that
+    /// occurs twice counts twice). Updates `beyond` only, because this axis cannot prove an
+    /// overlap.
     #[inline(always)]
     fn between_middles(&mut self) {
         let ([a, b, c], [d, e, f]) = (&self.one, &self.other);

@@ -102,9 +102,9 @@ struct TouchingSearch<'a, 'q, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> TouchingSearch<'_, '_, N, D> {
-    /// Returns whether two parts are farther apart than `max_distance` along the line through their
-    /// centroids; always false unless the nearest pair is wanted. This rejects most pairs whose
-    /// boxes are near.
+    /// Returns whether two parts are farther apart than `max_distance` along the line through the
+    /// means of their three corners (the first end of a segment counts twice); always `false`
+    /// unless the nearest pair is wanted. This rejects most pairs whose boxes are near.
     fn are_beyond(&self, one: &[Vector<N, D>; 3], other: &[Vector<N, D>; 3]) -> bool {
         let Some(max_distance) = self.max_distance.filter(|_| self.wanted == Touching::Nearest)
         else {
@@ -193,8 +193,8 @@ impl<N: Space<D>, const D: usize> TouchQuery<N, D> for TouchingSearch<'_, '_, N,
         self.own
     }
 
-    /// Rejects pairs along the line through their centroids, puts the others into the lanes, and
-    /// visits pairs without corners directly.
+    /// Drops each pair for which [`Self::are_beyond`] returns `true`. Puts the other pairs into the
+    /// lanes, except that a pair with a part without corners is visited directly.
     fn visit(&mut self, which: usize, own: u32, others: &[u32]) {
         for &other in others {
             let pair = if which == 0 { [own, other] } else { [other, own] };
