@@ -39,8 +39,8 @@ pub(crate) struct Player<N: Recordable<D>, const D: usize, T> {
     asked: Vec<Asked<N, D>>,
     /// The queries between the last two updates, with their results.
     pub(crate) queries: Vec<Asked<N, D>>,
-    /// Whether no call was applied yet. Then a key frame creates the objects instead of only
-    /// replacing the phases.
+    /// Whether no call was applied yet that changes the world. A key frame then creates the
+    /// objects; otherwise it only replaces the phases.
     is_new: bool,
     /// Whether a key frame has created the objects and no update followed. In the next update all
     /// pairs start.
@@ -52,8 +52,9 @@ pub(crate) struct Player<N: Recordable<D>, const D: usize, T> {
     keeps_events: bool,
 }
 
-/// Replaces the phases of a world by new ones, whose pairs start at the next update. The later
-/// results then depend only on the objects, not on the history of the world.
+/// Replaces the phases of a world (the broad phase and the narrow phase) by new ones, whose pairs
+/// start at the next update. The later results then depend only on the objects, not on the history
+/// of the world.
 pub(crate) fn exchange_phases<N: Recordable<D>, const D: usize, T>(
     world: &mut CollisionWorld<N, D, T>,
     margin: N,
@@ -198,8 +199,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         self.refused = pairs;
     }
 
-    /// Updates the world. If the recorded update had a filter, its recorded results are used
-    /// instead.
+    /// Updates the world. If the recorded update had a filter, the recorded results of the filter
+    /// are used.
     fn update_world(&mut self) {
         let refused = std::mem::take(&mut self.refused);
         if refused.is_empty() {

@@ -160,7 +160,7 @@ impl Observer {
 }
 
 /// Returns the hash of the state of an object that calls have set: its position, groups, query
-/// type, and rare properties.
+/// type, fixed flag, skin and predicted position.
 fn description_digest<N: Recordable<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     object: &CollisionObject<N, D, T>,

@@ -29,7 +29,7 @@ pub(super) struct Packed {
     pub(super) checksum: u32,
 }
 
-/// Splits records.
+/// Splits the records of a recording into streams.
 #[derive(Debug)]
 pub(super) struct Packer {
     layout: Layout,
@@ -178,7 +178,7 @@ fn remember(descriptions: &mut Descriptions, index: u32, description: &[u8]) {
     }
 }
 
-/// Rebuilds records.
+/// Rebuilds the records of a recording from streams.
 #[derive(Debug)]
 pub(super) struct Unpacker {
     layout: Layout,

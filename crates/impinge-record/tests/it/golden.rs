@@ -31,8 +31,8 @@ fn written<N: Stage<D>, const D: usize>() -> Vec<u8> {
     scene.recorder.finish().bytes
 }
 
-/// Converts a recording to version 2 of the format. If it has no calls of version 3, only the
-/// version number differs.
+/// Converts a recording without calls of version 3 to version 2 of the format: only the version
+/// number and the checksums differ.
 fn in_version_2(bytes: &[u8]) -> Vec<u8> {
     let mut earlier = bytes.to_vec();
     earlier[8] = 2;

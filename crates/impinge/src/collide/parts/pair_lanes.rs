@@ -10,7 +10,7 @@
 //!
 //! ```text
 //! axis                          lanes             stops when all are beyond
-//!  centroid to centroid          limit > 0         yes
+//!  between means of corners      limit > 0         yes
 //!  2 normals                     all               yes
 //!  9 cross products of sides     all
 //!  6 in-plane normals of sides   coplanar pairs
@@ -160,7 +160,8 @@ struct HeldPairs<S: Simd, V: Wide<S>, const D: usize> {
     limits: [V; 2],
     is_precise: V::Mask,
     beyond: V::Mask,
-    /// Pairs that no axis so far separates by more than the limit.
+    /// Pairs that no axis tested so far separates by more than the limit, with the margin
+    /// [`CERTAIN`].
     within: V::Mask,
     /// Pairs for which the direction of some axis was not exact.
     unsure: V::Mask,
