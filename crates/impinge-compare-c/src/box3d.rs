@@ -241,7 +241,7 @@ impl Drop for Box3d {
     fn drop(&mut self) {
         let _lock = table();
         // SAFETY: the world exists, and the table is locked. The data that its shapes point to is
-        // freed after it.
+        // freed after the world.
         unsafe {
             ffi::b3DestroyWorld(self.world);
             self.meshes.iter().for_each(|mesh| ffi::b3DestroyMesh(*mesh));
