@@ -65,8 +65,9 @@ pub(crate) struct Arena<N: Real, const D: usize> {
     pub(super) points: RawPoints<N, D>,
     /// Largest bound of the rounding errors of lengths computed for parts that were skipped.
     pub(super) rounding: N,
-    /// Whether all faces in contact are fronts, with neighbours oriented alike. Then no face hides
-    /// another, because the solid is in front of all these faces.
+    /// Whether the solid touches every face in contact on its front, and all neighbours of these
+    /// faces have their fronts on the same side. Then no face hides another, because the solid is
+    /// in front of all these faces.
     pub(super) are_fronts: bool,
     raw: RawManifold<N, D>,
 }
@@ -290,7 +291,8 @@ fn of_surfaces<N: Space<D>, const D: usize>(
 }
 
 /// Builds the manifold of two parts at their nearest points, along a normal that the surface
-/// admits. `over` is the feature that a ball is over, if it is certain.
+/// admits. `over` is the feature of a triangle whose Voronoi region contains the centre of a ball,
+/// if it is certain.
 fn build_touching<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     witness: &Separation<N, D>,

@@ -135,8 +135,7 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         }
     }
 
-    /// Returns whether the point continues a point of the last update that was at the same
-    /// position.
+    /// Returns whether the point continues a point of the last update that was near it.
     fn is_old(&self, member: &Member<N>) -> bool {
         self.kept[member.point].is_some_and(|kept| kept.is_old)
     }

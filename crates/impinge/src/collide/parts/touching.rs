@@ -34,10 +34,10 @@ pub(crate) trait TouchingVisitor<N: Real, const D: usize> {
 /// The pairs of parts that a search visits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Touching {
-    /// All pairs within `max_distance`, each once.
+    /// All pairs that may be within `max_distance`, each once.
     Each,
-    /// Any pair within `max_distance`: the first pair found is likely to end the search, so no pair
-    /// waits for a full batch of lanes.
+    /// Any pair that may be within `max_distance`: the first pair found is likely to end the
+    /// search, so no pair waits for a full batch of lanes.
     Any,
     /// The nearest pair: `max_distance` shrinks to the best distance. A pair that is likely to be
     /// near is visited first, and may be visited twice.
