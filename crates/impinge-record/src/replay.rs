@@ -367,7 +367,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
     ///
     /// # Errors
     /// If a call cannot be applied, because the registry lacks a pair filter or the bytes were not
-    /// written by a recorder. The world is then in the state before this call.
+    /// written by a recorder. The calls before it remain applied.
     pub fn seek(&mut self, step: usize) -> Result<(), ReadError> {
         let step = step.min(self.len());
         let frame = self.timeline.frame_before(step);

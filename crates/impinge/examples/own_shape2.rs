@@ -104,8 +104,8 @@ fn main() {
         assert!((below + above - 2.0).abs() < 1e-12, "{below} and {above} at {degrees}°");
     }
 
-    // A world handles it like any other shape. Here the lower corner, 2/√3 below the middle,
-    // penetrates the floor by 0.1.
+    // A world handles the roller like any other shape. Here the lower corner, 2/√3 below the
+    // middle, penetrates the floor by 0.1.
     let mut world = CollisionWorld::new(0.02);
     let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
     world.add(here, ShapeHandle::new(floor), groups, query, "floor");

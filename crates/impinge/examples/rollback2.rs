@@ -124,8 +124,9 @@ impl Side {
         self.now += 1;
     }
 
-    /// Stores the input of the first frame without one, which was played some frames ago. If the
-    /// prediction for it was wrong, the frames from there on are played again.
+    /// Stores an input of the other player: it is for the first frame without a received input,
+    /// which was played some frames ago. If the prediction of this input was wrong, plays this
+    /// frame and all later frames again.
     fn receive(&mut self, input: Vector<f32>) {
         let frame = self.arrived.len();
         self.arrived.push(input);
