@@ -26,8 +26,8 @@ pub struct CollisionStarted<const D: usize, W: WorldKey = DefaultWorld> {
 }
 
 /// Two entities stopped touching: they separated, or one of them was removed, disabled, or is no
-/// longer allowed to collide with the other. Each [`CollisionStarted`] is followed by exactly one.
-/// The entities may be despawned already.
+/// longer allowed to collide with the other. Each [`CollisionStarted`] is followed by exactly one
+/// [`CollisionEnded`]. The entities may be despawned already.
 ///
 /// Messages and events have the same order as those of [`CollisionStarted`].
 #[derive(Message, EntityEvent, Clone, Copy, Debug, PartialEq)]

@@ -10,8 +10,8 @@ use crate::{Collider, Collisions, ShapeHit, SpatialFilter, WorldKey};
 pub struct SlideSettings {
     /// The distance kept from all obstacles: about a hundredth of the size of the character. 0.01 by default.
     pub skin: f32,
-    /// The largest number of obstacles that the motion may hit. With 1 it is straight and ends at
-    /// the first; 6 by default.
+    /// The largest number of obstacles that the motion may hit. With 1 the motion is straight and
+    /// ends at the first obstacle; 6 by default.
     pub max_hits: usize,
 }
 
@@ -136,7 +136,8 @@ where
     f32::pose_of(&isometry)
 }
 
-/// Adds to a motion along walls the component [`LIFT`] away from each of them.
+/// Adds to a motion along walls a component away from each wall, of [`LIFT`] times the length of
+/// the motion.
 fn off<const D: usize>(motion: Vector<f32, D>, walls: &[Vector<f32, D>]) -> Vector<f32, D> {
     let lift = LIFT * motion.norm();
     walls.iter().fold(motion, |motion, wall| motion + wall * lift)
