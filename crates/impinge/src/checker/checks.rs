@@ -219,7 +219,7 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
     }
 
     /// Writes the first pair of each configuration that is within `clearance`; [`NO_PAIR`] if the
-    /// configuration is free.
+    /// configuration is free or not finite.
     ///
     /// # Errors
     /// [`BatchError::PartialRow`] or [`BatchError::Length`] if `configurations` does not have as

@@ -106,7 +106,8 @@ impl<N: Play<DIM>> Twins<N> {
         }
     }
 
-    /// Asserts that both worlds report the same events, proximities and contacts.
+    /// Asserts that both worlds report the same events and proximities, and that the same pairs
+    /// touch, with depths that are equal up to rounding.
     fn compare(&mut self, place: &str) {
         let (usual, other) = (&self.usual.world, &self.other.world);
         other.validate().expect("the parts agree");
