@@ -211,8 +211,8 @@ fn signed_distance<N: Real, const D: usize>(pose1: &Pose<N, D>, pose2: &Pose<N, 
     askew(&(pose2.translation - pose1.translation))
 }
 
-/// Compares solids of one kind whose signed distance is zero or NaN, by poses, then by defining
-/// numbers.
+/// Compares solids of one kind by poses, then by defining numbers. Needed only if their
+/// [`signed_distance`] is zero or NaN.
 #[cold]
 fn compare_at_length<N: Real, const D: usize>(
     pose1: &Pose<N, D>,

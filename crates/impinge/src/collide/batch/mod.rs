@@ -97,11 +97,11 @@ pub(crate) trait KeptPairs<N: Real, const D: usize> {
     /// Begins the update of the pair at `index` and returns its inputs. Called once for each pair.
     fn begin(&mut self, index: usize) -> PairQuestion<'_, N, D>;
 
-    /// Returns the inputs of the pair at `index`, which has begun, and its manifold. The manifold
-    /// is that of the last update; the caller replaces it.
+    /// Returns the inputs of the pair at `index`, whose update has begun, and the manifold that its
+    /// last update wrote, which the caller replaces.
     fn parts(&mut self, index: usize) -> (PairQuestion<'_, N, D>, &mut RawManifold<N, D>);
 
-    /// Returns the manifold of the pair at `index`: that of its last update, which the caller
+    /// Returns the manifold that the last update of the pair at `index` wrote, which the caller
     /// replaces.
     fn raw(&mut self, index: usize) -> &mut RawManifold<N, D>;
 
@@ -131,8 +131,9 @@ trait Batch<N: Real, const D: usize> {
         found: &mut Self::Found<L>,
     );
 
-    /// Replaces the manifold of the pair in `lane` by at most `max_points` points; returns `false`
-    /// if the pair has to fall back.
+    /// Replaces the points of the pair in `lane` by at most `max_points` points, or clears them if
+    /// the solids are beyond the prediction. Returns `false`, without a change, if the pair has to
+    /// fall back to the builder for one pair.
     fn write_manifold<const L: usize>(
         found: &Self::Found<L>,
         lane: usize,
@@ -306,7 +307,7 @@ impl BatchLanes<1> for LonePair {
 }
 
 /// Updates all pairs, `L` at a time, with the algorithm `B`. The inputs of the next batch are
-/// gathered before the kernel reads those of this batch, which hides memory latency.
+/// gathered before the kernel reads the inputs of this batch, to hide memory latency.
 fn update<B: Batch<N, D>, P: KeptPairs<N, D>, N: Space<D>, const D: usize, const L: usize>(
     lanes: impl BatchLanes<L>,
     pairs: &mut P,

@@ -1,5 +1,5 @@
-//! Compares batches of 8 pairs with batches of one and with the builder for one pair, bit for bit,
-//! on every instruction set.
+//! Asserts on every instruction set that batches of 8 pairs, batches of one and the builder for one
+//! pair give the same manifolds, to the bit.
 
 use super::{
     BallBall, BallCuboid, BallSegment, Batch, Boxes2, Boxes3, ClosedForm, KeptPairs, Many,

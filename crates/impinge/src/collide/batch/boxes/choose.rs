@@ -31,7 +31,7 @@ pub(super) struct SlotChoice<'a, N: Real, const D: usize, const COUNT: usize, co
     pub(super) level: u32,
     /// Signed distance of the boxes. The deepest point gets exactly this distance.
     pub(super) gap: N,
-    /// Lengths up to this are rounding errors.
+    /// Lengths up to this count as rounding errors.
     pub(super) tolerance: N,
     /// Length scale of the pair, as `collide::size` defines it.
     pub(super) size: N,

@@ -23,7 +23,7 @@ pub(crate) struct BoxPair<N: Real> {
     pub(crate) pose12: Pose<N, 3>,
 }
 
-/// One of the 15 directions; the indices are those of the boxes' axes.
+/// One of the 15 directions of the test. The indices number the axes of the boxes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum AxisKind {
     /// The normal of a face of the first box.
@@ -45,7 +45,7 @@ pub(crate) struct BoxAxis<N: Real> {
 }
 
 impl<N: Real> BoxPair<N> {
-    /// Returns the bound that is used for the rounding error of lengths of this pair.
+    /// Returns the length that counts as rounding error for this pair.
     pub(crate) fn rounding_error(&self) -> N {
         let size = self.half1.sum() + self.half2.sum() + self.pose12.translation.amax();
         N::lit(4.0) * N::EPSILON * size

@@ -87,7 +87,7 @@ enum SegmentResult<N: Real> {
     Unproved,
 }
 
-/// Returns the bound that is used for the rounding error of arithmetic on numbers up to 2.
+/// Returns the number that counts as rounding error in arithmetic on numbers up to 2.
 fn rounding_error<N: Real>() -> N {
     N::lit(16.0) * N::EPSILON
 }

@@ -1,4 +1,4 @@
-//! Segments of a chain in 2D against one solid, 8 at a time.
+//! Computes separations of the segments of a chain in 2D from one solid, 8 segments at a time.
 //!
 //! The kernels run the algorithms of [`polygon_polygon`](super::polygons::polygon_polygon),
 //! [`segment_lanes`](super::segments::segment_lanes) and

@@ -1,4 +1,5 @@
-//! Eight segments of a chain against a polygon of up to 8 vertices, with or without a radius.
+//! Computes separations of segments of a chain from a polygon of up to 8 vertices, with or without
+//! a radius, 8 segments at a time.
 
 use super::super::polygons::outline::{PolygonOutline, Row};
 use super::super::polygons::polygon_polygon::{Axis, of_axis};

@@ -25,8 +25,9 @@ use crate::shape::PolytopeEdge;
 /// Capacity for edges: 32 vertices have at most 3 · 32 - 6.
 pub(super) const MAX_EDGES: usize = 90;
 
-/// An edge that is compared with those of an [`EdgeBlock`], in the frame of the solid with the
-/// reference face: an edge of that solid or, in `segment`, the segment.
+/// An edge that is compared with the 8 edges of an [`EdgeBlock`]: an edge of the solid with the
+/// reference face or, in module `segment`, the segment. It is in the frame of the solid with the
+/// reference face.
 pub(super) struct ReferenceEdge<N: Real> {
     pub(super) index: usize,
     /// First end, in units of the pair.

@@ -117,8 +117,7 @@ impl<N: Real> SatResult<N> {
     }
 }
 
-/// Returns the bound that is used for the rounding error of lengths, in units of the pair: 8
-/// epsilon.
+/// Returns the length that counts as rounding error, in units of the pair: 8 epsilons.
 pub(super) fn rounding_error<N: Real>() -> N {
     N::lit(8.0) * N::EPSILON
 }

@@ -20,7 +20,7 @@ pub(in crate::collide::separation) struct OutlinePair<'a, N: Real> {
     axis: Axis<N>,
     /// Vertex of each outline that is farthest toward the other.
     tops: [usize; 2],
-    /// Lengths up to this are rounding errors.
+    /// Lengths up to this count as rounding errors.
     rounding_error: N,
 }
 

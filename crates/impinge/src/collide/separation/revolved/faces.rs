@@ -5,8 +5,8 @@ use super::{DirectedPoint, FlatCore, NearestHull, RevolvedFound, RevolvedPair, s
 use crate::math::{Real, Vector};
 
 impl<N: Real> RevolvedPair<'_, N> {
-    /// Returns the separation along the face of the flat solid with the least depth, else at the
-    /// lowest vertex over a cap of the round solid; `None` if neither is proved.
+    /// Returns the separation by [`Self::by_own_face`] or, if that proves none, by
+    /// [`Self::by_cap`]; `None` if neither proves one.
     pub(super) fn by_face(&self) -> Option<RevolvedFound<N>> {
         self.by_own_face().or_else(|| self.by_cap())
     }

@@ -1,4 +1,6 @@
-//! Flat-sided solids, segments, capsules, cylinders and cones against cylinders and cones.
+//! Flat-sided solids, segments, capsules, cylinders and cones against cylinders and cones. In these
+//! files, "flat solid" means a flat-sided solid, segment or capsule, and "round solid" a cylinder
+//! or cone.
 //!
 //! The signed distance of a point from a cylinder or a cone is a closed form ([`profile`]), and
 //! convex. So the nearest point of the flat solid is searched over the hull of a few of its
