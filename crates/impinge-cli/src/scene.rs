@@ -131,7 +131,8 @@ impl Loaded {
         self.max_pairs
     }
 
-    /// Creates a recorded world with moving objects, with key frames as `key_frames` says.
+    /// Creates a recorded world with moving objects, and with a key frame every `key_frames.every`
+    /// updates; without key frames if that is `None`.
     pub(crate) fn moving<N: Stage<D>, const D: usize>(
         &self,
         key_frames: KeyFrames,

@@ -75,7 +75,7 @@ pub struct Replay<N: Recordable<D>, const D: usize, T> {
 pub struct Loss {
     /// The offset at which the unreadable part begins; the bytes before it are kept.
     pub offset: usize,
-    /// The number of bytes of the unreadable part; 0 if the bytes only end before the last record.
+    /// The number of bytes of the unreadable part; 0 if the bytes end after a complete record.
     pub bytes: usize,
     /// The reason why the part could not be read.
     pub error: ReadError,

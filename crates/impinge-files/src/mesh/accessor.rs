@@ -87,7 +87,7 @@ impl Block<'_> {
     }
 
     /// Returns the bytes from the first element to the end of the last. An error if there are no
-    /// elements, if they overlap, or if the view or its buffer is shorter.
+    /// elements, if they overlap, or if the view or its buffer is too short.
     fn bytes<'b>(&self, buffers: &[&'b [u8]]) -> Result<&'b [u8], &'static str> {
         let steps = self.count.checked_sub(1).ok_or("it is empty")?;
         if self.stride() < self.size {

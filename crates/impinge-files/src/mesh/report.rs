@@ -93,8 +93,8 @@ impl MeshReport {
         self.defects().all(|(_, defects)| defects.count == 0)
     }
 
-    /// Returns a line for each kind of defect, such as `2 degenerate faces, dropped: 1 (line 9), 4 (line 12)`. An open
-    /// boundary does not count.
+    /// Returns a line for each kind of defect that occurs, such as `2 degenerate faces, dropped: 1
+    /// (line 9), 4 (line 12)`. An open boundary does not count.
     #[must_use]
     pub fn problems(&self) -> Vec<String> {
         let found = self.defects().filter(|(_, defects)| defects.count > 0);

@@ -88,12 +88,13 @@ impl<N: SceneSpace<D>, const D: usize> SceneWorld<N, D> {
         Self { recorder: self.recorder.with_key_frames(updates), ..self }
     }
 
-    /// Moves the objects by their motions over `seconds`, and updates the world. A step of 0 seconds only updates,
-    /// as the first step usually does. Positions are computed from the start and the elapsed time.
+    /// Moves the objects by their motions over `seconds`, and updates the world. A step of 0
+    /// seconds only updates, as the first step usually does. Positions are computed from the start
+    /// and the elapsed time.
     ///
     /// # Errors
     /// If a position leaves the range of numbers. The world is then unchanged, but
-    /// [`Self::seconds`] includes the step.
+    /// [`Self::seconds()`] includes the step.
     pub fn step(&mut self, seconds: f64) -> Result<(), RecordError> {
         self.move_objects(seconds)?;
         self.recorder.update();
