@@ -95,8 +95,8 @@ impl<N: Real> Hull<N> {
         faces.map(|face| face.outward)
     }
 
-    /// Sets the offset of a face to `offset`, minus the height of the best normal known for it, and
-    /// marks the face as final.
+    /// Marks a face as final and sets its offset to `offset`: the height, with the opposite sign,
+    /// of the best normal known for the face.
     pub(super) fn finalize(&mut self, index: usize, offset: N) {
         self.faces[index].offset = offset;
         self.faces[index].is_final = true;

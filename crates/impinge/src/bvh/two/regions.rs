@@ -69,8 +69,9 @@ impl<const D: usize> TreePose<D> {
         filled(|row| (0..D).map(|axis| self.axes[axis][row] * local[axis]).sum())
     }
 
-    /// Returns the region of a box and its slab, both in this tree's frame, in the frame of the
-    /// other tree. The region is widened by `margin`.
+    /// Takes a box and its slab in this tree's frame. Returns the region in which both overlap, in
+    /// the frame of the other tree and widened by `margin`. The region has an [`Extent`] only if
+    /// `is_for_nearest`.
     pub(super) fn region_of(
         &self,
         bounds: &Bounds<D>,

@@ -399,7 +399,7 @@ pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
     let in_world = |found| placed(&found, ordered.first, ordered.swapped);
     if between.pair.pose12.is_finite() && is_within_solid(&between, limit) && has_own_path(&between)
     {
-        // Searches at least as far as `rounding`, because shapes that touch may seem that far apart.
+        // Searches at least as far as `rounding`, because touching shapes may seem that far apart.
         let rounding = rounding(&between);
         let mut found = deepest_within(&between, max(limit, rounding))?;
         let is_close = found.distance > N::ZERO && found.distance <= rounding;

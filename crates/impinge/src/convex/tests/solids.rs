@@ -1,4 +1,4 @@
-//! Convex solids for the tests, and slow computations of their properties.
+//! Convex solids for the tests, made from entries of the test data, and reference computations.
 
 use serde_json::Value;
 
