@@ -32,7 +32,7 @@ pub(crate) fn vector<N: Real, const D: usize>(
     Ok(vector)
 }
 
-/// Converts a direction of an argument; an error if it is zero. Its length is arbitrary.
+/// Converts a direction of an argument; an error if it is zero. The result is not normalized.
 pub(crate) fn direction<N: Real, const D: usize>(
     name: &'static str,
     numbers: &Numbers,

@@ -129,8 +129,8 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
     fs::write(path, bytes).map_err(|error| CliError::Write { path: path.to_owned(), error })
 }
 
-/// A file that is written in pieces. It is created when the first piece is written, so that an
-/// earlier error does not destroy an existing file.
+/// A file that is written in pieces. The file is created when the first piece is written, so that
+/// an earlier error does not destroy an existing file.
 #[derive(Debug)]
 pub(crate) struct Growing<'a> {
     path: &'a Path,

@@ -240,8 +240,9 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         }
     }
 
-    /// Applies the events after the kept ones. For each pair, starts and stops alternate, and each
-    /// proximity event begins with the status of the previous event of the pair.
+    /// Applies the events after the kept events, to `touching` and `near`. For each pair, starts
+    /// and stops alternate, and each proximity event begins with the status of the previous event
+    /// of the pair.
     fn hear(&mut self, kept: (usize, usize)) {
         for event in &self.world.contact_events()[kept.0..] {
             let (handles, changed) = match *event {
@@ -261,7 +262,7 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         }
     }
 
-    /// Checks that the pairs of the world are those that follow from its events.
+    /// Checks that the pairs of the world are the pairs that follow from its events.
     fn check_pairs(&self) {
         let mut ids = BTreeSet::new();
         let mut touching = BTreeSet::new();

@@ -45,7 +45,7 @@ pub(crate) struct Player<N: Recordable<D>, const D: usize, T> {
     /// Whether a key frame has created the objects and no update followed. In the next update all
     /// pairs start.
     is_remade: bool,
-    /// Whether the events of the last update include those of a rebuilt world, which differ from
+    /// Whether the events of the last update include events of a rebuilt world, which differ from
     /// the recorded events.
     has_other_events: bool,
     /// Whether `keep_events` was called since the last update.
@@ -274,7 +274,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         Ok(())
     }
 
-    /// Adds a temporary object that only occupies an index. It is removed before the next update.
+    /// Adds a temporary object that only occupies an index. The temporary object is removed before
+    /// the next update.
     fn hold_place(&mut self, index: u32) -> Result<(), Problem> {
         let (position, ball) = (N::isometry(&Pose::identity()), Ball::try_new(N::ONE)?);
         let (shape, groups) = (ShapeHandle::new(ball), CollisionGroups::empty());
@@ -283,8 +284,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         self.enter(handle, index)
     }
 
-    /// Updates the world and compares its hashes with the recorded ones. Objects are compared only
-    /// if the hash of the state differs.
+    /// Updates the world and compares its hashes with the recorded ones. The hashes of objects are
+    /// compared only if the hash of the state differs.
     fn update(&mut self, recorded: &Observation) -> Option<Difference> {
         let before = self.observer.clone();
         self.update_world();

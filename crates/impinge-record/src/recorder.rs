@@ -136,9 +136,9 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
     /// replay that goes backwards then repeats little more than `updates` updates. Without key
     /// frames, the default, it goes back to the start of the recording.
     ///
-    /// A key frame takes about as many bytes as adding all objects. Its update recomputes every
-    /// pair, and contacts get new ids, as with [`Self::of_world`]. Key frames do not change the
-    /// events.
+    /// A key frame takes about as many bytes as adding all objects. The update after it recomputes
+    /// every pair, and contacts get new ids, as with [`Self::of_world`]. Key frames do not change
+    /// the events.
     #[must_use]
     pub const fn with_key_frames(mut self, updates: NonZeroU64) -> Self {
         self.key_frames = Some(updates);

@@ -321,7 +321,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         self.timeline.marks.is_empty()
     }
 
-    /// Returns the time line: a mark for each update. It is available without replaying.
+    /// Returns the time line: a mark for each update. The time line is available without replaying.
     #[must_use]
     pub fn marks(&self) -> &[Mark] {
         &self.timeline.marks

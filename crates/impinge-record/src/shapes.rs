@@ -90,13 +90,13 @@ impl<N: Recordable<D>, const D: usize> ShapeTable<N, D> {
     }
 }
 
-/// The shapes that a recorder has written. They are kept alive, since they are identified by their
-/// addresses.
+/// The shapes that a recorder has written. The shapes are kept alive, since an address identifies
+/// each shape.
 #[derive(Clone, Debug)]
 pub(crate) struct KnownShapes<N: Space<D>, const D: usize> {
     table: ShapeTable<N, D>,
-    /// The index of each shape by its address. It is used for look-ups only: no result depends on
-    /// the order of addresses.
+    /// The index of each shape by its address. Addresses are used for look-ups only: no result
+    /// depends on their order.
     numbers: BTreeMap<usize, u32>,
     /// The shapes that are not written yet.
     pub(crate) unwritten: Vec<ShapeData<N, D>>,

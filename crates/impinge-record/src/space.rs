@@ -30,14 +30,14 @@ pub trait Recordable<const D: usize>: Space<D> + Scalar {
     const ISOMETRY_NUMBERS: usize;
 
     /// Returns the scalars of an isometry: the translation, then the cosine and sine of the
-    /// rotation in 2D, or the components i, j, k, w of its quaternion in 3D. They are not
-    /// normalized, since that could change bits.
+    /// rotation in 2D, or the components i, j, k, w of its quaternion in 3D. The scalars of the
+    /// rotation are not normalized, since that could change bits.
     fn isometry_numbers(isometry: &Self::Isometry) -> Vec<Self> {
         Self::numbers(isometry)[..Self::ISOMETRY_NUMBERS].to_vec()
     }
 
-    /// Returns the isometry with these scalars. Its rotation is not normalized. `None` if their
-    /// number is wrong.
+    /// Returns the isometry with these scalars. Its rotation is not normalized. `None` if the
+    /// number of scalars is wrong.
     fn isometry_of(numbers: &[Self]) -> Option<Self::Isometry> {
         let mut padded = [Self::ZERO; 7];
         padded[..Self::ISOMETRY_NUMBERS].copy_from_slice(numbers.get(..Self::ISOMETRY_NUMBERS)?);

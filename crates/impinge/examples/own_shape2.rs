@@ -1,7 +1,7 @@
 //! A user-defined convex shape, given by its support map: the Reuleaux triangle. It is bounded by
 //! three arcs around the corners of an equilateral triangle. Like a ball it has the same width in
-//! every direction. So the sum of its distances from two parallel walls is the same at every angle.
-//! Distances, point queries and worlds need only the support map.
+//! every direction. So the sum of the distances of the triangle from two parallel walls is the same
+//! at every angle. Distances, point queries and worlds need only the support map.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 

@@ -11,7 +11,8 @@ use std::collections::{BTreeMap, VecDeque};
 use impinge::dim2::prelude::*;
 use impinge::dim2::world::WorldMark;
 
-/// The data is the number of times that an object was touched. It is rewound with the world.
+/// The data is the number of times that an object was touched. Rewinding the world also rewinds the
+/// data.
 type World = CollisionWorld<f32, u32>;
 
 const FRAMES: usize = 240;

@@ -48,8 +48,8 @@ fn check_numbers(
         return Err("numbers of another type are needed");
     }
     let (count, size) = (accessor.count(), accessor.size());
-    // Without a view all elements are 0 except the sparse ones. The caller limits the number of
-    // elements.
+    // Without a view, all elements are 0 except the sparse elements. The caller limits the number
+    // of elements.
     if let Some(view) = accessor.view() {
         Block { view, offset: accessor.offset(), count, size }.bytes(buffers)?;
     }

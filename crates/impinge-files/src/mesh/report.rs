@@ -17,25 +17,25 @@ pub struct MeshReport {
     pub triangles: usize,
     /// The number of faces with more than three corners that were triangulated.
     pub polygons: usize,
-    /// Vertices with a coordinate that is NaN or infinite. Their faces were dropped.
+    /// Vertices with a coordinate that is NaN or infinite. Faces with such a vertex were dropped.
     pub non_finite_vertices: Defects,
-    /// Faces that name a vertex that does not exist. They were dropped.
+    /// Dropped faces: they name a vertex that does not exist.
     pub out_of_range: Defects,
-    /// Faces with zero area or with fewer than three corners. They were dropped. A polygon counts
-    /// if none of its triangles has positive area.
+    /// Dropped faces with zero area or with fewer than three corners. A polygon counts if none of
+    /// its triangles has positive area.
     pub degenerate: Defects,
-    /// Vertices at the position of an earlier vertex. They were welded. Formats without indices
-    /// count none, as each triangle has its own vertices.
+    /// Vertices at the position of an earlier vertex, with which they were welded. Formats without
+    /// indices count none, as each triangle has its own vertices.
     pub duplicate_vertices: Defects,
-    /// Triangles with the corners and the orientation of an earlier triangle. They were dropped.
+    /// Dropped triangles, which have the corners and the orientation of an earlier triangle.
     pub duplicate_triangles: Defects,
-    /// Edges of one triangle only, at which the surface is open. The index of the defect is that of
-    /// the triangle's face.
+    /// Edges of one triangle only, at which the surface is open. The index of the defect is the
+    /// index of the triangle's face.
     pub boundary_edges: Defects,
-    /// Edges of more than two triangles. The index of the defect is that of the first face.
+    /// Edges of more than two triangles. The index of the defect is the index of the first face.
     pub non_manifold_edges: Defects,
     /// Edges whose two triangles have their fronts on different sides. The index of the defect is
-    /// that of the first face.
+    /// the index of the first face.
     pub inconsistent_edges: Defects,
     /// The number of components of triangles that are connected by edges.
     pub components: usize,

@@ -12,7 +12,7 @@ use crate::{FileError, Problem};
 const MAX_DEPTH: usize = 32;
 
 /// The maximum number of attributes of an element. Parsers compare each attribute with all earlier
-/// ones.
+/// attributes.
 const MAX_ATTRIBUTES: usize = 256;
 
 /// The text of an XML file that is well-formed, with bounded depth and bounded numbers of

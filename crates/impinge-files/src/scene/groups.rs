@@ -1,4 +1,5 @@
-//! Assigns collision groups: those of the document, and those that disable pairs of links.
+//! Assigns collision groups to objects: the groups that the document names, and further groups that
+//! disable pairs of links.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +12,8 @@ use crate::format::{GroupsFile, SceneFile};
 /// The number of groups that the library has.
 const GROUPS: usize = 30;
 
-/// The groups of a scene: those that the document names, and those that disable pairs of links.
+/// The groups of a scene: the groups that the document names, and further groups that disable pairs
+/// of links.
 ///
 /// Groups disable the pairs, so that a recording needs no pair filter. For each pair, one link is
 /// the only member of a group that the other link blacklists. Only groups that the document does
@@ -65,8 +67,8 @@ impl GroupPlan {
     }
 
     /// Assigns groups to objects until each pair is disabled. The object with the most remaining
-    /// pairs gets the next group, which its partners blacklist. This is a greedy vertex cover,
-    /// since there are few groups. It is an error if the groups do not suffice.
+    /// pairs gets the next group, which its partners blacklist. This greedy vertex cover uses few
+    /// groups. An error if the groups do not suffice.
     pub(super) fn separate(
         &mut self,
         objects: usize,
@@ -92,7 +94,8 @@ impl GroupPlan {
         Ok(own)
     }
 
-    /// Returns the groups of an object: those of the file, and those of its disabled pairs.
+    /// Returns the groups of an object: the groups in the document, and the groups from its
+    /// disabled pairs.
     pub(super) fn groups(
         &self,
         file: &GroupsFile,

@@ -23,7 +23,7 @@ impl Scene {
     /// Creates a collision world with the objects in their order. The world is not updated yet. The
     /// data of an object is its name.
     ///
-    /// Objects that share a shape in the document share its handle. The cost is that of building
+    /// Objects that share a shape in the document share a handle. The cost is the cost of building
     /// the shapes, plus O(log n) for each object.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! Converts the shapes of a document to those of the library.
+//! Converts the shapes of a document to shapes of the library.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

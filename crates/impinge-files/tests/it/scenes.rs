@@ -131,8 +131,8 @@ fn a_car_drives_into_the_zone_and_out_of_it() {
         let events = world.proximity_events().iter();
         changes.extend(events.map(|event| (world.seconds(), event.new_status)));
     }
-    // The front of the car is at -3.25 + t. It is within the margin from 1.75 on, in the zone from
-    // 2.25 to 5.75, and beyond the margin after 6.25.
+    // The front of the car is at -3.25 + t. The car is within the margin from 1.75 on, in the zone
+    // from 2.25 to 5.75, and beyond the margin after 6.25.
     use impinge::query::Proximity::{Disjoint, Intersecting, WithinMargin};
     let expected =
         [(1.75, WithinMargin), (2.25, Intersecting), (5.875, WithinMargin), (6.375, Disjoint)];

@@ -1,6 +1,6 @@
 //! Packed recordings: the calls of a recording in about a tenth of its bytes.
 //!
-//! Records are split into streams, and poses are predicted from earlier ones, as `poses.rs`
+//! Records are split into streams, and poses are predicted from earlier poses, as `poses.rs`
 //! describes. The residuals are small numbers, which deflate compresses well.
 
 mod poses;

@@ -18,7 +18,7 @@ use crate::space::Recordable;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Layout {
     pub(super) scalar_bytes: usize,
-    /// The number of components of the translation, which precede those of the rotation.
+    /// The number of components of the translation, which precede the components of the rotation.
     pub(super) dimension: usize,
     pub(super) numbers: usize,
 }
