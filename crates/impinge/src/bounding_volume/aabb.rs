@@ -178,12 +178,13 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         &self.maxs
     }
 
-    /// Returns the centre; not finite if the box is unbounded.
+    /// Returns the centre; not finite if the box is unbounded or its size overflows.
     pub fn center(&self) -> Point<N, D> {
         self.mins + self.half_extents()
     }
 
-    /// Returns half the size along each axis; infinite where the box is unbounded.
+    /// Returns half the size along each axis; infinite where the box is unbounded or its size
+    /// overflows.
     pub fn half_extents(&self) -> Vector<N, D> {
         (self.maxs - self.mins) * N::HALF
     }
@@ -218,8 +219,9 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     /// this box, clamped to `t ≥ 0`; `None` if the boxes do not touch at any `t ≥ 0`.
     ///
     /// This is the slab test with the extents of both boxes added. If `moving` is a single point,
-    /// the result equals [`Self::ray_interval`] of a ray. With a zero velocity the interval is from
-    /// zero to infinity, or the result is `None`. The velocity must be finite.
+    /// the result equals [`Self::ray_interval`] for the ray from that point along `velocity`. With
+    /// a zero velocity the interval is from zero to infinity, or the result is `None`. The velocity
+    /// must be finite.
     pub fn sweep_interval(&self, moving: &Self, velocity: &Vector<N, D>) -> Option<(N, N)> {
         let (mut enter, mut leave) = (N::ZERO, N::INFINITY);
         for axis in 0..D {

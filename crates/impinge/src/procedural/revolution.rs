@@ -4,8 +4,8 @@ use super::TriangleSurface;
 use super::circle::direction;
 use crate::math::{Point, Real, Vector, cross, orthonormal_basis};
 
-/// A circle around the axis that the surface passes through; the first and the last stop of a
-/// profile are points on the axis, and their `radius` is ignored.
+/// A circle on a surface of revolution, in a plane perpendicular to the axis. The first and the
+/// last stop of a profile are points on the axis, and their `radius` is ignored.
 ///
 /// Normals are (away from the axis, along the axis). At a crease the normals on the two sides of
 /// the circle differ.
@@ -52,8 +52,8 @@ impl<N: Real> RevolutionFrame<N> {
     }
 }
 
-/// Returns the surface of a profile, rotated in `count` parts. The profile starts at the far end of
-/// the axis, towards which the axis points.
+/// Returns the surface that results from the rotation of a profile around the axis in `count` equal
+/// steps. The stops are in order from the end towards which the axis points.
 pub(super) fn revolve<N: Real>(
     frame: &RevolutionFrame<N>,
     count: u32,
@@ -84,8 +84,8 @@ struct Bands<'a, N: Real> {
 impl<N: Real> Bands<'_, N> {
     /// Adds the band between the stops `row` and `row + 1`.
     ///
-    /// Seen from outside, with the far end of the axis up, directions run to the left: the third
-    /// vector of the frame, the axis and the first are right-handed.
+    /// Seen from outside, with the far end of the axis up, directions run to the left: they turn
+    /// from the frame's first vector to its third, and the frame is right-handed.
     fn push(&mut self, row: u32, is_last: bool, stops: &[Stop<N>]) {
         let count = u32::try_from(self.directions.len()).expect("a turn has few parts");
         let ring = |row: u32, column: u32| 1 + (row - 1) * count + column;

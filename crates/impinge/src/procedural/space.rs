@@ -27,8 +27,9 @@ use crate::shape::{
 #[must_use]
 pub fn ball<N: Real>(ball: &Ball<N>, subdivisions: u32) -> TriangleSurface<N> {
     // Quadrilaterals between meridians and parallels are flat trapezoids inscribed in the sphere. A
-    // quadrilateral across the equator would be the nearest to the centre: its middle is at cos(π /
-    // n) · cos(π / 4k) of the radius, which is at least cos²(π / n).
+    // quadrilateral across the equator, which does not occur because the equator is a parallel,
+    // would be nearest to the centre: at cos(π / n) · cos(π / 4k) of the radius, which is at least
+    // cos²(π / n).
     let count = parts_of_turn(subdivisions);
     let quarter = count.div_ceil(4);
     let sphere =
@@ -209,8 +210,8 @@ pub fn cuboid<N: Real>(cuboid: &Cuboid<N, 3>) -> TriangleSurface<N> {
     surface
 }
 
-/// Returns the faces of a convex hull, each divided into triangles that meet at its first vertex,
-/// in order.
+/// Returns the faces of a convex hull in their order, each divided into triangles that meet at the
+/// face's first vertex.
 ///
 /// Vertex `i` is the hull's `Vertex(i)`. A hull of `v` vertices gives `2 v − 4` triangles.
 #[must_use]

@@ -51,8 +51,8 @@ fn distinct(points: &[Point<f64, 2>]) -> Vec<usize> {
     order
 }
 
-/// Returns one side of the hull, from the first point of `order` to the last: every corner turns
-/// left.
+/// Returns one chain of the hull, from the first point of `order` to the last: the lower chain if
+/// `order` ascends, the upper chain if it descends. Every corner turns left.
 ///
 /// Andrew, "Another Efficient Algorithm for Convex Hulls in Two Dimensions" (1979).
 fn chain(points: &[Point<f64, 2>], order: impl Iterator<Item = usize>) -> Vec<usize> {

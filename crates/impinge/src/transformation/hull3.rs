@@ -76,8 +76,8 @@ struct HullFaces {
     faces: FaceRings,
 }
 
-/// Computes the hull, and removes redundant vertices until there are none, or too few would be
-/// left.
+/// Computes the hull, and removes redundant vertices: until there are none, the rest would span no
+/// volume, or [`ROUNDS`] rounds are over.
 ///
 /// # Errors
 /// If the points span no volume.
@@ -136,7 +136,7 @@ impl Grown {
 }
 
 /// Returns the used vertices in ascending order, and for each old vertex its index among the used
-/// vertices.
+/// vertices; 0 if it is unused.
 fn numbered(count: usize, corners: impl Iterator<Item = u32>) -> (Vec<usize>, Vec<u32>) {
     let (mut new_indices, mut used) = (vec![0; count], Vec::with_capacity(count));
     corners.for_each(|corner| new_indices[at(corner)] = 1);

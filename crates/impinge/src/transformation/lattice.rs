@@ -132,8 +132,8 @@ mod tests {
         }
     }
 
-    /// Compares signs and magnitudes with expansions, for random points and for points in planes
-    /// and beside them.
+    /// Volumes, area vectors and the signs of 2D areas agree with exact expansions, for random
+    /// points and for points in the plane of the triangle up to rounding.
     #[test]
     fn volumes_are_those_of_expansions() {
         let mut next = numbers();

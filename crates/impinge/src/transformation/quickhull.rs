@@ -36,9 +36,10 @@ pub(super) struct Facet {
     offset: f64,
     /// Twice the facet's area; six times a volume divided by it is a height.
     pub(super) doubled_area: f64,
-    /// The first point of the facet's list of outside points.
+    /// The first point of the facet's list of outside points; [`NONE`] if the list is empty.
     waiting: u32,
-    /// The index of the last search that visited the facet, or [`GONE`].
+    /// The number of the last search that found the facet visible; 0 if none has, [`GONE`] if the
+    /// facet was removed.
     visited: u32,
 }
 
@@ -87,7 +88,8 @@ struct WaitingPoint {
     next: u32,
 }
 
-/// A side between a visible and an invisible facet.
+/// A side between a visible and an invisible facet: its vertices in the order of the visible facet,
+/// and the invisible facet `beyond`.
 #[derive(Clone, Copy)]
 struct HorizonSide {
     from: u32,
@@ -98,7 +100,7 @@ struct HorizonSide {
 /// The surface under construction.
 pub(super) struct HullSurface<'a> {
     points: &'a [P3],
-    /// Points no higher than this over every facet are not added.
+    /// Points that are outside the surface by no more than this are not added.
     tolerance: f64,
     facets: Vec<Facet>,
     /// For each point, its entry in a facet's list.
@@ -328,9 +330,10 @@ impl<'a> HullSurface<'a> {
     }
 
     /// Returns the facet over which a point is highest, and how far the point is outside: its
-    /// height over this facet, or, if that is within the tolerance, at least its distance from the
-    /// surface. The search starts from the facet `first`, which the point is in front of. Near the
-    /// rim of a thin solid no facet has a large height.
+    /// height over this facet or, if that is within the tolerance, the larger of that height and
+    /// the distance from the visible facets. Beside the rim of a thin solid, a distant point has
+    /// only small heights. The search starts from the facet `first`, which the point must be in
+    /// front of.
     fn farthest_outside(&mut self, point: u32, first: u32) -> (u32, f64) {
         self.look(point, first);
         let mut best = (first, 0.0);
