@@ -106,8 +106,8 @@ pub(super) fn check_fronts(
     Ok(())
 }
 
-/// The rounding error of a signed area or volume, as a fraction of the sum of the magnitudes of its
-/// terms.
+/// An upper bound of the rounding error of a signed area or volume, as a fraction of the sum of the
+/// magnitudes of its terms.
 const NONE: f64 = 1024.0 * f64::EPSILON;
 
 #[cfg(test)]

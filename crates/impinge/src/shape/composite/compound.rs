@@ -57,7 +57,8 @@ pub struct Compound<N: Space<D>, const D: usize> {
     depth: u32,
     /// The union of the boxes of the children.
     aabb: Aabb<N, D>,
-    /// The tree over the boxes of the children, enlarged by the rounding errors of placing them.
+    /// The tree over the boxes of the children. Each box is enlarged by the rounding errors of
+    /// placing its child; see [`search_box`].
     pub(in crate::shape) tree: BoxTree<N, D>,
     sphere: BoundingSphere<N, D>,
     /// Whether any child is a composite with a surface, and so has seams.
@@ -429,8 +430,9 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Compound<N, D> {
         self.aabb
     }
 
-    /// Returns the union of the boxes of the children, or, if there are more than `FEW_CHILDREN`,
-    /// the box around the rotated local box.
+    /// Returns the union of the boxes of the children, where the box of a composite child is the
+    /// box around its rotated local box. If there are more than `FEW_CHILDREN`, returns the box
+    /// around the rotated local box of the compound.
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         if self.children.len() > FEW_CHILDREN {
             return self.local_aabb().transformed_by(pose);

@@ -1,7 +1,8 @@
 //! The search of a compound: first among the boxes of its children, then within each composite
 //! child.
 //!
-//! Lower bounds reported by nested searches are also lower bounds in the frame of the compound.
+//! A nested search gets a box that contains the search box, so the lower bounds that it reports are
+//! also lower bounds for the compound.
 
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::outward::slack_of;

@@ -340,8 +340,8 @@ impl<N: Real> Polyline<N, 2> {
     /// # Errors
     /// - [`MeshError::NotClosed`] or [`MeshError::NotOriented`] if the line is not an
     ///   [outline](Self::is_outline), with the first vertex at fault.
-    /// - [`MeshError::InsideOut`] if an outline runs clockwise and lies in no other outline, with a
-    ///   segment of it.
+    /// - [`MeshError::InsideOut`] if an outline runs clockwise and lies in no other outline, with
+    ///   the first segment of that outline.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -378,7 +378,8 @@ impl<N: Real> Polyline<N, 2> {
         Ok(self.one_sided())
     }
 
-    /// Returns a power of two near the largest coordinate of the line.
+    /// Returns a power of two near the largest magnitude of a coordinate. Coordinates are divided
+    /// by it so that areas neither overflow nor underflow.
     fn scale(&self) -> f64 {
         let corners = self.tree.bounds().map(|bounds| [*bounds.mins(), *bounds.maxs()]);
         let largest = |corner: &Point<N, 2>| max_component(&corner.coords);

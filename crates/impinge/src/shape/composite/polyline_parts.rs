@@ -16,8 +16,8 @@ pub(in crate::shape) fn right_of<N: Real>(along: &Vector<N, 2>) -> Vector<N, 2> 
     -perp(along)
 }
 
-/// Returns the unit vector perpendicular to a line, towards the side of `vector`, which may have
-/// any length; `None` if the perpendicular component is only rounding error and gives no side.
+/// Returns the direction of the component of `vector` that is perpendicular to the unit vector
+/// `along`; `vector` may have any length. `None` if this component is zero or only rounding error.
 pub(in crate::shape) fn across<N: Real, const D: usize>(
     along: &Vector<N, D>,
     vector: &Vector<N, D>,

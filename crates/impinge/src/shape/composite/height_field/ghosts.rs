@@ -11,8 +11,8 @@ use super::HeightField;
 use crate::math::Real;
 
 impl<N: Real> HeightField<N, 2> {
-    /// Makes each cell a ghost for which `is_ghost(cell)` is true, and every other cell no ghost;
-    /// see [`Self::set_ghost`].
+    /// Makes exactly those cells ghosts for which `is_ghost(cell)` returns `true`; see
+    /// [`Self::set_ghost`].
     #[must_use]
     pub fn with_ghosts(mut self, mut is_ghost: impl FnMut(usize) -> bool) -> Self {
         let cells = self.num_cells();
@@ -69,8 +69,8 @@ impl<N: Real> HeightField<N, 2> {
 }
 
 impl<N: Real> HeightField<N, 3> {
-    /// Makes each cell a ghost for which `is_ghost(row, column)` is true, and every other cell no
-    /// ghost; see [`Self::set_ghost`].
+    /// Makes exactly those cells ghosts for which `is_ghost(row, column)` returns `true`; see
+    /// [`Self::set_ghost`].
     #[must_use]
     pub fn with_ghosts(mut self, mut is_ghost: impl FnMut(usize, usize) -> bool) -> Self {
         let [rows, columns] = self.pyramid.cells();

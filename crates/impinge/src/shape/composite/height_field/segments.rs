@@ -42,7 +42,7 @@ impl<N: Real> HeightField<N, 2> {
         Ok(field)
     }
 
-    /// Makes each cell a hole for which `is_hole(cell)` is true, and every other cell no hole.
+    /// Makes exactly those cells holes for which `is_hole(cell)` returns `true`.
     #[must_use]
     pub fn with_holes(mut self, mut is_hole: impl FnMut(usize) -> bool) -> Self {
         let cells = self.num_cells();

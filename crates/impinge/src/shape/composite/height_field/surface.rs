@@ -70,7 +70,8 @@ impl<N: Real> OwnSurface<N, 3> for HeightField<N, 3> {
         has_seams.then(|| FaceSeams::new(own.front, self.is_one_sided, bend, |_| true))
     }
 
-    /// Returns true if internal edges are not kept and no two grid points coincide.
+    /// Returns true if internal edges are not kept and grid points certainly do not coincide; see
+    /// `Grid::has_extent`.
     fn has_regular_seams(&self) -> bool {
         !self.keeps_internal_edges && self.grid.has_extent()
     }

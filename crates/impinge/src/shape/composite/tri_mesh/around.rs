@@ -12,10 +12,11 @@ use super::TriMesh;
 use crate::math::{Mapped, Point, Real, Vector, filled, max, max_component, min, unit, unit_or};
 use crate::shape::solids::segment::length_of;
 
-/// The maximum number of sides of zero-area triangles that a walk crosses.
+/// The maximum number of sides, including the first, that a walk through zero-area triangles
+/// crosses.
 const MAX_CROSSED: usize = 32;
-/// A triangle is tall if its squared height over its longest side exceeds this fraction of that
-/// side's squared length.
+/// The squared height of a tall triangle over its longest side exceeds this fraction of that side's
+/// squared length.
 const TALL: f64 = 1.0 / 1024.0;
 
 impl<N: Real, const D: usize> TriMesh<N, D> {

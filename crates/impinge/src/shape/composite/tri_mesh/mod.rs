@@ -125,7 +125,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
     /// Returns one triangle.
     ///
     /// # Panics
-    /// If `index` is not below the number of triangles and ghosts.
+    /// If `index` is not below the total number of triangles and ghosts.
     #[must_use]
     pub fn triangle(&self, index: u32) -> Triangle<N, D> {
         Triangle::of_finite(self.corners(index))
