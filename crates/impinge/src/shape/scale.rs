@@ -27,8 +27,8 @@ pub enum ScaleError {
         /// The factor along that axis.
         value: f64,
     },
-    /// No shape of the library can represent the scaled solid: the solid would have to be sheared,
-    /// or its circular section would become an ellipse.
+    /// No shape of the library can represent the scaled solid: the solid would be sheared, its
+    /// circular section would become an ellipse, or a cone would be reversed.
     NotSuch {
         /// The condition that the factors must meet.
         needs: &'static str,

@@ -28,9 +28,10 @@ pub(in crate::shape) const EDGES: [[u32; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2
 /// to 5 join the vertices 0 1, 0 2, 0 3, 1 2, 1 3 and 2 3.
 ///
 /// A tetrahedron without volume (a height of at most 4096 epsilon times its size) is still the hull
-/// of its corners, and distances to it are as accurate. Its features are then the whole outline,
-/// with the id of one of the faces, and the edges and vertices of the outline. If the corners lie
-/// on a line, the only feature is the longest edge; if they coincide, the first vertex.
+/// of its corners, and distances to it are as accurate as to one with a volume. Its features are
+/// then the whole outline, with the id of one of the faces, and the edges and vertices of the
+/// outline. If the corners lie on a line, the only feature is the longest edge; if they coincide,
+/// the first vertex.
 ///
 /// ```
 /// use impinge::dim3::math::Point;

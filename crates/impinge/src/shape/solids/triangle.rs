@@ -19,9 +19,10 @@ use crate::shape::{
 /// opposite side.
 ///
 /// As features, sides are oriented so that their loop runs counter-clockwise: in 2D with the
-/// triangle on the left, in 3D seen from where the direction points. The normal of a side or edge
-/// lies in the triangle's plane and points out. A triangle without area has its longest side as its
-/// only feature besides the vertices. A triangle whose corners coincide has only its first vertex.
+/// triangle on the left, in 3D seen from the side to which the direction of the query points. The
+/// normal of a side or edge lies in the triangle's plane and points out. A triangle without area
+/// has its longest side as its only feature besides the vertices. A triangle whose corners coincide
+/// has only its first vertex.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Point};

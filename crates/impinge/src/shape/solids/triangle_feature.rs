@@ -124,8 +124,9 @@ impl<N: Real, const D: usize> Triangle<N, D> {
     }
 
     /// Returns the id of the corner, side or face on which a surface point lies, up to `tolerance`.
-    /// In 3D the face is the one on the side to which the unit vector `direction` points. `None` if
-    /// the corners lie on a line, and in 2D for a point inside.
+    /// In 3D the face is the one on the side to which the unit vector `direction` points. `None`
+    /// for a point near several sides but no corner, as on a thin triangle, and in 2D for a point
+    /// inside.
     pub(crate) fn part_at(
         &self,
         point: &Point<N, D>,

@@ -28,7 +28,7 @@ pub(in crate::shape) struct Bend<N: Real> {
 /// The shape of an edge, seen from the front of its faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::shape) enum BendShape {
-    /// The angle between the faces is below `FLAT_SINE`.
+    /// The sine of the angle between the fronts is below `FLAT_SINE`.
     Flat,
     /// Each face lies behind the plane of the other.
     Ridge,
@@ -60,8 +60,8 @@ impl<N: Real> Bend<N> {
     }
 
     /// Returns whether the edge admits the unit vector `normal`, which must differ from both face
-    /// normals. `None` close to a limit, and for a vector that is not on the same side of both
-    /// faces.
+    /// normals. `None` close to a limit, for a vector that is not on the same side of both faces,
+    /// and for a vector behind a concave edge of a one-sided surface, between the two back normals.
     pub(in crate::shape) fn admits(
         &self,
         normal: &Vector<N, 3>,
