@@ -225,8 +225,10 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         Rate { speed: self.drift(None, to) + swings[0] + swings[1], bend: N::ZERO }
     }
 
-    /// Returns the motion of a body's points during `span`, in the frame of the other body, for
-    /// constant velocities. `rate` bounds the approach of any two points.
+    /// Returns a bound of the motion of the points of body `which` during `span`, in the frame of
+    /// the other body. `rate` bounds the approach of any two points. For constant velocities the
+    /// result is a linear function of the position plus a spread, unless the travel by `rate` alone
+    /// is smaller than that spread.
     ///
     /// A point at `u` from the other body's centre has the velocity `u' - S u` in the frame of that
     /// body, which rotates with the generator `S`. The velocity is a linear function of the
@@ -419,7 +421,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     }
 
     /// Computes [`Self::closing`] by differences, from the positions of the points a short time
-    /// later.
+    /// later. Zero, with no error, if the bound of the speed is zero or not finite.
     fn closing_observed(
         &self,
         points: &[Vector<N, D>; 2],

@@ -127,8 +127,9 @@ pub(crate) enum Beginning<N: Real, const D: usize> {
     Apart(Option<Arrival<N, D>>),
 }
 
-/// Returns the impact at the first time on a path at which two solids are at the target distance;
-/// `None` if there is none up to the end of the path.
+/// Returns the first impact of two solids on a path: the first time at which they are at the target
+/// distance, or time zero for a contact at the start that counts as an impact. `None` if there is
+/// no impact up to the end of the path.
 ///
 /// Conservative advancement (Mirtich, "Impulse-based dynamic simulation", 1996). The solids stay
 /// apart at least until the gap along the normal of the nearest points is used up at the closing

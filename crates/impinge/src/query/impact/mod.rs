@@ -111,7 +111,7 @@ pub struct ImpactOptions<N: Real> {
     /// slide on each other, the search accepts that gap. Straight paths ignore this option.
     pub tolerance: Option<N>,
     /// Whether solids that touch or overlap at time zero are an impact at time zero, whatever their
-    /// velocities. False by default: solids that separate or just slide are not.
+    /// velocities. False by default: then the table of [`impact()`] decides.
     pub contact_at_start: bool,
 }
 
@@ -184,8 +184,8 @@ pub enum ImpactStatus {
     Reached,
     /// The time is zero: the solids touch, or are at the target distance, up to rounding.
     TouchingAtStart,
-    /// The time is zero: the solids overlap, or are nearer than the target distance. The distance
-    /// of their two points is then the depth.
+    /// The time is zero: the solids overlap, or are nearer than the target distance. If they
+    /// overlap, the distance of the two points is the depth.
     PenetratingAtStart,
     /// The maximum number of steps was reached: the solids certainly do not touch before the
     /// returned time; whether they touch later is unknown.
@@ -433,7 +433,7 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
         Some(Self { first, ordered, pair, path, scale })
     }
 
-    /// Returns the first impact in canonical order, and its time in the arguments' unit.
+    /// Returns the earliest impact with the solids in canonical order, and its [`Impact::toi`].
     #[inline(always)]
     fn touch(&self) -> Option<(PartArrival<N, D>, N)> {
         let found = if self.ordered.has_composite() {
@@ -449,7 +449,7 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
         toi.is_finite_number().then_some((found, toi))
     }
 
-    /// Converts an impact, given in canonical order, to the world frame and the arguments' order.
+    /// Converts an impact to the world frame. The solids stay in canonical order.
     #[inline(always)]
     fn impact(&self, touch: &PartArrival<N, D>, toi: N) -> Impact<N, D> {
         let (found, features) = if self.ordered.has_composite() {

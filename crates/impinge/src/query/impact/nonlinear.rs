@@ -33,7 +33,8 @@ const NEAR: [f64; 2] = [1.0 / 1_048_576.0, 64.0];
 /// the bodies' sizes.
 const PARTS_WITHIN: f64 = 1.0 / 128.0;
 
-/// Parts are advanced separately while no point moves by more than this fraction of that sum.
+/// Parts are advanced separately while no point moves by more than this fraction of the sum of the
+/// bodies' sizes.
 const PARTS_WAY: f64 = 1.0 / 32.0;
 
 /// Returns the first impact of two bodies that move and rotate.
@@ -382,7 +383,8 @@ impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
         if self.gap > self.tolerance + self.slack() { Mode::Apart } else { mode }
     }
 
-    /// Returns the gap that is accepted as an impact if further steps bring the bodies no nearer.
+    /// Returns the gap that is accepted as an impact if it lasts for more than [`MAX_NEAR_STEPS`]
+    /// consecutive steps.
     fn near(&self) -> N {
         max(N::lit(NEAR[0]), N::lit(NEAR[1]) * N::EPSILON) * self.size
     }

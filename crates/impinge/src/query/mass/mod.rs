@@ -1,7 +1,7 @@
 //! Mass, centre of mass and inertia of shapes.
 //!
-//! Shapes are integrated in doubles, about their centre and in units of their size ([`integrals`]),
-//! whatever the scalar. Closed forms are used where they exist; [`round_ellipsoid`], [`support2`]
+//! Shapes of either scalar type are integrated in doubles, about their centre and in units of their
+//! size ([`integrals`]). Closed forms are used where they exist; [`round_ellipsoid`], [`support2`]
 //! and [`support3`] integrate the other shapes numerically.
 
 mod by_dimension;
@@ -262,7 +262,8 @@ fn of_solid<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns the moments of the set of points within `radius` of a solid with a closed form.
+/// Returns the moments of the set of points within `radius` of a built-in convex solid other than a
+/// [`Kind::Rounded`].
 fn rounded<N: Space<D>, const D: usize>(core: Geometry<'_, N, D>, radius: N) -> Moments<D> {
     match core.0 {
         Kind::Ball(ball) => solids::round_box(&Vector::<N, D>::zeros(), ball.radius() + radius),

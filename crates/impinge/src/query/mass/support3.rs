@@ -28,8 +28,9 @@ const THIN_EPSILON: f64 = 64.0;
 /// The maximum number of times that a group of slices is halved.
 const HALVINGS: u32 = 6;
 
-/// A group is not halved further if the sum of its halves differs from the group by less than this.
-/// In the round frame mass and moments are about 1.
+/// A group is not halved further if its mass plus the trace of its second moments differs by at
+/// most this between the group and the sum of its halves. In the round frame these numbers are
+/// about 1.
 const ENOUGH: f64 = 1e-5;
 
 /// The maximum number of times that each quarter of a slice's outline is halved.
