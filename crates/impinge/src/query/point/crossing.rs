@@ -112,7 +112,9 @@ mod tests {
         })
     }
 
-    /// Tests an outline of the 8 outer points of a grid of three by three.
+    /// Around grid points inside and outside an outline of 8 segments, the rays along all axes give
+    /// the right winding number, even if they run along segments and through corners. Points on the
+    /// outline are not checked.
     #[test]
     fn an_outline_along_the_ray() {
         let ring = [[0, 0], [1, 0], [2, 0], [2, 1], [2, 2], [1, 2], [0, 2], [0, 1]];
@@ -134,7 +136,9 @@ mod tests {
         }
     }
 
-    /// Tests a surface of the 8 corners, the edge midpoints and the face centres of a cube.
+    /// Around grid points inside and outside a cube whose faces are divided at the edge midpoints
+    /// and face centres, the rays along all axes give the right winding number, even if they run
+    /// along triangles and through corners. Points on the surface are not checked.
     #[test]
     fn a_surface_along_the_ray() {
         let mut triangles = Vec::new();

@@ -1,5 +1,6 @@
-//! Fast rejection tests. They find rays that certainly miss a ball or a box, and points that a
-//! solid certainly does not contain. Most rays that hit the bounding box of a solid miss the solid.
+//! Fast rejection tests for rays that certainly miss a ball or a box, and for points that a solid
+//! certainly does not contain. They save most exact tests of rays that hit the bounding box of a
+//! solid but miss the solid.
 
 use crate::bounding_volume::Ray;
 use crate::math::{Point, Real, Vector, max, max_component, min};

@@ -10,8 +10,8 @@ use crate::shape::{FeatureId, Triangle};
 struct RayCorner<N: Real> {
     /// The time at which the line is nearest to the corner.
     t: N,
-    /// The signed distance of the corner from the line, positive on its left, in units of the
-    /// direction's length.
+    /// The signed distance of the corner from the line, positive on its left, multiplied by the
+    /// length of the direction.
     side: N,
 }
 
