@@ -71,9 +71,10 @@ pub(crate) struct Joiner<const D: usize> {
 /// Scratch lists for one chunk.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch<const D: usize> {
-    /// Pairs of a query and a block, or of a block of `second` and a slot of `first`.
+    /// In a search: pairs of a query and a block. In a join: pairs of a block of `second` and a
+    /// slot of `first`.
     pub(super) tasks: TaskList,
-    /// Pairs of a query and a block of the layer below.
+    /// In a search: pairs of a query and a block of the layer below.
     pub(super) next: TaskList,
     /// Swept box of each query of the chunk.
     pub(super) swept_slots: Vec<Bounds<D>>,
@@ -143,7 +144,7 @@ impl<const D: usize> Joiner<D> {
         }
     }
 
-    /// Finds, by queries, the pairs that began or ended with a changed object of the first tree,
+    /// Finds, by queries, the pairs with a changed object of the first tree that began or ended,
     /// and appends them to `changes`.
     fn search_and_report(&mut self, sides: JoinSides<'_, D>, changes: &mut Changes) {
         self.search_changed(sides);

@@ -62,7 +62,7 @@ struct GjkSearch<N: Real, const D: usize> {
     /// on the height of `best`.
     for_points: bool,
     /// The search ends with [`Outcome::Near`] at a point whose distance from the origin is below
-    /// this value; zero for no such end.
+    /// this value; never if it is zero.
     near: N,
 }
 

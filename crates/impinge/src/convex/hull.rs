@@ -73,7 +73,7 @@ impl<N: Real> Hull<N> {
         &self.faces[index]
     }
 
-    /// Returns whether a vertex has exactly this point.
+    /// Returns whether a vertex of the hull equals the point of `vertex` exactly.
     pub(super) fn contains(&self, vertex: &Vertex<N, 3>) -> bool {
         self.vertices.iter().any(|known| known.point == vertex.point)
     }

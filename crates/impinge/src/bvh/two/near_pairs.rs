@@ -1,12 +1,12 @@
 //! Searches for pairs of objects of two trees, each tree in its own frame, nearer pairs first.
 //!
 //! The search is best first over pairs of blocks, one of each tree (Hjaltason and Samet,
-//! "Incremental distance join algorithms for spatial databases", 1998). The search begins with a
-//! descent straight to two objects, whose distance rejects other pairs. The lanes of both blocks
-//! are compared with each other, or only the lanes of the wider block if it is much wider. A box of
-//! one tree is transformed into the frame of the other, so that the axes of both frames separate
-//! blocks. Other directions separate further blocks: along these, the extent of a block is bounded
-//! by its box and its slab.
+//! "Incremental distance join algorithms for spatial databases", 1998). It begins with a descent
+//! straight to one object of each tree; the distance of these two rejects other pairs. The lanes of
+//! both blocks are compared with each other, or only the lanes of the wider block if it is much
+//! wider. A box of one tree is transformed into the frame of the other, so that the axes of both
+//! frames separate blocks. Other directions separate further blocks: along these, the extent of a
+//! block is bounded by its box and its slab.
 //!
 //! ```text
 //!  queue: pairs (block1, block2) by distance

@@ -40,8 +40,9 @@ pub(super) struct RotatedBox<const D: usize> {
     extent: Option<Extent<D>>,
 }
 
-/// Bounds the extent of a region along any direction: the convex hull of `points`, plus the
-/// segments from `-w` to `w` for each `w` of `wider` (a Minkowski sum), widened by `margin`.
+/// A set that contains a region, so that its extent along any direction bounds the region's. It is
+/// the convex hull of `points`, plus the segments from `-w` to `w` for each `w` of `wider` (a
+/// Minkowski sum), widened by `margin`.
 struct Extent<const D: usize> {
     middle: [f32; D],
     points: SmallVec<[[f32; D]; 3]>,

@@ -372,8 +372,8 @@ impl<'a, N: Real> RingClip<'a, N> {
     /// Adds the ends of the overlap interval of two nearly parallel segments. Each contact is an
     /// end of one segment and the point beside it on the other segment. Both points are moved
     /// halfway towards each other, perpendicular to the normal, because they meet there if the
-    /// solids rotate. The moved points are off their segments by at most half the lever arm times
-    /// the sine.
+    /// solids rotate. The moved points are off their segments by at most half their distance from
+    /// the nearest points times the sine.
     fn common_interval(&self, out: &mut Candidates<N, 3>) {
         for (which, ring) in self.rings.iter().enumerate() {
             let other = &self.rings[1 - which];

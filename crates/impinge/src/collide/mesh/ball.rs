@@ -259,7 +259,8 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         Some(Some(PartContact { distance, normal, piece, lowest, status, face, tolerance }))
     }
 
-    /// Filters the normal of the separation `found` of the ball and a triangle by the surface.
+    /// Applies the normal filter of the surface to `found`, the separation of the ball and a
+    /// triangle.
     fn filtered_normal(
         &self,
         centered: &CenteredTriangle<N>,
@@ -278,9 +279,9 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     }
 }
 
-/// Calls `visit` with the indices of some triangles in ascending order. `bits` selects the
-/// triangles of a packet from its two masks, near and hidden. If `visit` returns `None`, stops and
-/// returns `None`.
+/// Calls `visit` with the index of each triangle that `bits` selects, in ascending order. `bits`
+/// receives the two masks of a packet, near and hidden, and returns a mask. If `visit` returns
+/// `None`, stops and returns `None`.
 fn each_lane<N>(
     candidates: &CandidateTriangles<N>,
     bits: impl Fn([u8; 2]) -> u8,

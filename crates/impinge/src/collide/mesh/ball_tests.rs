@@ -34,8 +34,8 @@ fn heights<N: Real>(random: &mut Random, kind: usize) -> Vec<N> {
 }
 
 /// Returns a mesh over a grid. In some meshes, each triangle has its own vertices; some triangles
-/// are left out, turned over or without area; or two vertices are moved, one of them to the
-/// position of another vertex.
+/// are left out, turned over or without area; two vertices are moved, one of them to the position
+/// of another vertex; or contacts with internal edges are kept.
 fn mesh_of<N: Space<3>>(random: &mut Random, heights: &[N]) -> TriMesh<N, 3> {
     let vertex_at = |at: u32| {
         let [x, z] = [at % POINTS, at / POINTS].map(|n| N::lit(f64::from(n) * 0.5 - 2.0));

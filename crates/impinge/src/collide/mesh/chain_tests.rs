@@ -37,8 +37,8 @@ fn heights<N: Real>(random: &mut Random, kind: usize) -> Vec<N> {
     (0..13).map(&mut next).collect()
 }
 
-/// Returns a terrain around the origin: a height field or a polyline, in either direction along x,
-/// one-sided or two-sided.
+/// Returns a terrain around the origin: a height field, perhaps with a hole, or an open or closed
+/// polyline, in either direction along x. It is one-sided or two-sided.
 fn ground_of<N: Space<2>>(random: &mut Random, round: usize) -> Box<dyn Shape<N, 2>> {
     let heights = heights::<N>(random, round % 3);
     let is_one_sided = random.pick(3) == 0;

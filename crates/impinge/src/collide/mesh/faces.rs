@@ -162,7 +162,7 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
         Some(KeptTriangle { part: self.around.parts()[cache_index], corners, seams, tolerance })
     }
 
-    /// Filters the normal of the gap between a triangle and the solid by the surface.
+    /// Applies the normal filter of the surface to the gap between a triangle and the solid.
     fn answer(&self, triangle: &KeptTriangle<'_, N>, gap: &TriangleGap<N>) -> SurfaceAnswer<N> {
         let known = triangle.seams.in_surface(self.surface, &triangle.corners[0]);
         let surface = Some(SurfaceAccess::of_own(&known));

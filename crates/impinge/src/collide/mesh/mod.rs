@@ -408,7 +408,7 @@ pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
         }
         return Some(found).filter(|found| found.distance <= limit).map(in_world);
     }
-    // The deepest contact of two composites is searched among all their contacts.
+    // Any touching pair of two composites will do: their deepest contact is searched below.
     let nearest = match between.composites() {
         [Some(_), Some(_)] => touching_of_ordered(&ordered, limit)?,
         _ => of_ordered(&ordered, limit)?,

@@ -181,8 +181,8 @@ impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
         tolerance: N,
         over: Option<FeatureId>,
     ) -> [FilteredNormal<N, D>; 2] {
-        // The reference point of the other solid and the centre of the part, in the frame of the
-        // part's shape.
+        // In the frame of each shape: the centre of its own part, and the centre or reference point
+        // of the other solid.
         let ([own1, other2], [other1, own2]) = (self.centers[0], self.centers[1]);
         let other2 = self.reference.unwrap_or(other2);
         let [surface1, surface2] = scene.surfaces;

@@ -272,7 +272,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
     }
 
     /// Returns the pair of a convex solid and a part with the shared placement, without computing
-    /// its poses again; `None` for other parts.
+    /// its poses again; `None` for other parts, and if a coordinate overflows.
     fn with_shared_placement(&self, part: &Part<'a, N, D>) -> Option<PlacedPair<'a, N, D>> {
         if let PartSolid::Shape(_) = part.solid {
             return None;

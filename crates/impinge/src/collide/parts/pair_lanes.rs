@@ -230,7 +230,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         dot(along, along).simd_gt(squares * V::all(self.simd, least))
     }
 
-    /// Marks the pairs as unsure for which [`Self::is_wide`] does not select the lane.
+    /// Marks the pairs as unsure in the lanes that [`Self::is_wide`] does not select.
     #[inline(always)]
     fn require_width(&mut self, along: &[V; D], squares: V) {
         self.unsure |= !self.is_wide(along, squares);

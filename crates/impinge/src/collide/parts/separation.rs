@@ -113,8 +113,8 @@ struct TreeParts<'a, 'q, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     visitor: &'q mut dyn PairVisitor<N, D>,
     parts: [&'a dyn CompositeShape<N, D>; 2],
-    /// Rounding error of gaps along a direction; infinite if such gaps cannot be used, because
-    /// parts move or their size is not finite.
+    /// Rounding error of gaps along a direction; infinite if such gaps cannot be used, because a
+    /// shape moves or the size of the shapes is too large.
     slack: N,
     /// Slabs around the part that was visited last.
     slabs: Option<PartSlabs<N, D>>,

@@ -50,7 +50,8 @@ impl<N: Real, const D: usize> SupportMap<N, D> for RoundCuboid<N, D> {
     }
 }
 
-/// A solid of revolution about y, with the y axis exchanged for the axis `axis`.
+/// A solid of revolution whose axis is the coordinate axis `axis` instead of y: the coordinates y
+/// and `axis` of `solid` are exchanged.
 struct Along<N: Real> {
     axis: usize,
     solid: Solid<N, 3>,

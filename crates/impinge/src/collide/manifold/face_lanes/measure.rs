@@ -1,6 +1,6 @@
-//! Measures a solid's supporting feature and 8 triangles along the normals: the distances of the
-//! corners of each outline from the sides of the other outline, and the distances between both
-//! along the normal.
+//! Measures how a solid's supporting feature and each of 8 triangles overlap, projected along the
+//! normal: the distances of the corners of each outline from the sides of the other, and the
+//! distances of the corners from the plane of the other along the normal.
 //!
 //! ```text
 //!      v3 ──────────── v2     seen along the normal n of the lane, which points into the page

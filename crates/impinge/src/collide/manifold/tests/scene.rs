@@ -22,8 +22,8 @@ pub(crate) trait Scene<const D: usize>: Simplicial<D> {
     /// radians. In 2D the last component is the angle.
     fn pose(translation: Vector<Self, D>, turn: [f64; 3]) -> Pose<Self, D>;
 
-    /// Returns a random polytope, and the solids that exist in this dimension only, in the order of
-    /// kinds.
+    /// Returns a random polytope, and a random solid of each kind that exists in this dimension
+    /// only, in the order of kinds.
     fn own(scale: f64, random: &mut Random) -> Vec<Box<dyn Shape<Self, D>>>;
 }
 

@@ -105,8 +105,9 @@ fn visit<N: Scene<3>>(
     }
 }
 
-/// Asserts that the distances of both algorithms agree, that the normal is a unit vector, that the
-/// points lie at the distance from each other along the normal, and that limits are respected.
+/// Asserts that the distances of both algorithms agree, that the normal is a unit vector, and that
+/// the points lie at the distance from each other along the normal. Asserts that a limit slightly
+/// above the distance does not change it, and that a limit slightly below it gives `None`.
 fn separations<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
     visit::<N>((seed, scale), |pair, round, _| {
         let tolerance = tolerance(pair, scale);

@@ -45,8 +45,8 @@ fn benches<N: Real>([low, high]: [f64; 2]) -> Vec<Bench<N>> {
     ]
 }
 
-/// Returns the pose of a solid at `[x, y]`, rotated by an angle about the world's origin and then
-/// moved.
+/// Returns the pose of a solid at `[x, y]`, rotated by `angle` about the world's origin and then
+/// translated by `by`.
 fn placed<N: Real>([x, y]: [f64; 2], angle: f64, by: [f64; 2]) -> Pose<N, 2> {
     let own = Isometry2::new(Vector::<f64, 2>::new(x, y), 0.0);
     let rotated = Isometry2::new(Vector::<f64, 2>::new(by[0], by[1]), angle) * own;
