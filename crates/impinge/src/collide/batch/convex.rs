@@ -9,7 +9,8 @@
 //!
 //! A packet that is at least half full runs in a kernel: pairs of segments or capsules in this
 //! module, pairs of faceted solids in `collide/separation/apart/`. All other pairs are computed one
-//! by one. The results of kernels and of single pairs are bit-identical.
+//! by one. The separations of kernels and of single pairs are bit-identical, and so are the
+//! distances of solids that are apart.
 
 use super::LANES;
 use super::gather::put;
@@ -67,9 +68,9 @@ pub(crate) fn separations2<N: Real>(
     }
 }
 
-/// Writes the distance of each pair in 3D to its `slot` of `out`, bit-identical to [`distance_3d`]:
-/// zero or negative for an overlap, `None` beyond `limit`. `limit` must be zero or more. Sorts the
-/// pairs by kinds.
+/// Writes the distance of each pair in 3D to its `slot` of `out`: bit-identical to [`distance_3d`]
+/// if the solids are apart, any number that is not positive if they overlap, `None` beyond `limit`.
+/// `limit` must be zero or more. Sorts the pairs by kinds.
 pub(crate) fn distances3<N: Real>(
     pairs: &mut [ConvexPair<'_, N, 3>],
     limit: N,

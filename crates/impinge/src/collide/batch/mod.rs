@@ -124,7 +124,8 @@ trait Batch<N: Real, const D: usize> {
         pair: &PairQuestion<'_, N, D>,
     ) -> bool;
 
-    /// Computes, for all lanes at once, everything that needs no branches.
+    /// Computes, for all lanes at once, everything that needs no branches, and stores it in
+    /// `found`.
     fn find<S: Simd, V: Wide<S, Scalar = N>, const L: usize>(
         simd: S,
         inputs: &Inputs<N, D, L>,
@@ -166,7 +167,8 @@ pub(crate) fn update_pairs3<N: Space<3>>(
     run3(solids, Many { level: Level::new(), pairs })
 }
 
-/// Updates one pair in 2D; returns `false` if its kinds have no kernel or the pair is unsupported.
+/// Updates the manifold of one pair in 2D; returns `false`, with nothing changed, if its kinds have
+/// no kernel or the kernel does not support the pair.
 pub(crate) fn update_pair2<N: Space<2>>(
     question: &PairQuestion<'_, N, 2>,
     raw: &mut RawManifold<N, 2>,
@@ -174,7 +176,8 @@ pub(crate) fn update_pair2<N: Space<2>>(
     run2(question.solids, One { question, raw })
 }
 
-/// Updates one pair in 3D; returns `false` if its kinds have no kernel or the pair is unsupported.
+/// Updates the manifold of one pair in 3D; returns `false`, with nothing changed, if its kinds have
+/// no kernel or the kernel does not support the pair.
 pub(crate) fn update_pair3<N: Space<3>>(
     question: &PairQuestion<'_, N, 3>,
     raw: &mut RawManifold<N, 3>,
@@ -182,8 +185,8 @@ pub(crate) fn update_pair3<N: Space<3>>(
     run3(question.solids, One { question, raw })
 }
 
-/// Computes the contact points of a pair in canonical order, as a batch of one. Returns `false` if
-/// its kinds have no kernel or the pair is unsupported.
+/// Computes the contact points of a pair in canonical order, as a batch of one. Returns `false`,
+/// with `raw` unchanged, if its kinds have no kernel or the kernel does not support the pair.
 pub(crate) fn contacts_in_lanes<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     request: &ManifoldRequest<N>,

@@ -244,8 +244,8 @@ impl<V, M> LaneSide<V, M> {
         let depth = self.below_witness(core, line);
         let away = line.flat(core) - self.top.1;
         let (away_squared, radius) = (away * away, self.radius);
-        // Up to this squared distance along the tangent, the surface is the ball around the nearest
-        // end.
+        // Up to this squared distance along the tangent, the surface is the ball around the core's
+        // end nearest to the other solid.
         let turns_squared = radius * radius * (one - self.cosine * self.cosine);
         let round = depth - self.top.0 + (radius * radius - away_squared).sqrt();
         let is_round = away_squared.simd_lt(turns_squared);
@@ -254,8 +254,8 @@ impl<V, M> LaneSide<V, M> {
         radius.simd_le(zero).select(zero, lift)
     }
 
-    /// Returns the lanes where end `end`, in tangent order, is the segment's first end, and the
-    /// lanes where it is the last end.
+    /// Returns the lanes where `ends[end]` is the segment's first end, and the lanes where it is
+    /// the segment's last end.
     #[inline(always)]
     fn end_masks<S: Simd>(&self, end: usize) -> [M; 2]
     where

@@ -156,8 +156,8 @@ impl<'a, V: Copy> Fan<'a, V> {
         Self { old, newest, edges, squares, turns }
     }
 
-    /// Returns the nearest point on the edge to an old corner, ends included, and the lanes where
-    /// the edge has a length.
+    /// Returns the point nearest to the origin on the edge from the newest corner to the old corner
+    /// `old`, ends included, and the lanes where this edge has a length.
     #[inline(always)]
     fn edge<S: Simd, N: Real>(&self, simd: S, old: usize) -> (BestFeature<V>, V::Mask)
     where

@@ -39,8 +39,9 @@ pub(in crate::collide::separation) fn project<N: Real>(
     Projection { distance, outward, point: center - outward * distance }
 }
 
-/// Projects a point outside; `highest` is the side with the largest height of the point. In most
-/// cases the nearest point lies on that side, and the supporting line there proves it.
+/// Projects a point that is outside the polygon; `highest` is the side with the largest height of
+/// the point. In most cases the nearest point lies on that side, and the supporting line there
+/// proves it.
 fn project_from_outside<N: Real>(
     polygon: &Polytope<N, 2>,
     center: &Point<N, 2>,

@@ -38,8 +38,8 @@ pub(in crate::collide::separation) fn project<N: Real>(
     if distance > N::ZERO { project_from_outside(hull, center, highest, &flat) } else { flat }
 }
 
-/// Projects a point outside. `highest` is the face with the largest height of the point, `flat` the
-/// projection onto its plane.
+/// Projects a point that is outside the hull. `highest` is the face with the largest height of the
+/// point, `flat` the projection onto its plane.
 ///
 /// In most cases the nearest point lies on that face, and the supporting plane there proves it.
 fn project_from_outside<N: Real>(

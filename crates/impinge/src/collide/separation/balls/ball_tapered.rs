@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn the_centre_of_an_end() {
-        // By rounding, the end may seem to lie beyond the side.
+        // Because of rounding, the centre of an end may seem to lie beyond the side.
         let (a, b) = (P::new(0.3, 0.1, 0.7), P::new(0.1, -0.2, 0.5));
         for radii in [[0.0, 0.0], [0.2, 0.0], [0.0, 0.2], [0.1, 0.3]] {
             let one = TaperedCapsule::try_from_ends(a, b, radii).expect("finite");

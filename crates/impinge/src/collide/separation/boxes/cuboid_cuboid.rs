@@ -103,8 +103,8 @@ fn along<N: Real>(boxes: &BoxPair<N>, axis: &BoxAxis<N>) -> Separation<N, 3> {
     Separation { distance, normal, point1, point2 }
 }
 
-/// Returns the points of the edges along these axes, one of each box, that face each other along
-/// `normal`.
+/// Returns the nearest points of two edges that face each other along `normal`: an edge of the
+/// first box along its axis `axis1`, and an edge of the second box along its axis `axis2`.
 fn between_edges<N: Real>(
     boxes: &BoxPair<N>,
     axis1: usize,

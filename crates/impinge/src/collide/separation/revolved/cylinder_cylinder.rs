@@ -1,4 +1,4 @@
-//! Cylinder against cylinder.
+//! Separation of two cylinders.
 //!
 //! Tries the directions that can be the normal, each with a cheap proof: normals of caps, the
 //! common perpendicular of both axes, from an axis to the other rim, and from rim to rim. If the
@@ -210,8 +210,9 @@ impl<N: Real> CylinderView<N> {
         if sine * self.other.radius <= rounding_error() {
             return self.over_disk(&(self.center + end));
         }
-        // Vector down along the other cap: minus the component of the normal perpendicular to the
-        // other axis, scaled to the radius and computed without a difference.
+        // Vector from the centre of the other cap to its lowest point: opposite to the component of
+        // the normal perpendicular to the other axis, with the radius as length. It is computed
+        // without a difference of nearly equal numbers.
         let aside = radial(&self.axis) * (cosine / sine * self.other.radius);
         let down = lifted(&aside) - normal * (sine * self.other.radius);
         if cosine.abs() * self.other.half <= rounding_error() {
@@ -419,7 +420,7 @@ pub(in crate::collide::separation) fn radial<N: Real>(v: &Vector<N, 3>) -> Vecto
     Vector::<N, 2>::new(v.x, v.z)
 }
 
-/// Returns the vector perpendicular to the y axis with these components x and z.
+/// Returns the 3D vector (v.x, 0, v.y), which is perpendicular to the y axis.
 fn lifted<N: Real>(v: &Vector<N, 2>) -> Vector<N, 3> {
     Vector::<N, 3>::new(v.x, N::ZERO, v.y)
 }

@@ -41,7 +41,7 @@ const HEIGHT: f64 = 64.0;
 /// neighbours are searched.
 const MAX_APART: usize = 8;
 
-/// A ball among triangles.
+/// A ball, and the triangles among which the near ones are searched.
 pub(crate) struct BallQuestion<'a, N: Real> {
     pub(crate) tiles: &'a [PartPacket<N, 3>],
     /// Number of triangles; lanes of the last packet after them hold copies.
@@ -159,10 +159,10 @@ struct NearestFeatures<N> {
     sides: u8,
     /// Nearest feature: a side by the index of its first corner, a corner by its index plus 3.
     kinds: [N; LANES],
-    /// Lower bounds of the squared distances.
+    /// Lower bounds of the squared distances from the centre of the ball.
     least: [N; LANES],
-    /// Upper bounds of the squared distances; infinite for triangles that must not hide others,
-    /// because they are thin or small.
+    /// Upper bounds of the squared distances from the centre of the ball; infinite for triangles
+    /// that must not hide others, because they are thin or small.
     most: [N; LANES],
 }
 
@@ -183,7 +183,7 @@ struct TrianglePacket<V> {
     nearest: [V; 3],
     /// Squared distances of the nearest points.
     squared: V,
-    /// Squared distances of the farthest corners.
+    /// Squared distances of the farthest corners from the centre.
     farthest: V,
 }
 

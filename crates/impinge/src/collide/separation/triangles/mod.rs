@@ -42,9 +42,10 @@ const MIN_SINE: f64 = 1.0 / 1024.0;
 /// Smallest ratio of height to longest side of a plain case; in a thinner triangle another side may
 /// be as near.
 const TALL: f64 = 1.0 / 32.0;
-/// One corner is nearest if the others are farther by this many rounding errors.
+/// One corner is nearest if the other two are farther by more than this many times
+/// [`rounding_error`].
 const CLEAR: f64 = 64.0;
-/// Smallest length of a side of a plain case, in rounding errors.
+/// The side of a plain case is longer than this many times [`rounding_error`].
 const LONG: f64 = 8192.0;
 
 /// Returns the number that counts as rounding error in arithmetic on numbers up to 2.

@@ -71,8 +71,8 @@ impl<V> Boxes<V, 2> {
         BestSide { is_second, is_y, normal, gap, rounding_error, is_finite }
     }
 
-    /// Returns the best axis of each box. In a tie, the side that comes first in the box's outline
-    /// wins.
+    /// Returns for each box its axis with the largest gap. In a tie, the side that comes first in
+    /// the box's outline wins.
     #[inline(always)]
     fn best_sides<S: Simd, N: Real, M>(&self, simd: S) -> (AxisSide<V, M>, AxisSide<V, M>)
     where
