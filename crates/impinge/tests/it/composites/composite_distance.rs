@@ -208,7 +208,8 @@ fn against_half_spaces() {
     against_planes(&space);
 }
 
-/// Tests that a composite of one part, in the frame of that part, has the result of the part.
+/// Tests that a composite of one part, in the frame of that part, has the distance of the part up
+/// to rounding.
 fn wrapped<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(maker: &Maker<N, R, D>) {
     for seed in 0..60 {
         let random = &mut Random(seed, false);

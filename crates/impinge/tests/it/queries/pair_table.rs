@@ -31,7 +31,7 @@ struct Setting {
     turned: bool,
 }
 
-/// A function that returns a motion from a pose with a given angular speed.
+/// A function that returns the motion which starts at a pose and rotates with an angular speed.
 type Spin<N, R, const D: usize> = fn(&Isometry<N, R, D>, N) -> Box<dyn RigidMotion<N, D>>;
 
 /// The shapes, the rotation and the motion of one dimension.
@@ -42,7 +42,7 @@ struct Stage<N: Real, R, const D: usize> {
 }
 
 impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Stage<N, R, D> {
-    /// Returns the number of pairs with a wrong result or a panic.
+    /// Tests all pairs of shapes and each shape alone; returns how many of these tests fail.
     fn all_pairs(&self, setting: &Setting) -> usize {
         let shapes = (self.shapes)(N::lit(setting.scale));
         let mut wrong = Vec::new();

@@ -86,14 +86,16 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Maker<N, R,
     }
 }
 
-/// Returns the contact of a pair at any distance.
+/// Returns the contact of a pair at any distance; `None` for two half-spaces that overlap without
+/// bound.
 fn contact_of<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     [solid1, solid2]: &[Placed<N, R, D>; 2],
 ) -> Option<Contact<N, D>> {
     contact(&solid1.pose, &*solid1.shape, &solid2.pose, &*solid2.shape, N::INFINITY)
 }
 
-/// Moves the second solid along the normal until the signed distance is about `target`.
+/// Moves the second solid along the normal until the signed distance is about `target`. Does
+/// nothing to a pair without a contact.
 fn bring_to<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     pair: &mut [Placed<N, R, D>; 2],
     target: N,

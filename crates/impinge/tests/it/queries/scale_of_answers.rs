@@ -44,7 +44,8 @@ impl<const D: usize> Draw<D> {
         Vector::<N, D>::from(sizes)
     }
 
-    /// Returns a shape of this kind, of the kinds that exist in both dimensions.
+    /// Returns a shape of the kind, if it is one that exists in both dimensions; `None` for the
+    /// other kinds.
     fn shape<N: Space<D>>(&self, scale: f64) -> Option<ShapeHandle<N, D>> {
         let p = self.points::<N>(scale);
         Some(match self.kind {

@@ -50,7 +50,7 @@ fn meeting<N: Real, const D: usize>(random: &mut Random, round: usize) -> [Vec<P
     [around(random, &corner, &side, on_grid), around(random, &corner, &other, on_grid)]
 }
 
-/// Returns shapes made from some points; the flat ones use the first three.
+/// Returns shapes with these points as corners; triangles and segments use the first three.
 fn shapes2<N: Space<2>>(p: &[Point<N, 2>]) -> Vec<ShapeHandle<N, 2>> {
     let identity = N::isometry(&impinge::math::Pose::identity());
     let triangle = ShapeHandle::new(Triangle::new(p[0], p[1], p[2]));
@@ -114,8 +114,9 @@ fn corners2<N: Space<2, Isometry = Isometry2<N>>>() {
     }
 }
 
-/// Returns whether a segment has an end among the points; other shapes always contain the shared
-/// corner.
+/// Returns `true` if a shape contains the common corner of two lists of points, of which `points`
+/// is the other one. A segment contains it if one of its ends is among these points; all other
+/// shapes contain it.
 fn is_in<N: Space<D>, const D: usize>(shape: &ShapeHandle<N, D>, points: &[Point<N, D>]) -> bool {
     shape
         .as_shape::<Segment<N, D>>()
