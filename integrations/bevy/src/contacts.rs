@@ -19,7 +19,7 @@ where
     /// The point on the surface of the other entity.
     pub other_point: Vec_<D>,
     /// The penetration depth: zero if the entities touch, minus the distance if they are apart,
-    /// which happens only within the prediction.
+    /// which happens only with a prediction.
     pub depth: f32,
 }
 

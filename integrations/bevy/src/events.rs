@@ -7,7 +7,8 @@ use bevy_ecs::prelude::{Component, Entity, EntityEvent, Message};
 
 use crate::{DefaultWorld, WorldKey};
 
-/// Two entities started touching: their distance became zero.
+/// Two entities started touching: their distance became zero, or with a
+/// [prediction](crate::ImpingePlugin::with_prediction) at most twice the prediction.
 ///
 /// As a message it is written once per pair. As an event it is triggered twice, each time with one
 /// of the two entities as target, so that observers of both get it. In a step, ended pairs come

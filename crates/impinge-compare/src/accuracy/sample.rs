@@ -100,7 +100,7 @@ pub struct Known<const D: usize> {
 const TRIES: usize = 12;
 
 /// Draws a pair of these kinds in a regime. `None` if no draw is in the regime: for instance, two
-/// segments in 3D have no depth.
+/// segments in 3D never overlap by more than rounding.
 pub fn draw<const D: usize>(
     dimension: Dimension<D>,
     kinds: [Kind; 2],
