@@ -14,7 +14,8 @@ pub(crate) trait ContactName: Copy {
 #[derive(Debug)]
 pub(crate) struct Contacts<Name> {
     names: Vec<Name>,
-    /// The position in `names` for each index of a contact; [`NOWHERE`] without one.
+    /// For each index of a contact its position in `names`; [`NOWHERE`] for an index without a
+    /// contact.
     places: Vec<usize>,
 }
 

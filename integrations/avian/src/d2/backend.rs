@@ -151,7 +151,7 @@ impl<'m> Rewriting<'m> {
         manifold.points.extend(touches.map(|touch| point(&touch, self.position1)));
     }
 
-    /// Removes the old manifolds that are left.
+    /// Removes the old manifolds that were not replaced.
     fn end(self) {
         self.manifolds.truncate(self.count);
     }
