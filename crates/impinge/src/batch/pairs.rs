@@ -469,7 +469,8 @@ fn nearest_of<N: Space<D>, const D: usize>(
     best
 }
 
-/// Returns the nearer of two pairs; at equal distances the pair with the lower index.
+/// Returns the nearer of two pairs, at equal distances the pair with the lower index; `None` if
+/// both are `None`.
 fn nearer<N: Real>(one: Option<(usize, N)>, other: Option<(usize, N)>) -> Option<(usize, N)> {
     let (Some((index1, distance1)), Some((index2, distance2))) = (one, other) else {
         return one.or(other);

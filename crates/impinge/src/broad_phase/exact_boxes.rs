@@ -91,8 +91,8 @@ mod parallel {
     }
 
     impl<N: Real, const D: usize> ExactBoxes<'_, N, D> {
-        /// Halves the list recursively into parts of at most [`MAX_SERIAL`] boxes, which may run on
-        /// several threads. [`can_split`] must hold for the whole list.
+        /// Implements [`Self::write`] on several threads: halves the list recursively into parts of
+        /// at most [`MAX_SERIAL`] boxes. [`can_split`] must hold for the whole list.
         pub(super) fn write_parallel(
             self,
             bounds: &LooseBounds<'_, D>,

@@ -159,7 +159,7 @@ pub trait ByDimension<N: Real, const D: usize>:
     /// line misses the solid, and possibly if only times before zero hit it.
     fn ray_span(solid: Kind<'_, N, D>, ray: &Ray<N, D>) -> Option<Span<N, D>>;
 
-    /// Returns the first hit of a ray on a mesh.
+    /// Returns the first hit of a ray on a mesh; `None` if there is none by the maximum time.
     fn first_on_mesh(
         mesh: &TriMesh<N, D>,
         question: &RayQuestion<N, D>,

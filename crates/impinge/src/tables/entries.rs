@@ -258,7 +258,8 @@ compiled! {
         shape: &'a dyn Shape<N, D>,
     ) -> Moving<'a, N, D> = Moving::at;
 
-    /// Returns the first hit of a ray, in the frame of the shape.
+    /// Returns the first hit of a ray at or before `max_time`, in the frame of the shape; `None` if
+    /// there is none.
     fn cast_on(
         shape: Geometry<'_, N, D>,
         ray: &Ray<N, D>,

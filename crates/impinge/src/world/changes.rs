@@ -42,8 +42,8 @@ pub(crate) struct BodyEntry<N: Real, const D: usize> {
     /// Handle index, or [`GONE`] if the object was removed.
     index: u32,
     changes: BodyChanges,
-    /// Exact box of the shape at the present pose. If `changes.volume` is `false`, it is the
-    /// unbounded box and nobody reads it.
+    /// Exact box of the shape at the present pose. It is the unbounded box, and is not read, if
+    /// `changes.volume` is `false`.
     aabb: Aabb<N, D>,
 }
 

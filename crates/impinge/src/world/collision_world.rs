@@ -29,7 +29,8 @@ use crate::shape::ShapeHandle;
 /// and events are those of the last update.
 ///
 /// `T` is the user's data, which the world stores and never accesses. It need not be `Send` or
-/// `Sync`; the world is `Send` or `Sync` if `T` is. All orders are canonical, by handle.
+/// `Sync`; the world is `Send` or `Sync` if `T` is. Results come in canonical order, which is the
+/// order of the handles, unless a method describes another order.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};

@@ -11,7 +11,6 @@ use crate::narrow_phase::CollisionObjectHandle;
 
 /// Decides which pairs may exist.
 ///
-/// An update calls a filter only for pairs whose boxes overlap and that fixed marks and groups
 /// An update calls a filter only for a pair whose loosened boxes overlap, whose groups allow it and
 /// of which at most one object is fixed. It calls the filter when the boxes begin to overlap, and
 /// when the pair is filtered again. All filters of a world must return `true` for the pair to

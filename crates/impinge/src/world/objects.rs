@@ -174,7 +174,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }))
     }
 
-    /// Returns the object with id `id` in the dirty tree.
+    /// Returns the object with id `id` in the dirty tree; `None` if it has been removed.
     #[inline]
     pub(super) fn dirty_object(
         &self,

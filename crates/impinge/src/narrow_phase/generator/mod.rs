@@ -31,7 +31,7 @@ pub(crate) const fn conforming_points<const D: usize>() -> usize {
     1 << (D - 1)
 }
 
-/// Computes the contacts of any two built-in shapes, composites included.
+/// Computes the contacts of any two shapes, composites and shapes of users' types included.
 ///
 /// One type serves all pairs: it selects the algorithm by the kinds of the shapes at each
 /// update, so even the shapes may change from one update to the next.

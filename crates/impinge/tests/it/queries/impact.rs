@@ -24,7 +24,7 @@ fn floor() -> Plane<f64, 2> {
     Plane::new(Unit::new_unchecked(V2::y()))
 }
 
-/// Returns the impact of a moving shape with a shape that rests at the origin.
+/// Returns the impact of a moving shape with a shape that rests at the origin, if there is one.
 fn onto(
     still: &dyn Shape<f64, 2>,
     place: Isometry2<f64>,

@@ -104,7 +104,8 @@ where
     }
 
     /// Asserts that nothing touches before the impact and that the solids touch at it; `noise` is
-    /// the rounding error allowed in distances.
+    /// the rounding error allowed in distances. Returns `true` if the solids are apart at the start
+    /// and their impact has the status `Reached`.
     fn check(&self, found: Option<&Impact<N, D>>, gap: &dyn Fn(N) -> N, noise: N) -> bool {
         let what = &self.what;
         let end = found.map_or(self.options.max_time, |found| found.toi);

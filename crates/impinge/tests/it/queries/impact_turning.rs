@@ -50,7 +50,7 @@ fn rod(from: f64, to: f64) -> Segment<f64, 2> {
 /// The motion and the shape of a body.
 type Body<'a, N, const D: usize> = (&'a dyn RigidMotion<N, D>, &'a dyn Shape<N, D>);
 
-/// Returns the impact; asserts that exchanging the bodies gives the flipped impact.
+/// Returns the impact, if there is one; asserts that exchanging the bodies flips it.
 fn both<N: Space<D>, const D: usize>(
     one: Body<'_, N, D>,
     two: Body<'_, N, D>,

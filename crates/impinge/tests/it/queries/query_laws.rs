@@ -291,7 +291,8 @@ fn check_moved<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     assert!(same, "{before} becomes {after} {setting:?}");
 }
 
-/// A moving pair does not touch before the time of impact and touches at it.
+/// Asserts that a moving pair does not touch before the time of impact and touches at it. Returns
+/// `true` if there is an impact.
 fn check_impact<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     setting: &Setting,
     pair: &[Placed<N, R, D>; 2],

@@ -193,7 +193,7 @@ fn meet(one: &Piece, other: &Piece) -> bool {
 }
 
 /// Asserts that pieces on a grid, which often meet at corners and on sides, touch exactly if
-/// integer arithmetic finds a common point.
+/// integer arithmetic finds a common point. Returns the number of pairs that touch.
 fn grids<N: Space<2, Isometry = Isometry2<N>>>() -> u32 {
     let random = &mut Random(63, false);
     let mut touching = 0;

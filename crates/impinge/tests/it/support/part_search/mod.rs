@@ -132,7 +132,8 @@ impl<N: Real, const D: usize> Boxes<N, D> {
         Self { of_parts, around }
     }
 
-    /// Compares random queries with a scan of all boxes.
+    /// Compares random queries with a scan of all boxes. Returns how many of the queries for
+    /// overlaps found parts, and how many found none.
     pub fn check(&self, search: &dyn PartSearch<N, D>, random: &mut Random, count: usize) -> Found {
         let mut found = Found::default();
         assert!(search.bounds().contains(&self.around), "{:?} leaves out parts", search.bounds());
