@@ -99,8 +99,8 @@ where
         Ok(())
     }
 
-    /// Returns the number of manifolds, and the maximum of 1 − |y| over the normals, which is 0 on a
-    /// horizontal surface.
+    /// Returns the number of manifolds, and the maximum of 1 − |y| over the normals, which is 0 on
+    /// a horizontal surface.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let deepest = world.contact_views().map(|(_, _, manifold)| manifold.deepest_contact());
         let steepest = deepest.map(|point| 1.0 - point.contact.normal[1].abs()).reduce(max);
