@@ -220,7 +220,7 @@ fn limits<N: Space<D>, const D: usize>() {
     assert!(nearest(&none, &Aabb::unbounded(), N::INFINITY).is_empty(), "there is nothing");
 }
 
-/// Tests distances whose squares overflow the scalar.
+/// Asserts that the order and the limit hold for distances whose squares overflow the scalar.
 fn huge<N: Space<D>, const D: usize>() {
     let unit = N::MAX.as_f32().min(f32::MAX / 8.0);
     let unit = f64::from(unit) / 64.0;

@@ -1,4 +1,5 @@
-//! Tests manifolds of two placed shapes without a world.
+//! Tests that the manifolds of two placed shapes without a world equal those of a new world and of
+//! a new generator.
 
 use crate::support::query_support::random::Random;
 use crate::support::shape_table::{self, Shapes};

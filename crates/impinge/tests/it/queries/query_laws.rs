@@ -140,7 +140,8 @@ fn of_alike<N: Real, const D: usize>(setting: &Setting) -> N {
     max(N::EPSILON * N::lit(128.0), N::lit(1e-12))
 }
 
-/// Tests all laws for one pair.
+/// Asserts that all distance queries of a pair agree, in both orders, and that limits are
+/// inclusive.
 fn check<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     setting: &Setting,
     pair: &[Placed<N, R, D>; 2],
@@ -343,7 +344,7 @@ fn check_impact<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     found.is_some()
 }
 
-/// Tests all laws for all kinds and regimes.
+/// Asserts that no law is violated for any pair of kinds in any regime.
 fn laws<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     kinds: &[ShapeKind],
     maker: &Maker<N, R, D>,

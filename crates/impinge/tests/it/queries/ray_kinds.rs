@@ -1,4 +1,5 @@
-//! Tests properties common to every kind of shape, in both dimensions and with both scalars.
+//! Tests that every kind of shape is hit from above at its top, in both dimensions and with both
+//! scalars, and that hulls agree with cuboids.
 
 use crate::support::solids;
 

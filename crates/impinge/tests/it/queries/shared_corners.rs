@@ -234,7 +234,8 @@ fn pieces_of_a_grid_touch_by_integers() {
     assert!(found.iter().all(|&touching| touching > 7000), "{found:?} touch");
 }
 
-/// Tests a pair of polygons cut into triangles, with the numbers of a bug report.
+/// Asserts that two polygons with a common vertex touch however they are cut into triangles, with
+/// the numbers of a bug report.
 #[test]
 fn polygons_that_share_a_vertex_touch() {
     let quad = |corners: [[f64; 2]; 4], triangles: [[u32; 3]; 2]| {

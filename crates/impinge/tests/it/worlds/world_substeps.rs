@@ -1,4 +1,5 @@
-//! Tests single pairs computed between updates, and contacts with skins.
+//! Tests that a pair computed between updates has the result of an update, and that contacts with
+//! skins are those of grown shapes.
 
 use crate::support::world_stage;
 
