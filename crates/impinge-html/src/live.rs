@@ -15,7 +15,8 @@ use crate::log::{More, PIECE, SharedLog};
 use crate::page::Page;
 use crate::request::{self, Route};
 
-/// The maximum number of requests that are served at once. Further requests get the status 503.
+/// The maximum number of requests that are served at once. Further requests get the status 503
+/// after [`ADMISSION_TIMEOUT`].
 const MAX_CLIENTS: usize = 32;
 
 /// The maximum number of connections whose requests are incomplete. A further connection closes the
@@ -26,12 +27,12 @@ const MAX_PENDING: usize = 32;
 /// exceeds the limit is closed.
 const IO_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// The interval at which a response that waits for more of the log checks whether its client is
-/// still connected.
+/// The interval at which a response that waits for further bytes of the log checks whether its
+/// client is still connected.
 const POLL: Duration = Duration::from_millis(250);
 
 /// The maximum time for which a request waits until fewer than [`MAX_CLIENTS`] requests are served.
-/// It exceeds [`POLL`], so that requests of clients that have gone end before.
+/// It exceeds [`POLL`], so that the requests of clients that have gone end within this time.
 const ADMISSION_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// The maximum time for which a stopping server waits until its clients have read the rest of their

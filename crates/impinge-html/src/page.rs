@@ -76,7 +76,7 @@ impl Page<'_> {
     /// Returns the HTML of the page. All parts are inserted in one pass, so that a placeholder
     /// within a part is not replaced.
     pub(crate) fn html(&self, assets: &Assets) -> Result<String, HtmlError> {
-        // No part may contain the end tag of its own element, and a script no start of a comment.
+        // No part may contain the end tag of its own element. A script may not contain `<!--`.
         // In JSON `<` can be written as an escape. In strings of scripts and styles a backslash
         // behind `<` breaks the sequence. Outside of strings these sequences do not occur.
         let scene = self.scene.to_string().replace('<', "\\u003c");

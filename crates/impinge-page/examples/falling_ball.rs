@@ -3,7 +3,8 @@
 //!
 //! A ball of radius 0.5 falls onto a floor whose top is at 0. A second ball of this radius rests on
 //! the floor, two units beside the first. While the first ball is at height `h` above its rest
-//! position, the distance between the balls is `sqrt(4 + h²) - 1`. A sensor hangs in the way.
+//! position, the distance between the balls is `sqrt(4 + h²) - 1`. On its way the ball passes a
+//! sensor with half extents of 0.5.
 
 use std::error::Error;
 use std::fs;

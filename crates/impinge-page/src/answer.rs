@@ -44,8 +44,8 @@ pub struct Info {
     /// Whether the record that ends a recording was read. A stream has no such record before its
     /// end, and a recording has none if its program crashed.
     pub complete: bool,
-    /// The time between two steps in seconds, at the normal speed of the page. It is the time step
-    /// of samples, for recordings too.
+    /// The time between two steps in seconds, at the normal speed of the page. Recordings have the
+    /// value of samples, since they contain no time step.
     pub time_step: f64,
     /// A box around all bounded objects at the current step, for the camera.
     pub bounds: [[f64; 3]; 2],

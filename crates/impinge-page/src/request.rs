@@ -50,7 +50,7 @@ pub(crate) enum Opening {
     Sample { name: String },
 }
 
-/// A request for a frame, and its content.
+/// A request for a frame: the layers and the selected objects that it shows.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default)]
 pub struct FrameRequest {

@@ -98,8 +98,8 @@ where
         Ok(())
     }
 
-    /// Sets a control. The page already has the value, so the next status does not list the
-    /// controls because of it.
+    /// Sets a control. The page already has the value, so the next status lists the controls only
+    /// if the sample has changed another control.
     fn control(&mut self, name: &str, value: &ControlValue) -> Result<(), EngineError> {
         self.running.set_control(name, value)?;
         self.drop_recording();

@@ -64,9 +64,9 @@ impl Golden {
     ///
     /// # Errors
     ///
-    /// If there is no golden image, it cannot be read, or the image differs by more than the bound.
-    /// Then `NAME.png` and, after a comparison, `NAME.difference.png` are written to the folder of
-    /// failures.
+    /// If there is no golden image or it is not a valid PNG, if the image differs by more than the
+    /// bound, or if a file cannot be written. Unless the golden image is invalid, `NAME.png` and,
+    /// after a comparison, `NAME.difference.png` are written to the folder of failures.
     pub fn check(&self, name: &str, image: &Image) -> Result<(), GoldenError> {
         let path = self.folder.join(format!("{name}.png"));
         if self.bless {

@@ -26,8 +26,9 @@ pub struct Svg {
 /// A picture of lines.
 ///
 /// Each layer is a group with a class: `object`, `contact-point`, `query-hit` and so on, in the
-/// order of [`Drawn`]. In a group, hidden lines come first, then visible lines, then points, each
-/// of them from far to near, then texts. Lengths on the page are in pixels with two decimals.
+/// order of [`Drawn`]. A group has filled surfaces first, then hidden lines, visible lines and
+/// points, each of them from far to near, then texts. Lengths on the page are in pixels with two
+/// decimals.
 /// Colours that are too dark for a dark page are lighter there. Texts avoid the sides of the page
 /// and each other where possible; texts of points outside the page are omitted. The description
 /// mentions the number of [omitted](Picture::left_out) elements.
@@ -77,8 +78,8 @@ impl Picture<Svg> {
         Self::with_format(camera, format)
     }
 
-    /// Sets a title and a description, for screen readers and tooltips. Characters that XML does not
-    /// allow become U+FFFD.
+    /// Sets a title and a description, for screen readers and tooltips. Characters that XML does
+    /// not allow become U+FFFD.
     #[must_use]
     pub fn with_title(mut self, title: &str, description: &str) -> Self {
         self.format.title = title.to_owned();
@@ -93,8 +94,8 @@ impl Picture<Svg> {
         self
     }
 
-    /// Returns the text of an SVG file. For 3D scenes it samples each line at every half pixel to
-    /// find the hidden parts.
+    /// Returns the text of an SVG file. For a 3D scene, each line is sampled twice per pixel to find
+    /// its hidden parts.
     #[must_use]
     pub fn to_svg(&self) -> String {
         let lens = self.lens();

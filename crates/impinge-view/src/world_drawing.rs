@@ -11,7 +11,7 @@ use impinge::world::CollisionWorld;
 ///
 /// The sizes are scaled by the median of the longest sides of the objects' AABBs. Half-spaces are
 /// drawn up to the largest coordinate of the bounded objects. Objects get six muted colours in
-/// turn, and contact normals, if they are drawn, get a brown. Costs O(n log n) for n objects.
+/// turn, and contact normals, if they are drawn, a brown colour. Costs O(n log n) for n objects.
 ///
 /// ```
 /// use impinge::debug_render::DebugOptions;

@@ -52,8 +52,8 @@ impl Bounds {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Framing {
     pub(crate) origin: [f64; 3],
-    /// The median, over all bounded objects, of half the diagonal of the AABB. If that is 0, an
-    /// eighth of half the diagonal of the world; if that is 0 too, 1.
+    /// The median, over all bounded objects, of half the diagonal of the AABB. If the median is 0,
+    /// an eighth of half the diagonal of the box around all objects; if that is 0 too, 1.
     pub(crate) size: f64,
     /// The distance from its origin up to which a half-space is drawn.
     pub(crate) patch: f64,

@@ -48,8 +48,8 @@ pub(crate) struct Picture<N: Viewed<D>, const D: usize> {
     shapes: Vec<Option<KnownShape<N, D>>>,
     /// The origin and the size of the stage; `None` before the first object.
     framing: Option<Framing>,
-    /// For each index of a handle, whether the object touches another one; `None` after a change of
-    /// the world, until the next frame.
+    /// For each index of a handle, whether the object touches another object; `None` after a change
+    /// of the world, until the next frame.
     touching: Option<Vec<bool>>,
 }
 

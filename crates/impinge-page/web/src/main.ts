@@ -92,8 +92,8 @@ class Page {
 }
 
 /**
- * Returns a line with the dimension and the scalar of a stage, the number of steps of a complete recording, and the
- * program that wrote a recording.
+ * Returns a line with the dimension and the scalar of a stage, the number of steps of a recording that does not grow,
+ * and the program that wrote the recording.
  */
 function facts(info: Info): string {
   const steps = info.steps === null || info.kind === "stream" ? [] : [`${info.steps} steps`];

@@ -13,7 +13,7 @@ const PAD = 10;
 /** The height in CSS pixels; the style sheet has the same value. */
 const HEIGHT = 58;
 /**
- * The heights of the rows in CSS pixels from the top: `changed` has added, removed and changed objects, `queries` has
+ * The distances of the rows from the top in CSS pixels: `changed` has added, removed and changed objects, `queries` has
  * queries and proximities. Started and stopped contacts are bars above and below `track`.
  */
 const ROWS = { changed: 8, track: HEIGHT / 2, queries: 50 };

@@ -318,8 +318,8 @@ fn position(index: usize) -> u32 {
     u32::try_from(index).expect("fewer than 2^32 contacts fit in memory")
 }
 
-/// Sets [`StreamPoint::previous`] of the points of a pair. `before` is the pair in the previous
-/// fill, whose points are `old`.
+/// Sets [`StreamPoint::previous`] of the points of `pair`. `before` is this pair in the previous
+/// fill, and `old` has all points of that fill.
 ///
 /// The search begins behind the last match, since contacts mostly keep their order. Numbers of
 /// contacts increase, so a point with a larger number than all old points of the pair is new.

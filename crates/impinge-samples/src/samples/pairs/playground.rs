@@ -190,8 +190,8 @@ where
             readouts.push(Readout::new("Point 1", format!("{:.3?}", points[0].as_slice())));
             readouts.push(Readout::new("Point 2", format!("{:.3?}", points[1].as_slice())));
         }
-        // The manifold of the world has several points for two flat sides, and one point for a
-        // round side.
+        // A manifold of the world may have several points, for instance for two parallel sides. The
+        // query above returns a single contact.
         let contacts = world.contact_views().map(|(_, _, manifold)| manifold.len()).sum::<usize>();
         readouts.push(Readout::new("Contact points", contacts));
         let time = time_of_impact(&pair, panel).map(|hit| hit.toi);

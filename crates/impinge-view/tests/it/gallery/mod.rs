@@ -72,8 +72,8 @@ fn draw_grid<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns a pose in 2D with a rotation by `angle` radians. Its sine is that of the library, which
-/// is the same on every machine.
+/// Returns a pose in 2D with a rotation by `angle` radians. The library computes sine and cosine
+/// with the same bits on every machine.
 fn turned2(x: f64, y: f64, angle: f64) -> dim2::math::Isometry<f64> {
     let (sine, cosine) = angle.sine_cosine();
     let rotation = dim2::math::Rotation::new_unchecked(dim2::na::Complex::new(cosine, sine));
