@@ -9,9 +9,9 @@
 //!   edges and transparency, texts, and optionally a legend.
 //!
 //! A picture collects the drawing and computes nothing until its bytes are requested. Its
-//! [`Camera`] frames all content, with a margin. Elements with NaN, infinite or huge coordinates are omitted
-//! and [counted](Picture::left_out). The same drawing gives the same bytes on every run and
-//! machine: pictures are computed only by `+ - * /`, square roots and the library's own sine.
+//! [`Camera`] frames all content, with a margin. Elements with NaN, infinite or huge coordinates
+//! are omitted and [counted](Picture::left_out). The same drawing gives the same bytes on every run
+//! and machine: pictures are computed only by `+ - * /`, square roots and the library's own sine.
 //!
 //! ```
 //! use impinge::debug_render::{Color, DebugRender, Drawn};

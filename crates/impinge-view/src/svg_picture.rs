@@ -28,10 +28,9 @@ pub struct Svg {
 /// Each layer is a group with a class: `object`, `contact-point`, `query-hit` and so on, in the
 /// order of [`Drawn`]. A group has filled surfaces first, then hidden lines, visible lines and
 /// points, each of them from far to near, then texts. Lengths on the page are in pixels with two
-/// decimals.
-/// Colours that are too dark for a dark page are lighter there. Texts avoid the sides of the page
-/// and each other where possible; texts of points outside the page are omitted. The description
-/// mentions the number of [omitted](Picture::left_out) elements.
+/// decimals. Colours that are too dark for a dark page are lighter there. Texts avoid the sides of
+/// the page and each other where possible; texts of points outside the page are omitted. The
+/// description mentions the number of [omitted](Picture::left_out) elements.
 ///
 /// ```
 /// use impinge::debug_render::{Color, DebugRender, Drawn};
@@ -94,8 +93,8 @@ impl Picture<Svg> {
         self
     }
 
-    /// Returns the text of an SVG file. For a 3D scene, each line is sampled twice per pixel to find
-    /// its hidden parts.
+    /// Returns the text of an SVG file. For a 3D scene, each line is sampled twice per pixel to
+    /// find its hidden parts.
     #[must_use]
     pub fn to_svg(&self) -> String {
         let lens = self.lens();
