@@ -175,7 +175,7 @@ pub(super) struct Reuse<'t, N: Space<D>, const D: usize> {
     pub(super) tolerance: N,
 }
 
-/// Slices over pairs of one group with built-in contacts.
+/// The rows of some pairs of one group with built-in contacts, with all of their columns.
 type KeptRows<'a, N, S, V, const D: usize> =
     Rows<'a, ContactEntry<N, S>, ContactView<V>, Reference<N, D>>;
 

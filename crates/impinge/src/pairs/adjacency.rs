@@ -84,7 +84,7 @@ impl Head {
     }
 }
 
-/// Eight links in a cache line.
+/// A cache line of a run, with eight links.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(64))]
 struct Line {

@@ -297,8 +297,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         Ok(())
     }
 
-    /// Replaces the groups of an object. Queries use the new groups at once; pairs start and stop
-    /// accordingly at the next update.
+    /// Replaces the groups of an object. Queries use the new groups at once. At the next update,
+    /// pairs that the groups now allow start, and pairs that they now forbid stop.
     ///
     /// # Panics
     /// If the handle is stale; [`Self::try_set_collision_groups`] returns an error instead.
@@ -321,8 +321,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         Ok(())
     }
 
-    /// Changes the query type of an object. Its pairs are computed accordingly from the next update
-    /// on.
+    /// Changes the query type of an object. From the next update on, its pairs are computed with
+    /// the new query type.
     ///
     /// # Panics
     /// If the handle is stale, or a number of the query type is negative or not finite;

@@ -54,7 +54,7 @@ clone_fields!([N: Space<D>, const D: usize, T: Clone] CollisionObjects<N, D, T> 
     first, slots, records, free, changes, table, journal, cloned,
 });
 
-/// A function that clones an object.
+/// A function that clones an object, for worlds with marks.
 type CloneObject<N, const D: usize, T> = fn(&CollisionObject<N, D, T>) -> CollisionObject<N, D, T>;
 
 /// Handle slot: the generation and the record of one handle index.

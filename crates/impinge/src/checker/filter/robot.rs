@@ -81,7 +81,7 @@ pub(super) struct NodePath<N: Real, const D: usize> {
     joints: usize,
 }
 
-/// The state of the construction of a filter.
+/// A [`RobotFilter`] under construction, with the data that only its construction needs.
 struct Builder<'a, N: Real, const D: usize> {
     tree: &'a FrameTree<N, D>,
     shift: Vector<N, D>,

@@ -69,7 +69,8 @@ pub struct PairManifoldGenerator<N: Real, const D: usize> {
     is_readable: bool,
     /// Whether the contacts belong to `numbers` and `request`.
     is_current: bool,
-    /// The coordinates of both isometries at the last update.
+    /// The coordinates of both isometries at the last update, which show whether a shape has moved
+    /// since.
     numbers: [[N; 7]; 2],
     request: ManifoldRequest<N>,
     /// Poses at the last update, for readers.

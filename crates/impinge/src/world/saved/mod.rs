@@ -206,7 +206,8 @@ impl<'de, N: Real, const D: usize, T: Deserialize<'de>> Deserialize<'de> for Sav
 }
 
 struct WorldVisitor<N, T, const D: usize> {
-    /// Whether the format can skip a value of unknown type.
+    /// Whether the format can skip a value of unknown type. If it can, a world of another version
+    /// is read to its end.
     can_skip: bool,
     world: PhantomData<(N, T)>,
 }
