@@ -73,8 +73,8 @@ pub fn capsule<N: Real>(capsule: &Capsule<N, 2>, subdivisions: u32) -> Outline<N
 /// The `n = subdivisions` directions are evenly spaced, starting on the right of the segment. Each
 /// direction gives at most one corner, where it is the normal of an arc; with the four ends of the
 /// sides there are at most `n + 4` corners. The gap is at most `(1 − cos(π / n))` times the larger
-/// radius. If one ball contains the other, the outline is that of the larger ball, with `n`
-/// corners.
+/// radius. If one ball contains the other, the outline is the polygon of `n` corners of the larger
+/// ball.
 #[must_use]
 pub fn tapered_capsule<N: Real>(capsule: &TaperedCapsule<N, 2>, subdivisions: u32) -> Outline<N> {
     let count = parts_of_turn(subdivisions);

@@ -35,7 +35,7 @@ pub(super) struct RevolutionFrame<N: Real> {
 }
 
 impl<N: Real> RevolutionFrame<N> {
-    /// Returns a frame around a unit vector.
+    /// Returns a frame whose second vector is the unit vector `axis`.
     pub(super) fn around(axis: Vector<N, 3>) -> Self {
         let (across, _) = orthonormal_basis(&axis);
         Self { across, axis, third: cross(&across, &axis) }
@@ -53,7 +53,8 @@ impl<N: Real> RevolutionFrame<N> {
 }
 
 /// Returns the surface that results from the rotation of a profile around the axis in `count` equal
-/// steps. The stops are in order from the end towards which the axis points.
+/// steps. The stops of the profile follow each other along the axis, from the end towards which it
+/// points to the other end.
 pub(super) fn revolve<N: Real>(
     frame: &RevolutionFrame<N>,
     count: u32,

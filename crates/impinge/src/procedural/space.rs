@@ -89,8 +89,8 @@ pub fn ellipsoid<N: Real>(ellipsoid: &Ellipsoid<N, 3>, subdivisions: u32) -> Tri
 ///
 /// There are at most `2 + n (2 k + 1)` vertices, with `k = ⌈n / 4⌉`; the first vertex is the pole
 /// beyond the second end of the segment, the last vertex the pole beyond the first end. The gap is
-/// at most `sin²(π / n)` times the larger radius. If one ball contains the other, the surface is
-/// that of the larger ball.
+/// at most `sin²(π / n)` times the larger radius. If one ball contains the other, the result is the
+/// surface of the larger ball.
 #[must_use]
 pub fn tapered_capsule<N: Real>(
     capsule: &TaperedCapsule<N, 3>,
@@ -255,7 +255,7 @@ fn up<N: Real>() -> Vector<N, 3> {
     Vector::<N, 3>::new(N::ZERO, N::ONE, N::ZERO)
 }
 
-/// Returns a point of the y axis.
+/// Returns the point of the y axis at height `y`.
 fn on_axis<N: Real>(y: N) -> Point<N, 3> {
     Point::<N, 3>::new(N::ZERO, y, N::ZERO)
 }

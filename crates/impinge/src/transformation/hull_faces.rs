@@ -131,7 +131,7 @@ impl FaceRings {
         let points = &scaled.points;
         let exact = || area_vector(seed.corners.mapped(|corner| &points[at(corner)]));
         let is_coarse = scaled.unit > DOUBT;
-        // Adding zero makes zeros positive.
+        // Adding zero replaces −0 by 0.
         let normal = if is_coarse { seed.normal.add_scalar(0.0) } else { exact().normalize() };
         self.normals.push(normal);
         let first = (1..ring.len()).fold(0, |first, candidate| {
@@ -207,7 +207,7 @@ fn is_straight(ring: &[u32], vertex: u32, scaled: &Scaled<3>) -> bool {
 /// Merges triangles within the tolerance of one plane into faces.
 ///
 /// Each side of a face is, reversed, a side of the triangle beyond, and so of the face that
-/// contains that triangle. Only `straighten` can break this; then the triangles are used as faces.
+/// contains that triangle. Only `straighten` can break this; then each triangle becomes a face.
 pub(super) fn faces(facets: &[Facet], scaled: &Scaled<3>) -> FaceRings {
     let mut faces = Merger::new(facets, scaled).merged();
     if !faces.straighten(scaled) {

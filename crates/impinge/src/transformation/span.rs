@@ -1,4 +1,4 @@
-//! The span of points: checks and scales their coordinates, and finds a first simplex.
+//! Checks and scales the coordinates of points, and finds a first simplex of the hull.
 
 use super::lattice::rounded;
 use crate::math::{Point, Real, Vector, max};
@@ -9,7 +9,8 @@ pub(super) struct Scaled<const D: usize> {
     /// The points divided by a power of two, which is exact, and rounded to multiples of 2⁻⁶⁰, with
     /// an error of at most 1/512 of `unit`.
     pub(super) points: Vec<Point<f64, D>>,
-    /// One rounding unit of the original scalar at the largest coordinate.
+    /// The rounding unit of the original scalar at the largest coordinate: epsilon times its
+    /// magnitude.
     pub(super) unit: f64,
 }
 

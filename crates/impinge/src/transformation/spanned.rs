@@ -79,7 +79,7 @@ fn without_volume(error: ShapeError) -> Result<(), ShapeError> {
 }
 
 /// Returns the segment between the points that are farthest apart along the axis of the largest
-/// spread.
+/// spread; a segment without length, at the first point, if all points coincide.
 fn segment<N: Real, const D: usize>(
     scaled: &Scaled<D>,
     points: &[Point<N, D>],
