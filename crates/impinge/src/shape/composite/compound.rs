@@ -16,9 +16,9 @@ use crate::shape::{
 /// The union of shapes, its children, each placed in the compound's frame.
 ///
 /// Children may be of any kind: convex solids, half-spaces, meshes, height fields, compounds. The
-/// compound's parts are the parts of its children, indexed in order: first those of child 0, then
-/// those of child 1, … A child that is not a composite is one part. The path to a part is the index
-/// of the child, then the path within the child.
+/// compound's parts are the parts of its children, indexed in order: first the parts of child 0,
+/// then the parts of child 1, … A child that is not a composite is one part. The path to a part is
+/// the index of the child, then the path within the child.
 ///
 /// Seams are handled within the surface of a child, not between children. A search uses the tree
 /// over the boxes of the children, then runs in each composite child that it finds, with the search
@@ -204,7 +204,7 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
 /// `None` if the child would be sheared.
 ///
 /// With M the signs and P the magnitudes of the factors, and R the child's rotation: `M P R = (M R
-/// M) (M (Rᵀ P R))`. This is a rotation after a scale if `Rᵀ P R` is diagonal.
+/// M) (M (Rᵀ P R))`. The product is a rotation after a scale if `Rᵀ P R` is diagonal.
 fn scaled_pose<N: Real, const D: usize>(
     pose: &Pose<N, D>,
     scale: Scale<'_, N, D>,
@@ -234,7 +234,8 @@ fn own_factors<N: Real, const D: usize>(
     (!all.any(is_beside)).then(|| rotated.diagonal())
 }
 
-/// Computes [`Compound::firsts`].
+/// Returns [`Compound::firsts`]: the index of the first part of each child, then the number of
+/// parts.
 ///
 /// # Errors
 /// If the parts do not fit 32-bit indices.

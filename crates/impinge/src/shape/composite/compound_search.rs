@@ -85,8 +85,8 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
 
 /// Returns the box by which the search finds a child. The box is enlarged by the rounding errors of
 /// the child in the frames in which the pair algorithms place it. These errors are proportional to
-/// the child's own coordinates and its position. Both may be much larger than the coordinates of
-/// the placed box.
+/// the child's own coordinates and to its position, which may be much larger than the coordinates
+/// of the placed box.
 pub(in crate::shape) fn search_box<N: Space<D>, const D: usize>(
     shape: &dyn Shape<N, D>,
     pose: &Pose<N, D>,

@@ -127,7 +127,7 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
         None
     }
 
-    /// Returns the composite as a triangle mesh; `None` if it is another shape.
+    /// Returns the composite as a triangle mesh; `None` if the composite is of another type.
     #[doc(hidden)]
     fn as_mesh(&self) -> Option<&TriMesh<N, D>> {
         None
@@ -176,7 +176,7 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
     }
 }
 
-/// One of the solids that a composite is made of.
+/// A part of a composite: a convex solid or a half-space, and its pose.
 ///
 /// ```
 /// use impinge::dim3::math::Isometry;

@@ -19,10 +19,10 @@ use crate::shape::{Revision, Segment};
 /// [`Segment`]; all coordinates are in the frame of the line. Segments join where the positions of
 /// their ends are equal, regardless of vertex indices.
 ///
-/// **Sides.** A line is a skin without an inside. In 2D `encloses` and `signed_distance` use the
-/// area inside, and `solid` makes a closed line a body. In 2D contacts arise on both sides, or only
-/// on the right after `one_sided`. The left is then the solid side, as for an outline that runs
-/// counter-clockwise.
+/// **Sides.** For most queries a line is a skin without an inside. In 2D `encloses` and
+/// `signed_distance` compute what a closed line encloses, and `solid` makes a closed line a body.
+/// In 2D contacts arise on both sides, or only on the right after `one_sided`. The left is then the
+/// solid side, as for an outline that runs counter-clockwise.
 ///
 /// **Seams.** Contacts treat the line as one surface (see [`Surface`](crate::shape::Surface)): at a
 /// joint only normals of the whole line are admitted, so that solids do not catch on the joints of
@@ -198,8 +198,8 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
 
 #[cfg(feature = "serde")]
 impl<N: Real, const D: usize> Polyline<N, D> {
-    /// Replaces the joints by those of a saved line, whose vertices were moved apart after
-    /// construction.
+    /// Replaces the joints by the joints of a saved line whose vertices were moved after
+    /// construction, so that positions no longer determine the joints.
     pub(in crate::shape) fn move_joints(&mut self, joints: Joints) {
         let is_whole = joints.are_together(&self.vertices);
         self.is_cycle = is_whole && is_cycle(self.vertices.len(), &self.segments, &joints);
@@ -226,7 +226,7 @@ impl<N: Real, const D: usize> Polyline<N, D> {
         self.segments.len()
     }
 
-    /// Returns one segment.
+    /// Returns the segment with the index `index`.
     ///
     /// # Panics
     /// If `index` is not below the number of segments.

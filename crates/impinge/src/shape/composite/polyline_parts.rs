@@ -135,8 +135,9 @@ impl<N: Real, const D: usize> Polyline<N, D> {
         front.map_or(N::ZERO, |front| front.dot(vector))
     }
 
-    /// Returns whether the joint admits `normal`: no segment that leaves the joint rises along
-    /// `normal`, and the segments at the joint are not collinear.
+    /// Returns whether the joint admits `normal` ([`Seam::admits`]): no segment that leaves the
+    /// joint rises along `normal`, the segments do not continue each other straight, and on a
+    /// one-sided line the highest segment has its front towards `normal`.
     fn joint_admits(&self, part: u32, end: u32, normal: &Vector<N, D>) -> bool {
         let joint = self.joints.of(self.segments[part as usize][end as usize]);
         let own = self.along(part).unwrap_or_else(Vector::<N, D>::zeros);
@@ -156,13 +157,13 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Polyline<N, D> {
         Geometry(Kind::Composite(self))
     }
 
-    /// Returns the smallest box, in O(1).
+    /// Returns the smallest box around the segments. O(1).
     fn local_aabb(&self) -> Aabb<N, D> {
         self.tree.bounds().copied().unwrap_or_else(Aabb::unbounded)
     }
 
-    /// Returns the smallest box, up to rounding. O(log n) for a nearly convex line, up to O(n) if
-    /// the parts extend almost equally far.
+    /// Returns the smallest box around the segments placed at `pose`, up to rounding. O(log n) for
+    /// a nearly convex line, up to O(n) if many segments extend almost equally far along an axis.
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         aabb_at(pose, &self.segments, &self.vertices, &self.tree)
     }

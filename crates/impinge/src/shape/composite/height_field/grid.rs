@@ -79,7 +79,8 @@ impl<N: Real> GridExtent<N> {
     }
 }
 
-/// The interface of a height field to the search: cells of a grid, each with up to two parts.
+/// The interface through which the search reads a height field: cells of a grid, each with up to
+/// two parts.
 pub(super) trait GridCells<N: Real> {
     fn grid(&self) -> &Grid<N>;
     fn pyramid(&self) -> &Pyramid<N>;

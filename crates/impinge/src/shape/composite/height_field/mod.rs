@@ -146,7 +146,8 @@ impl<N: Real, const D: usize> HeightField<N, D> {
         self.revision.with(&[self.is_one_sided, self.keeps_internal_edges])
     }
 
-    /// Returns the field with the scale `scale`; `depth` is the extent along z.
+    /// Returns the field with the scale `scale` in place of its own. `depth` is the extent along z,
+    /// zero in 2D.
     ///
     /// # Errors
     /// If a coordinate is not finite.

@@ -39,7 +39,7 @@ impl Bends {
         Self { sides }
     }
 
-    /// Clears all values.
+    /// Marks all values as not computed, after the vertices of the mesh moved.
     pub(super) fn clear(&mut self) {
         for side in &mut self.sides {
             *side.get_mut() = UNKNOWN;

@@ -122,7 +122,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         self.triangles.len() - self.ghosts
     }
 
-    /// Returns one triangle.
+    /// Returns the triangle with the index `index`; ghosts follow the triangles.
     ///
     /// # Panics
     /// If `index` is not below the total number of triangles and ghosts.

@@ -89,7 +89,7 @@ impl<N: Real> TriMesh<N, 3> {
     }
 
     /// Calls `visit` with the triangles that the ray may hit before `limit`; `visit` returns the
-    /// new limit. Limits are in the units of the probe. Ghosts are not visited.
+    /// new limit. Limits are times in the unit of the probe. Ghosts are not visited.
     #[inline(always)]
     pub(crate) fn visit_triangles(
         &self,

@@ -107,8 +107,9 @@ impl<N: Real> TriMesh<N, 3> {
     }
 
     /// Returns whether the edge admits `normal`: `normal` is perpendicular to the edge, no face at
-    /// the edge rises along `normal`, and the faces are not coplanar. An exposed side
-    /// ([`Self::is_exposed`]) admits every perpendicular normal.
+    /// the edge rises along `normal`, the faces do not continue each other flat, and on a one-sided
+    /// mesh the highest face has its front towards `normal`. An exposed side ([`Self::is_exposed`])
+    /// admits every perpendicular normal.
     fn bent_edge_admits(
         &self,
         bend: Option<&Bend<N>>,
@@ -132,8 +133,9 @@ impl<N: Real> TriMesh<N, 3> {
         is_across(&edge, normal) && (seam.admits(self.is_one_sided) || self.is_exposed(part, side))
     }
 
-    /// Returns the larger component along `normal`, whose length is at most 1, of the unit vectors
-    /// along the two sides of a triangle that leave a joint. −1 if neither side has a length.
+    /// Returns how steeply a triangle rises from a joint: the larger of the components along
+    /// `normal` of the unit vectors along its two sides that leave the joint. `normal` has a length
+    /// of at most 1. −1 if neither side has a length.
     fn rise_from(&self, triangle: u32, joint: u32, normal: &Vector<N, 3>) -> N {
         let (corners, at) = (self.corners(triangle), self.corner_at(triangle, joint));
         let mut highest = -N::ONE;
@@ -176,7 +178,7 @@ impl<N: Real> TriMesh<N, 3> {
         seam.admits(self.is_one_sided)
     }
 
-    /// Collects the sides that leave a corner, those of `part` first; stops when they reject
+    /// Collects the sides that leave a corner, the sides of `part` first; stops when they reject
     /// `normal`.
     fn edges_around<'n>(
         &self,
