@@ -8,7 +8,7 @@ use crate::math::{Point, Real, Vector};
 /// The id of a feature of a solid's surface.
 ///
 /// In 2D a polygon has vertices and faces (its sides), no edges. Curved surfaces are faces too,
-/// except those of capsules and tapered capsules: their round ends are vertices and their side is
+/// except on capsules and tapered capsules: there the round ends are vertices and the side is
 /// `Edge(0)`, also in 2D. A rounded solid has the features of the solid inside. Each shape
 /// documents its numbering.
 ///

@@ -1,4 +1,4 @@
-//! Tests of the features of every solid, for each scalar and dimension.
+//! Tests of the features of boxes, triangles, segments, capsules, cylinders and cones.
 
 use crate::math::{Point, Real, Vector, cross, max, perp, unit};
 use crate::shape::{

@@ -194,7 +194,7 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
 /// ```
 pub const MAX_NESTING: u32 = 64;
 
-/// Downcasts, for custom dispatchers that handle a type of their own.
+/// Paths to parts, and downcasts for custom dispatchers that handle a type of their own.
 ///
 /// ```
 /// use impinge::dim2::shape::{Ball, Cuboid, ShapeHandle};

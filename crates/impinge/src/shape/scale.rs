@@ -33,7 +33,8 @@ pub enum ScaleError {
         /// The condition that the factors must meet.
         needs: &'static str,
     },
-    /// The scaled coordinates exceed the range of the scalar type.
+    /// The scaled coordinates exceed the range of the scalar type: they overflow, or a solid would
+    /// lose its extent along an axis, or a half-space its normal.
     OutOfRange,
     /// A child of a compound cannot be scaled by these factors, because of its shape or its
     /// rotation.

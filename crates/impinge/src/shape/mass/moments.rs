@@ -4,8 +4,8 @@
 use crate::math::eigen::symmetric_eigen;
 use crate::math::{Matrix, Vector};
 
-/// Moments of at most this fraction of the largest moment are rounding errors of the sums, and
-/// become zero.
+/// A moment of at most this fraction of the largest moment counts as a rounding error of the sums
+/// and becomes zero.
 const THIN: f64 = 16.0 * f64::EPSILON;
 
 /// The mass of a body, its centre of mass, and its principal moments, in the body's frame.

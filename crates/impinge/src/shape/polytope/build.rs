@@ -41,7 +41,7 @@ fn grouped<T: Copy + Default>(
 }
 
 impl<N: Real, const D: usize> Polytope<N, D> {
-    /// Returns a polytope with vertices only; the caller adds faces, edges and fans.
+    /// Returns a polytope with vertices only; the caller adds faces, planes, edges and fans.
     fn from_vertices(vertices: Vec<Point<N, D>>) -> Self {
         Self {
             center: center_of(&vertices),

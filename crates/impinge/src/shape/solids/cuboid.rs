@@ -100,7 +100,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
         (free != CuboidPart::<D>::ALL).then(|| part.id())
     }
 
-    /// Returns the id for `2 · D` bits: the free axes of a [`CuboidPart`], above them the positive.
+    /// Returns the id of the part with the lower `D` bits as `free` and the upper `D` as `corner`.
     #[inline]
     pub(crate) const fn id_of_bits(bits: u8) -> FeatureId {
         CuboidPart::<D>::IDS[bits as usize & ((1 << (2 * D)) - 1)]
@@ -320,7 +320,7 @@ impl<const D: usize> CuboidPart<D> {
     }
 }
 
-/// The corners of a feature, as bit sets of axes: four at most.
+/// The corners of a feature, at most four, each as the set of its positive axes.
 #[derive(Clone, Copy)]
 pub(in crate::shape) struct CuboidRing {
     pub(in crate::shape) corners: [u32; 4],

@@ -115,7 +115,7 @@ impl<N: Real, const D: usize> TaperedCapsule<N, D> {
         if index == 0 { self.segment.a() } else { self.segment.b() }
     }
 
-    /// Returns the radii of the core's balls; one of them is zero.
+    /// Returns the radii of the core's balls; at least one of them is zero.
     fn core_radii(&self) -> [N; 2] {
         self.radii.mapped(|radius| radius - self.rounding())
     }

@@ -10,8 +10,8 @@ use crate::shape::{
     Feature, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap,
 };
 
-/// The convex hull of three corners, which may be given in either order and may coincide or lie on
-/// a line.
+/// The convex hull of three corners, which may be given in any order and may coincide or lie on a
+/// line.
 ///
 /// In 3D the triangle has no thickness and two sides. The vertices 0, 1, 2 are `a`, `b`, `c`. Side
 /// `i` leads from vertex `i` to the next vertex; sides are faces in 2D and edges in 3D. In 3D

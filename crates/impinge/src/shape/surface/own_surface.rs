@@ -71,7 +71,7 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
 }
 
 /// The surface of a composite for the algorithms of the library. A surface of the library also has
-/// the methods of `OwnSurface`; a user's surface has only those of [`Surface`].
+/// the methods of `OwnSurface`; a user's surface has only the methods of [`Surface`].
 ///
 /// Public only because a hidden method returns this type; users can neither construct nor use it.
 #[derive(Clone, Copy)]
