@@ -103,20 +103,20 @@ impl<'a, N: Space<D>, const D: usize> MovingBody<'a, N, D> {
     }
 }
 
-/// The poses of two bodies at one time.
+/// The poses and centres of two bodies at one time, and the direction that separates them.
 pub(super) struct Moment<'b, 'a, N: Space<D>, const D: usize> {
     pub(super) bodies: [&'b MovingBody<'a, N, D>; 2],
     /// The world point to which all positions are relative.
     pub(super) origin: Vector<N, D>,
     pub(super) poses: [Pose<N, D>; 2],
-    /// The centres of motion of the two bodies.
+    /// The positions of the bodies' centres of motion, relative to `origin`.
     pub(super) centers: [Vector<N, D>; 2],
     pub(super) time: N,
     /// The unit vector from the first body to the second, in the world's axes.
     pub(super) normal: Vector<N, D>,
 }
 
-/// One part of each of two bodies.
+/// A part of each of two bodies, both treated as separate bodies.
 pub(super) struct ImpactParts<'p, N: Space<D>, const D: usize> {
     bodies: [MovingBody<'p, N, D>; 2],
     poses: [Pose<N, D>; 2],

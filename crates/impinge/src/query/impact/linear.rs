@@ -13,7 +13,7 @@ use crate::math::{Point, Pose, Real, Space, Vector, max, max_component};
 use crate::shape::{FeatureId, Geometry, Kind};
 use crate::tables::ByDimension;
 
-/// The maximum number of steps.
+/// The maximum number of steps of conservative advancement.
 const MAX_STEPS: usize = 128;
 
 /// The motion of the second solid of a pair in the frame of the first.
@@ -119,7 +119,7 @@ pub(super) fn is_hit_at_start<N: Real>(
     closing > rounding_error || (deep && closing >= -rounding_error) || gap == -N::INFINITY
 }
 
-/// The start of the path of two solids.
+/// The result of [`begin`]: a contact at the start, or an impact later.
 pub(crate) enum Beginning<N: Real, const D: usize> {
     /// The solids are in contact at the start; `counts` is true if the contact is an impact.
     InContact { arrival: Arrival<N, D>, counts: bool },

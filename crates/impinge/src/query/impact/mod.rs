@@ -161,7 +161,7 @@ impl<N: Real> Default for ImpactOptions<N> {
 /// The kind of an impact, and its certainty.
 ///
 /// "At the start" means at time zero, for the two parts of the impact. If a start in contact is not
-/// an impact (see [`impact()`]), the status is that of the later impact.
+/// an impact (see [`impact()`]), the status describes the later impact.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -265,7 +265,7 @@ impl<N: Real, const D: usize> Impact<N, D> {
 ///
 /// Returns `None` if the solids never come within the target distance up to the latest time, and if
 /// a pose, a velocity or the difference of the velocities is not finite. Swapping the solids gives
-/// a bitwise equal result. The unit of time is that of the velocities.
+/// a bitwise equal result. The velocities define the unit of time.
 ///
 /// At the returned time the solids are at the target distance, up to the rounding error of their
 /// sizes and of their initial distance. Before that time they were not nearer by more than that

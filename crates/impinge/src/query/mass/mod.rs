@@ -166,7 +166,7 @@ impl<N: Real> Weighing<'_, N> {
         Ok(found.of_density(self.density()?))
     }
 
-    /// Returns the sum of the children of a compound, in the compound's frame.
+    /// Returns the sum of the moments of a compound's children, in the compound's frame.
     fn of_children<const D: usize>(
         &mut self,
         compound: &Compound<N, D>,
@@ -186,7 +186,7 @@ impl<N: Real> Weighing<'_, N> {
         Ok(all.unwrap_or_else(|| Moments::massless(Vector::<f64, D>::zeros())))
     }
 
-    /// Returns the sum of the parts of a user's composite.
+    /// Returns the sum of the moments of the parts of a user's composite.
     ///
     /// # Errors
     /// If the composite is a surface.
