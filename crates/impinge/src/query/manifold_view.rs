@@ -1,6 +1,7 @@
 //! Views of manifolds, which read the stored contacts in place.
 //!
-//! The contacts of a view are bitwise equal to those of the manifold that it converts to.
+//! The contacts of a view are bitwise equal to the contacts of the manifold to which the view
+//! converts.
 
 use crate::tables::entries;
 use core::fmt;

@@ -83,9 +83,9 @@ impl<N: Real, const D: usize> Witness<N, D> {
 /// without parts, and for two half-spaces with an unbounded overlap.
 ///
 /// The cost for two convex solids is the cost of their distance; a composite is searched for the
-/// parts near the other shape. Of two composites, the parts of the one with fewer parts each search
-/// the other, except parts that are too far away: at most n searches of O(log m), for n parts and m
-/// parts. A half-space not aligned with an axis is tested against every part.
+/// parts near the other shape. Of two composites with n and m parts, n ≤ m, the larger one is
+/// searched for each part of the smaller one that is not too far away: at most n searches of O(log
+/// m). A half-space not aligned with an axis is tested against every part.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Point, Vector};

@@ -34,7 +34,8 @@ fn sign(determinant: f64) -> i64 {
 }
 
 /// Returns the contribution of a segment in 2D, whose left is inside. A point on a segment across
-/// the ray may go undetected; the winding number is then that of a point beside the segment.
+/// the ray may go undetected; the result is then the contribution around a point beside the
+/// segment.
 pub(super) fn of_segment(
     ends: [Point<f64, 2>; 2],
     point: &Point<f64, 2>,
@@ -59,8 +60,8 @@ pub(super) fn of_segment(
 }
 
 /// Returns the contribution of a triangle in 3D, whose front is outside. A point on a triangle
-/// parallel to the ray may go undetected; the winding number is then that of a point beside the
-/// triangle.
+/// parallel to the ray may go undetected; the result is then the contribution around a point beside
+/// the triangle.
 pub(super) fn of_triangle(
     corners: [Point<f64, 3>; 3],
     point: &Point<f64, 3>,

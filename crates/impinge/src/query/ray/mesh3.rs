@@ -1,8 +1,8 @@
 //! First hits of rays on a mesh in 3D, with a fast path for hits in the interior of a triangle.
 //!
-//! The results are bitwise equal to those of [`each_hit`](crate::query::composite::each_hit). For
-//! speed, the normal is computed once, at the end, the code is compiled in one piece, and rays are
-//! traced in groups.
+//! The results are bitwise equal to the first hits that
+//! [`each_hit`](crate::query::composite::each_hit) finds. For speed, the normal is computed once,
+//! at the end, the code is compiled in one piece, and rays are traced in groups.
 
 use super::triangle3::{InnerHit, TriangleRay};
 use super::{Answers, RayBatch, RayCast, RayIntersection, first_that};
@@ -131,7 +131,7 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
         loosened(self.latest)
     }
 
-    /// Tests a triangle, and keeps it if it is hit first.
+    /// Tests a triangle. Keeps it if its hit is the first so far.
     #[inline(always)]
     fn propose(&mut self, part: u32, corners: &[Point<N, 3>; 3]) {
         let Some(inner) = self.own.inner_hit(corners) else {

@@ -1,4 +1,4 @@
-//! A line and a rounded solid.
+//! Ray casts against a rounded solid: the span of time during which the ray's line is inside.
 
 use super::Span;
 use super::support_map::RaySolid;

@@ -1,4 +1,5 @@
-//! A line and a filled triangle in 2D.
+//! Ray casts against a filled triangle in 2D: the span of time during which the ray's line is
+//! inside.
 
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;
