@@ -110,8 +110,8 @@ impl<N: Real> Bands<'_, N> {
         }
     }
 
-    /// Returns the normals at two neighbouring columns; at a pole, twice the normal midway between
-    /// the columns.
+    /// Returns the normals at two neighbouring columns. At a pole both are the normal midway
+    /// between the columns.
     fn normals(
         &self,
         profile: &Vector<N, 2>,

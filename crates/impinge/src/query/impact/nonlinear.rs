@@ -25,8 +25,8 @@ const MAX_PART_STEPS: usize = 64;
 /// The maximum number of consecutive steps with a gap below [`NEAR`], if no tolerance is given.
 const MAX_NEAR_STEPS: usize = 256;
 
-/// Limits of a near gap: a fraction of the sum of the bodies' sizes and distance (2^-20), and a
-/// number of epsilons of that sum. The larger limit applies.
+/// A gap is near if it is at most the larger of two limits: a fraction (2^-20) of the sum of the
+/// bodies' sizes and distance, and a number of epsilons of that sum.
 const NEAR: [f64; 2] = [1.0 / 1_048_576.0, 64.0];
 
 /// Parts of composites are advanced one by one if the gap is less than this fraction of the sum of

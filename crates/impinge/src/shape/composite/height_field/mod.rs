@@ -59,8 +59,8 @@ use crate::shape::error::finite;
 /// terrain made of many fields (`with_ghost_border`).
 ///
 /// Construction takes one pass over the heights; a change of one height costs O(log n). Memory:
-/// about two numbers per height, and a byte per cell once a cell is a hole, a ghost or has a
-/// diagonal of its own.
+/// about two numbers per height, and a byte per cell once any cell is a hole, a ghost or has a
+/// diagonal that differs from the rule.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Vector};

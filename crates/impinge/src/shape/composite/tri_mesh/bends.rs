@@ -46,8 +46,8 @@ impl Bends {
         }
     }
 
-    /// Returns the cached shape of the edge angle at a side, or computes the shape with `find` and
-    /// stores it. `None` if the shape is uncertain.
+    /// Returns the cached shape of the edge at a side, or computes the shape with `find` and stores
+    /// it. `None` if the shape is uncertain.
     pub(super) fn at(
         &self,
         triangle: u32,
