@@ -8,13 +8,13 @@ mod engine {
     use std::process::Command;
     use std::{env, fs};
 
-    /// The environment variable with the path of a finished module, which is then used instead of
-    /// building one.
+    /// The environment variable for the path of a compiled module. If it is set, that module is
+    /// embedded and none is built.
     const READY: &str = "IMPINGE_PAGE_MODULE";
 
     const TARGET: &str = "wasm32-unknown-unknown";
 
-    /// Writes `page.wasm.gz` into the output folder of the build.
+    /// Writes the compressed module as `page.wasm.gz` into the output folder of the build script.
     pub(super) fn embed() -> Result<(), String> {
         println!("cargo::rerun-if-env-changed={READY}");
         let folder = variable("OUT_DIR")?;
@@ -38,8 +38,8 @@ mod engine {
         env::var_os(name).map(PathBuf::from).ok_or_else(|| format!("cargo does not set {name}"))
     }
 
-    /// Builds the engine with its own target folder, since the outer cargo holds the lock of the
-    /// default one. Returns the path of the module.
+    /// Builds the engine with the target folder `folder`, since the outer cargo holds the lock of
+    /// the default target folder. Returns the path of the module.
     fn build(folder: &Path) -> Result<PathBuf, String> {
         let crates = variable("CARGO_MANIFEST_DIR")?.join("..");
         for name in
@@ -51,7 +51,7 @@ mod engine {
         cargo.current_dir(&crates);
         cargo.args(["build", "--profile", "page", "-p", "impinge-page", "--lib"]);
         cargo.args(["--target", TARGET, "--target-dir"]).arg(folder);
-        // The flags and the linter of the outer build do not apply to the engine.
+        // The flags and the compiler wrappers of the outer build do not apply to the engine.
         for name in
             ["CARGO_ENCODED_RUSTFLAGS", "RUSTC_WRAPPER", "RUSTC_WORKSPACE_WRAPPER", "CLIPPY_ARGS"]
         {

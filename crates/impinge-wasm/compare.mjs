@@ -2,8 +2,8 @@
 //
 //     node compare.mjs MODULE.wasm FILE...
 //
-// Each line of a file is a name and 16 hexadecimal digits. Every hash of the module must be in some file, and
-// no file may have another.
+// Each line of a file is a name and 16 hexadecimal digits. Each name of the module must occur in at
+// least one file, and every file that has the name must have the same hash.
 
 import { readFileSync } from "node:fs";
 

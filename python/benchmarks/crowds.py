@@ -29,7 +29,7 @@ median of {rounds} rounds (of one where more than 2000 move), both sides in turn
 is FCL's time for both as a multiple of impinge's.
 """
 
-# If there are more objects, a single round moves all of them.
+# If a scene has more objects than this, all of them move in one round only.
 FEW = 2000
 
 SIDES = {"impinge": impinge.trimesh.CollisionManager, "trimesh": trimesh.collision.CollisionManager}
@@ -139,7 +139,7 @@ class Crowd:
 
     @staticmethod
     def compare(answers: dict[str, Any]) -> None:
-        """Prints differing results: for names whether there are any, for distances only positive ones."""
+        """Prints differing results: of names only whether there are any, of distances only positive ones."""
         ours, theirs = (answer[0] if isinstance(answer, tuple) else answer for answer in answers.values())
         if isinstance(ours, bool):
             if ours != theirs:

@@ -16,8 +16,8 @@ from timing import markdown, write_csv
 
 # Differences above this fraction of the sum of both radii are examined.
 TOLERANCE = 1e-6
-# The number of rows in differences.csv for each pair, family, library and result: the largest. All differences are
-# counted.
+# The number of rows in differences.csv for each pair, family, library and result: those with the largest differences.
+# All differences are counted.
 KEPT = 5
 
 ABOUT = """\
@@ -40,7 +40,8 @@ class Group:
     compared: int
     verdicts: Counter[str]
     largest: float
-    # The largest difference: impinge, the other library, bounds, which is right, the family and its row.
+    # The largest difference: the values of impinge and of the other library, the bounds, which library is right, the
+    # family and the row in it.
     example: tuple[object, ...]
     # The largest errors of impinge and of the other library in the rows that differ.
     errors: tuple[float, float]

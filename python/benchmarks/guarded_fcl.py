@@ -14,7 +14,8 @@ import numpy as np
 from rivals import Answers, empty
 from solids import Array, Solid
 
-# Seconds after which a call, which takes microseconds, counts as not returning, and a process as not starting.
+# The seconds after which a call, which usually takes microseconds, counts as not returning, and those after
+# which a process counts as not started.
 PATIENCE, START = 1.0, 20.0
 # The number of failures after which signed distances are no longer requested.
 MOST_FAILURES = 2

@@ -22,7 +22,7 @@ def placements(family: str, one: Solid, two: Solid, count: int) -> tuple[Array, 
     poses1 = matrices(Rotation.random(count, random_state=rng).as_matrix(), rng.normal(size=(count, 3)))
     poses2 = matrices(Rotation.random(count, random_state=rng).as_matrix(), np.zeros((count, 3)))
     directions = _directions(rng, one, two, poses1, poses2)
-    # The gap along the direction in which the second solid lies.
+    # The wanted gap along the direction in which the second solid lies.
     size = one.radius + two.radius
     _move(size * rng.uniform(0.05, 2, count), directions, (one, poses1), (two, poses2))
     if family == "near":

@@ -18,7 +18,7 @@ from timing import Side, arguments, interleaved, machine, markdown
 
 HEADER = ("robot", "bodies", "question", "configurations", "touching", "differ", "impinge us", "Coal us", "Coal / impinge")
 
-# The mesh is a bumpy ball, about as large as the workspace of the robots, beside them.
+# The radius and the centre of the mesh, a bumpy ball within reach of the robots.
 RADIUS, PLACE = 0.4, (0.6, 0.1, 0.5)
 
 

@@ -41,7 +41,8 @@ Z_TO_Y = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 
 
 class Robot:
-    """A robot in both libraries. Its pairs are bodies of joints that are not consecutive and do not touch at zero."""
+    """A robot in both libraries. Its pairs are bodies of joints that are not consecutive, and that do not touch if all joints are at
+    zero."""
 
     def __init__(self, name: str) -> None:
         file, kind, names, _ = ROBOTS[name]

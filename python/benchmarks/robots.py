@@ -121,8 +121,8 @@ class Sides:
         return table
 
     def _touches(self, row: int) -> bool | None:
-        """Whether a pair overlaps in a configuration, by support functions; `None` if a pair without corners may
-        decide."""
+        """Whether a pair overlaps in a configuration, by support functions; `None` if it depends on a pair with a shape
+        without corners."""
         poses = self.robot.poses(self.configurations[row])[:, None]
         corners, is_sure = self.pinocchio.corners, True
         for one, two in self.robot.pairs:
@@ -195,7 +195,7 @@ class Pinocchio:
         for solid in self.geometry.geometryObjects:
             solid.geometry = _hull(solid.geometry)
         names = {solid.name: number for number, solid in enumerate(self.geometry.geometryObjects)}
-        # The index of each of the robot's bodies.
+        # The index that each of the robot's bodies has in Pinocchio's geometry.
         self.numbers = [names["_".join(body.name.rsplit("/", 1))] for body in robot.bodies]
         for one, two in robot.pairs:
             self.geometry.addCollisionPair(pinocchio.CollisionPair(self.numbers[one], self.numbers[two]))
@@ -257,7 +257,8 @@ def _corners(shape: Any) -> Solid | None:
 
 
 def _columns(path: Path, model: Any, robot: Robot) -> list[tuple[int, bool, int, float, float]]:
-    """For each joint of the model: its index, whether it is a circle, and the column of the robot that drives it."""
+    """For each joint of the model: its index, whether it has a cosine and a sine, the column of the robot that drives
+    it, and the multiplier and the offset of a mimic joint."""
     mimics = {}
     for joint in ElementTree.parse(path).getroot().iter("joint"):
         if (mimic := joint.find("mimic")) is not None:

@@ -183,7 +183,7 @@ def _half_space() -> Solid:
         coal.Halfspace(up, 0.0),
         fcl.Halfspace(up, 0.0),
         Z_TO_Y,
-        # Only along its normal; certify uses no other direction.
+        # Right only along the normal of the half-space; `certify` uses no other direction.
         np.zeros_like,
         lambda p: np.maximum(p[..., 1], 0),
         0.5,

@@ -1,4 +1,5 @@
-"""Which of many gripper poses around a cup are free, and the depths of the fingers in the cup for the others."""
+"""Which of many gripper poses around a cup are free, and the depths of the fingers in the cup for the other
+poses."""
 
 import impinge
 import numpy as np

@@ -22,7 +22,7 @@ NO_PAGE = (
 class Recording:
     """A recording of every change and update of a world between `World.record` and `stop`.
 
-    A `with` block stops it at its end. `save` writes one HTML file that replays the recording in any browser, without a
+    A `with` block ends the recording at its end. `save` writes one HTML file that replays the recording in any browser, without a
     network, or the recording itself as `.implog`. A notebook shows it in place, `height` pixels high.
 
     >>> import impinge

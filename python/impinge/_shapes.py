@@ -1,9 +1,9 @@
 """Constructors of shapes from numbers and arrays.
 
-All shapes are centred at the origin of their local frame; capsules, cylinders and cones are along y. `dtype` is "float64" or
-"float32", or NumPy's type: the scalar in which the library computes with the shape. Two shapes are equal, with equal hashes,
-if they have the same kind and were created from the same numbers. `vertices` and `faces` return their geometry. Invalid
-arguments raise ValueError with the value.
+Shapes that are given by sizes are centred at the origin of their local frame; capsules, cylinders and cones are along y.
+`dtype` is "float64" or "float32", or NumPy's type: the scalar in which the library computes with the shape. Two shapes are
+equal, with equal hashes, if they have the same kind and were created from the same numbers. `vertices` and `faces` return
+their geometry. Invalid arguments raise ValueError with the value.
 """
 
 from __future__ import annotations
@@ -275,7 +275,7 @@ def Rounded(shape: Shape, radius: float) -> Shape:
 
 
 def ConvexHull(points: ArrayLike, *, dtype: DType = "float64") -> Shape:
-    """The convex hull of points (n, 3); in 2D of points (n, 2). ValueError if it has no volume (no area).
+    """The convex hull of points (n, 3); in 2D of points (n, 2). ValueError if the hull has no volume (in 2D no area).
 
     >>> ConvexHull([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0.1, 0.1, 0.1]])
     <impinge.ConvexHull 3D float64>
@@ -376,7 +376,7 @@ def HeightField(
     scale: (D,), the extents of the whole grid along x (and z), and the factor of heights along y. holes: bools for missing
     cells, (n-1,) in 2D and (rows-1, columns-1) in 3D, or (rows-1, columns-1, 2) for the triangles of cells. ghosts: bools
     (n-1,) or (rows-1, columns-1) for cells that nothing touches, but whose edges to other cells are internal edges. Ghosts are
-    the border that a tile of a terrain shares with its neighbours; with it nothing bumps into the edge between two tiles.
+    the border that a tile of a terrain shares with its neighbours; with ghosts nothing bumps into the edge between two tiles.
     backward: a bool, or one for each cell in 3D, whether the two triangles of the cell share the other diagonal. one_sided:
     there are no contacts from below.
 

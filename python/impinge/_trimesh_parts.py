@@ -54,11 +54,11 @@ class ContactData:
 
     @property
     def depth(self) -> float:
-        """The penetration depth there."""
+        """The penetration depth at the point."""
         return float(self._depth)
 
     def index(self, name: str) -> int:
-        """The face of this mesh."""
+        """The index of the face of the mesh `name`."""
         return self._faces[name]
 
 
@@ -77,7 +77,7 @@ class DistanceData:
         return self._distance
 
     def index(self, name: str) -> int:
-        """The face of this mesh."""
+        """The index of the face of the mesh `name`."""
         return self._faces[name]
 
     def point(self, name: str) -> NDArray[np.float64]:

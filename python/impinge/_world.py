@@ -29,7 +29,7 @@ class World(WorldQueries):
     """Objects with shapes and poses; `update` computes their contacts.
 
     margin: the length by which boxes of the broad phase are enlarged. dim: 2 or 3. dtype: "float64" or "float32", of shapes and
-    results. Handles are uint64 arrays (n,). A handle is never reused for another object of its world; a stale one raises
+    results. Handles are uint64 arrays (n,). A handle is never reused for another object of its world; a stale handle raises
     ValueError that names its row. Calls that raise change nothing. Queries use changes at once, pairs and events at the next
     `update`.
 
@@ -135,8 +135,8 @@ class World(WorldQueries):
     def set_vertices(self, handle: int, vertices: ArrayLike) -> None:
         """Deforms the `TriMesh` or `Polyline` of one object: vertices (n, D), as many as it has, in the local frame.
 
-        Contacts on parts that hardly move keep their ids. It costs less than a new shape: adjacency and the tree of boxes are
-        kept.
+        Contacts on parts that hardly move keep their ids. This costs less than setting a new shape: adjacency and the tree of
+        boxes are kept.
 
         >>> from impinge import *
         >>> world = World(dim=2)
@@ -232,13 +232,13 @@ class World(WorldQueries):
     def contacts(self) -> NDArray[np.void]:
         """All contact points found by the last update: a structured array (m,).
 
-        Fields: `first`, `second` (handles), `depth` (a length, negative where they are apart), `normal` (D,) from the first to
-        the second, `point1`, `point2` (D,) in the world frame, `part1`, `part2` (indices of parts, such as triangles).
+        Fields: `first`, `second` (handles), `depth` (a length, negative where the objects are apart), `normal` (D,) from the first
+        to the second, `point1`, `point2` (D,) in the world frame, `part1`, `part2` (indices of parts, such as triangles).
         """
         return structured(CONTACT, self._world.contacts())
 
     def proximities(self) -> NDArray[np.void]:
-        """The pairs with a margin that intersect or are within it: a structured array (m,) like `proximity_events`."""
+        """The pairs with a margin that intersect or are within the margin: a structured array (m,) like `proximity_events`."""
         return structured(EVENT, self._world.proximities())
 
     def _picture(self, view: View) -> tuple[str, bytes]:

@@ -34,7 +34,7 @@ class WorldImpact(NamedTuple):
 
 
 class WorldProjection(NamedTuple):
-    """The nearest points on objects: point (n, D), is_inside (n,), handle (n,); NaN and `NO_OBJECT` without one."""
+    """The nearest points on objects: point (n, D), is_inside (n,), handle (n,); NaN and `NO_OBJECT` without a result."""
 
     point: Floats
     is_inside: Flags

@@ -58,8 +58,8 @@ def ask_scene(
     pandas DataFrame of m rows; returns an array (m,) of dtype `dtype`. Threads share the world, so `question` must not change
     it.
 
-    Returns a Dask Array (n,), or a Dask Series with the index of the DataFrame, in the order of the rows. It is not yet
-    computed.
+    Returns a Dask Array (n,), or a Dask Series with the index of the DataFrame, in the order of the rows. The result is not
+    computed yet.
 
     >>> import dask.array, impinge
     >>> from impinge.dask import ask_scene

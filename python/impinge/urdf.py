@@ -74,7 +74,7 @@ class Robot:
             for body in _bodies(model, numbers[link.name], f"{link.name}/{number}", collision, meshes)
         ]
         self.pairs = self._separate_pairs()
-        # The checker of `pairs` and the pairs that it was created for. It caches convex hulls of meshes.
+        # The checker of `pairs`, cached with the pairs for which it was created. The checker caches convex hulls of meshes.
         self._kept: tuple[NDArray[np.int64], Checker] | None = None
 
     @classmethod
@@ -121,8 +121,8 @@ class Robot:
         return ~self._own().is_free(np.atleast_2d(self._checked(configurations)))
 
     def self_distance(self, configurations: ArrayLike) -> NearestBodies:
-        """The nearest of `pairs` for each configuration (n, joints): distance zero if it touches; infinite, and bodies -1, if
-        there are no pairs."""
+        """The nearest of `pairs` for each configuration (n, joints): distance zero if the pair touches; infinite, and bodies
+        -1, if there are no pairs."""
         return self._nearest(self._own(), configurations, 0)
 
     def collides(self, configurations: ArrayLike, shapes: Sequence[Shape], obstacles: PosesLike) -> NDArray[np.bool_]:
@@ -212,7 +212,7 @@ def _frame(joint: Any, links: dict[str, int], columns: list[str]) -> Frame:
 
 
 def _bodies(model: yourdfpy.URDF, link: int, name: str, collision: Any, meshes: str) -> list[Body]:
-    """Returns the bodies of a collision element: one, or one for each part of a mesh file."""
+    """Returns the body of a collision element, in a list."""
     origin = np.eye(4) if collision.origin is None else np.asarray(collision.origin, dtype=np.float64)
     geometry = collision.geometry
     if geometry.box is not None:

@@ -13,7 +13,8 @@ use crate::space::Numeric;
 /// The number of elements of a call.
 #[derive(Clone, Copy)]
 pub(crate) enum Extent {
-    /// A single element, whose result is scalars. A quick query takes about as long as releasing the interpreter.
+    /// A single element, whose result is scalars. If `is_quick` is `true`, the query takes no
+    /// longer than releasing the interpreter would.
     Lone { is_quick: bool },
     /// Several elements, whose result is arrays.
     Many(usize),
@@ -33,7 +34,8 @@ impl Extent {
         }
     }
 
-    /// Wraps a list of one value for each element.
+    /// Converts a list with one value for each element to slots. The value of a single element is
+    /// taken out of the list.
     pub(crate) fn of_list<T>(self, mut list: Vec<T>) -> Slots<T> {
         match self {
             Self::Lone { .. } if list.len() == 1 => Slots::One([list.remove(0)]),
@@ -50,7 +52,7 @@ impl Extent {
     }
 }
 
-/// The values of all elements; the value of a single element needs no list.
+/// The values of all elements; the value of a single element is stored without a list.
 pub(crate) enum Slots<T> {
     One([T; 1]),
     Many(Vec<T>),

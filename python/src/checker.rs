@@ -119,7 +119,7 @@ fn of_kind<N: Numeric<D>, const D: usize>(
     checker.downcast().map_err(|_| PyTypeError::new_err("a checker of another kind"))
 }
 
-/// The rows of an array (m, 2).
+/// Returns the rows of an array (m, 2).
 fn rows_of(pairs: &PyReadonlyArray2<'_, u32>) -> PyResult<Vec<[u32; 2]>> {
     Ok(pairs.as_slice()?.as_chunks::<2>().0.to_vec())
 }

@@ -204,8 +204,9 @@ fn contact_manifolds<'py>(
 
 /// The nearest pair of a batch: `Nearest(pair, distance)`, or -1 and an infinite distance beyond `max_distance`.
 ///
-/// Arguments and errors as in `distance`. It is faster than computing all distances, because the distance found so far
-/// limits the others. Among equal distances the pair with the lowest index is returned.
+/// Arguments and errors as in `distance`. This is faster than computing all distances, because the
+/// smallest distance found so far limits the search in the other pairs. Among equal distances the
+/// pair with the lowest index is returned.
 ///
 /// >>> import impinge, numpy as np
 /// >>> poses = np.tile(np.eye(4), (3, 1, 1)); poses[:, 0, 3] = [7, 3, 5]

@@ -42,7 +42,7 @@ pub(crate) struct QueryOptions {
     /// The prediction of contacts, which is added to that of the other object; used if there is no
     /// margin.
     prediction: f64,
-    /// The margin of proximity, which then replaces contacts.
+    /// The margin of proximity. An object with a margin queries proximity instead of contacts.
     margin: Option<f64>,
 }
 

@@ -20,14 +20,15 @@ pub(crate) enum PointQuestion {
     /// The nearest point of the shape; if `solid`, a point inside is its own projection.
     Project { solid: bool },
     /// The signed distance, negative inside. Open surfaces have no inside: they are an error unless
-    /// `surface`.
+    /// `surface` is `true`.
     SignedDistance { surface: bool },
-    /// Whether the point is inside. Open surfaces are an error unless `surface`.
+    /// Whether the point is inside. Open surfaces are an error unless `surface` is `true`.
     Contains { surface: bool },
 }
 
 impl PointQuestion {
-    /// Returns `surface` if the query is about the inside, for which closed surfaces are solids.
+    /// Returns `surface` if the query is about the inside, for which closed surfaces are solids;
+    /// otherwise `None`.
     const fn is_about_inside(self) -> Option<bool> {
         match self {
             Self::Project { .. } => None,
@@ -106,7 +107,8 @@ impl<'py> Task for AskPoints<'_, 'py> {
 }
 
 impl AskPoints<'_, '_> {
-    /// Returns the results if a shape is a surface. Closed surfaces are solids here.
+    /// Returns the results of a query about the inside if a shape is a surface. Closed surfaces are
+    /// solids here.
     fn of_solids<N: Numeric<D>, const D: usize>(
         &self,
         given: &GivenSide<'_, '_, N, D>,

@@ -1,4 +1,4 @@
-//! Shapes: handles of the library behind one Python class, whatever their scalar and dimension.
+//! Shapes: handles of the library, of every scalar and dimension, behind one Python class.
 
 use std::any::Any;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ use crate::space::{Kind, Numeric, Task, run_in};
 #[pyclass(frozen, module = "impinge")]
 pub(crate) struct Shape {
     pub(crate) kind: Kind,
-    /// A `ShapeHandle` of the kind.
+    /// A `ShapeHandle` of this scalar and dimension.
     handle: Arc<dyn Any + Send + Sync>,
     /// The function of the package that creates such shapes.
     name: String,
@@ -63,7 +63,8 @@ struct Description<'a, 'py> {
     kind: Kind,
 }
 
-/// The arguments of [`Shape`] in Python: see [`Description`] for the last nine.
+/// The arguments of [`Shape`] in Python: name, dimension and scalar, then the fields of
+/// [`Description`] from `numbers` to `solid`.
 type Arguments<'py> = (
     String,
     u8,

@@ -59,10 +59,10 @@ impl<N: Numeric<D>, const D: usize> GivenSide<'_, '_, N, D> {
         self.shapes.at(element)
     }
 
-    /// Whether a shape is a surface or a polyline.
+    /// Returns `true` if any shape of the side is a surface or a polyline.
     ///
     /// # Errors
-    /// `ValueError` names the row of a surface that is not closed, unless `surface`.
+    /// `ValueError` names the row of a surface that is not closed, unless `surface` is `true`.
     pub(crate) fn has_surface(&self, surface: bool) -> PyResult<bool> {
         let [name, _] = self.names;
         let mut has_surface = false;
@@ -78,8 +78,8 @@ impl<N: Numeric<D>, const D: usize> GivenSide<'_, '_, N, D> {
         Ok(has_surface)
     }
 
-    /// Returns the shapes and poses of all elements; a single one if the side has one shape and one
-    /// pose.
+    /// Returns the shapes and poses of all elements; a single element if the side has one shape and
+    /// one pose.
     pub(crate) fn placed(&self) -> PyResult<Vec<(&ShapeHandle<N, D>, Pose<N, D>)>> {
         let poses = self.poses()?;
         let len = self.side(&*poses)?.len();

@@ -42,7 +42,7 @@ thread_local! {
 
 /// Pools that are used often.
 struct Pools {
-    /// The id of the process that owns them.
+    /// The id of the process that owns the pools.
     process: u32,
     /// A pool with a thread for each core.
     all: Option<Arc<ThreadPool>>,

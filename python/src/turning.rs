@@ -20,7 +20,7 @@ pub(crate) trait Turning<const D: usize>: Space<D> {
     /// The number of components of an angular velocity.
     const ANGULAR: usize;
 
-    /// Returns constant velocities; the angular one has [`Self::ANGULAR`] components.
+    /// Returns a motion with constant velocities; `angular` has [`Self::ANGULAR`] components.
     fn motion(
         position: Self::Isometry,
         linear: Vector<Self, D>,

@@ -62,7 +62,7 @@ def answer(ask, queue):
 
 
 def with_a_child(ask, queue):
-    """Asks in a child of this child."""
+    """Runs the queries in a child process of this child process."""
     ask()
     answer_of_child = in_child(multiprocessing.get_context("fork"), ask)
     queue.put(answer_of_child)

@@ -229,8 +229,8 @@ def test_any_layout_of_memory_is_read(dtype):
 @RELAXED
 @given(st.data())
 def test_worlds_are_a_naive_model(data):
-    """After bulk changes in any order, the touching pairs are those of single queries, and events are the
-    differences."""
+    """After bulk changes in any order, the touching pairs are those of single queries, and the events are the changes
+    since the last update."""
     dim, dtype = data.draw(st.sampled_from([2, 3])), data.draw(DTYPES)
     world, model, before = impinge.World(dim=dim, dtype=dtype), {}, set()
     ball = impinge.Ball(0.75, dim=dim, dtype=dtype)

@@ -6,8 +6,8 @@ use crate::args::Numbers;
 use crate::error::CliError;
 use crate::number::significant;
 
-/// Converts a number of an argument; an error if it becomes infinite in the scalar. `name` is the
-/// argument, for the error.
+/// Converts a number of an argument; an error if it is infinite after rounding to the scalar.
+/// `name` is the name of the argument in the error.
 pub(crate) fn scalar<N: Real>(name: &'static str, value: f64) -> Result<N, CliError> {
     let converted = N::lit(value);
     if converted.is_finite_number() {
@@ -32,7 +32,7 @@ pub(crate) fn vector<N: Real, const D: usize>(
     Ok(vector)
 }
 
-/// Converts a direction of an argument; an error if it is zero. Its length is arbitrary.
+/// Converts a direction of an argument; an error if it is zero. The result is not normalized.
 pub(crate) fn direction<N: Real, const D: usize>(
     name: &'static str,
     numbers: &Numbers,

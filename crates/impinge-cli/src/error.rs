@@ -9,7 +9,8 @@ use impinge_html::HtmlError;
 use impinge_record::{ReadError, RecordError};
 use impinge_samples::SampleError;
 
-/// An error that ends the command with exit code 2. Its message names the file and the value.
+/// An error that ends the command with exit code 2. The message names the file or the argument at
+/// fault, if there is one.
 #[derive(Debug)]
 pub(crate) enum CliError {
     /// A scene, mesh or robot file is invalid.

@@ -115,7 +115,7 @@ pub(crate) fn complain(error: &CliError) {
 }
 
 /// Writes a message of one line. Control characters are escaped here, whatever the source of the
-/// text. Long texts should be shortened by the caller.
+/// text. The text is cut after [`MAX_WORDS`] words, and [`Printable`] shortens long words.
 fn message(style: Style, kind: &str, text: &dyn fmt::Display) {
     let text = text.to_string();
     let words = text.split_inclusive(' ').take(MAX_WORDS);
@@ -129,8 +129,8 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
     fs::write(path, bytes).map_err(|error| CliError::Write { path: path.to_owned(), error })
 }
 
-/// A file that is written in pieces. It is created when the first piece is written, so that an
-/// earlier error does not destroy an existing file.
+/// A file that is written in pieces. The file is created when the first piece is written, so that
+/// an earlier error does not destroy an existing file.
 #[derive(Debug)]
 pub(crate) struct Growing<'a> {
     path: &'a Path,

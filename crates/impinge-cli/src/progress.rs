@@ -17,7 +17,7 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Creates a bar of `steps` steps. `work` is the text before it.
+    /// Creates a bar of `steps` steps. `work` is the text before the bar.
     pub(crate) fn new(steps: usize, work: &'static str) -> Self {
         let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::hidden());
         let style = ProgressStyle::with_template("{msg} {wide_bar:.cyan} {pos}/{len} {eta}");

@@ -79,15 +79,15 @@ impl Loaded {
         &self.scene
     }
 
-    /// Creates a world with the objects. It is not updated yet.
+    /// Creates a world with the objects of the scene. The world is not updated yet.
     pub(crate) fn world<N: Stage<D>, const D: usize>(
         &self,
     ) -> Result<CollisionWorld<N, D, String>, CliError> {
         Ok(self.scene.collision_world()?)
     }
 
-    /// Creates an updated world for queries about its objects, which contains no contacts between
-    /// them.
+    /// Creates an updated world for queries about its objects. All objects are fixed, so that no
+    /// contacts between them are computed.
     pub(crate) fn world_without_pairs<N: Stage<D>, const D: usize>(
         &self,
     ) -> Result<CollisionWorld<N, D, String>, CliError> {
@@ -131,7 +131,8 @@ impl Loaded {
         self.max_pairs
     }
 
-    /// Creates a recorded world with moving objects, whose recording has these key frames.
+    /// Creates a recorded world with moving objects, and with a key frame every `key_frames.every`
+    /// updates; without key frames if that is `None`.
     pub(crate) fn moving<N: Stage<D>, const D: usize>(
         &self,
         key_frames: KeyFrames,

@@ -108,8 +108,8 @@ impl<N: Scalar> Stage<3> for N {
     }
 }
 
-/// A computation that is generic over scalar and dimension. It is a type, since a closure cannot be
-/// generic.
+/// A computation that is generic over scalar and dimension. Tasks are types, since a closure cannot
+/// be generic.
 pub(crate) trait Task {
     /// The result of the computation.
     type Answer;

@@ -49,8 +49,8 @@ pub(crate) struct PairNumbers {
     pub(crate) depth: Option<Number>,
 }
 
-/// Returns the pairs of a world that touch or are near. Pairs with contacts come first. Both lists
-/// are in the order of the handles.
+/// Returns the pairs of a world that touch or are near: first the pairs with contact queries, then
+/// the pairs with proximity queries. Both groups are sorted by the handles of their objects.
 fn near_pairs<N: Recordable<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
 ) -> impl Iterator<Item = ([&CollisionObject<N, D, T>; 2], PairNumbers)> {
@@ -83,7 +83,7 @@ pub(crate) fn pairs<N: Recordable<D>, const D: usize>(
     named.collect()
 }
 
-/// Returns `true` if any two objects touch. The search ends at the first pair.
+/// Returns `true` if any two objects touch. The search ends at the first touching pair.
 pub(crate) fn touches<N: Recordable<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
 ) -> bool {

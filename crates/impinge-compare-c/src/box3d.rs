@@ -241,7 +241,7 @@ impl Drop for Box3d {
     fn drop(&mut self) {
         let _lock = table();
         // SAFETY: the world exists, and the table is locked. The data that its shapes point to is
-        // freed after it.
+        // freed after the world.
         unsafe {
             ffi::b3DestroyWorld(self.world);
             self.meshes.iter().for_each(|mesh| ffi::b3DestroyMesh(*mesh));
@@ -251,7 +251,7 @@ impl Drop for Box3d {
 }
 
 /// Returns `true` if this adapter supports the shape. Cylinders and cones are not supported: those
-/// of Box3D are hulls with a number of sides.
+/// of Box3D are hulls with flat sides.
 const fn has(shape: &SceneShape<3>) -> bool {
     use SceneShape::{Ball, Capsule, Convex, Cuboid};
     matches!(shape, Ball { .. } | Cuboid { .. } | Capsule { .. } | Convex { .. })

@@ -6,7 +6,7 @@ use std::ptr::NonNull;
 
 type Handle = *mut c_void;
 
-// `coal.cpp` describes the arguments. An array is as long as the count next to it says.
+// `coal.cpp` describes the arguments and the lengths of the arrays.
 unsafe extern "C" {
     fn impinge_coal_ball(radius: f64) -> Handle;
     fn impinge_coal_box(half: *const f64, radius: f64) -> Handle;
@@ -155,15 +155,15 @@ impl CoalPairs {
         unsafe { impinge_coal_reset(self.handle.as_ptr(), margin, is_warm) }
     }
 
-    /// Computes the distance of every pair in a set; 0 if they overlap.
+    /// Computes the distance of every pair in a set; 0 for a pair of solids that overlap.
     pub fn distances(&mut self, set: usize, answers: &mut Vec<f32>) {
         let handle = self.begin(set, answers);
         // SAFETY: the index of the set was checked, and there are as many answers as pairs.
         unsafe { impinge_coal_distances(handle, set, answers.as_mut_ptr()) }
     }
 
-    /// Computes the signed distance of the deepest contact of every pair; infinite if there is none
-    /// within the margin.
+    /// Computes the signed distance of the deepest contact of every pair in a set; infinite for a
+    /// pair without a contact within the margin.
     pub fn contacts(&mut self, set: usize, answers: &mut Vec<f32>) {
         let handle = self.begin(set, answers);
         // SAFETY: the index of the set was checked, and there are as many answers as pairs.

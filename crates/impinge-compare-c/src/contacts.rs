@@ -9,12 +9,13 @@ pub(crate) trait ContactName: Copy {
     fn generation(self) -> u32;
 }
 
-/// The contacts that have begun and not ended. It is kept here because neither engine has a list of
-/// all contacts.
+/// The contacts that have begun and not ended. The list is kept here because neither engine has a
+/// list of all contacts.
 #[derive(Debug)]
 pub(crate) struct Contacts<Name> {
     names: Vec<Name>,
-    /// The position in `names` for each index of a contact; [`NOWHERE`] without one.
+    /// For each index of a contact its position in `names`; [`NOWHERE`] for an index without a
+    /// contact.
     places: Vec<usize>,
 }
 

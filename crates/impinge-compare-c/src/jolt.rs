@@ -12,18 +12,20 @@ use crate::{Digest, sorted};
 
 /// The duration of a step in seconds. Jolt does not accept 0; no body has a velocity.
 const STEP: f32 = 1.0 / 60.0;
-/// The number of layers, of objects and of the broad phase: one that contains all bodies.
+/// The number of object layers, and of broad-phase layers: one layer contains all bodies.
 const LAYERS: u32 = 1;
 
 /// A world of Jolt.
 ///
-/// Its bodies are kinematic, have no velocity and never sleep; they may collide with each other if
-/// that is enabled. Terrain is static. A step sets the poses of moved objects and makes a step of
-/// the engine with the job system that runs on the calling thread. Pairs without a dynamic body are
-/// passed to the contact listener but not to the solver. The dynamics that remain are a pass over
-/// the bodies, which moves none of them, and one that updates their boxes.
+/// Its bodies are kinematic, have no velocity and never sleep. By an option of each body, kinematic
+/// bodies collide with each other and with static ones. Terrain is static. A step sets the poses of
+/// moved objects and makes a step of the engine with the job system that runs on the calling
+/// thread. Pairs without a dynamic body are passed to the contact listener but not to the solver.
+/// The dynamics that remain are a pass over the bodies, which moves none of them, and a pass that
+/// updates their boxes.
 ///
-/// Contacts can only be read in the listener. So it stores each point, its depth, and the pair.
+/// Contacts can only be read in the listener. So the listener stores each point, its depth, and the
+/// pair.
 #[derive(Debug)]
 pub struct Jolt {
     system: *mut JPH_PhysicsSystem,

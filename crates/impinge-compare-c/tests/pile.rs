@@ -1,4 +1,5 @@
-//! Tests that every engine finds the pairs of a pile, all neighbours on a grid, at every step.
+//! Tests that every engine finds as many touching pairs as a pile has neighbours on its grid, at
+//! every step.
 
 #![cfg(any(feature = "box2d", feature = "box3d", feature = "jolt"))]
 

@@ -8,7 +8,7 @@ pub struct Arguments {
     /// Whether the name of a case must be equal to `case`.
     pub is_exact: bool,
     /// The requested number of objects. Scenes of large objects have a twentieth or a hundredth of
-    /// it, some scenes ten times as many.
+    /// this number, some scenes ten times as many.
     pub objects: usize,
     /// The number of steps of a run.
     pub steps: u32,

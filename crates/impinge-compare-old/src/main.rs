@@ -1,5 +1,6 @@
-//! Compares the working tree with an old commit of itself, in the scenes of the suite `world` of
-//! `impinge-compare`. Both versions are stepped alternately in one process on one thread, in `f32`.
+//! Compares the library of the working tree with that of an old commit, in the scenes of the suite
+//! `world` of `impinge-compare`. Both versions are stepped alternately in one process on one
+//! thread, in `f32`.
 //!
 //! `impinge-compare-old [--case TEXT] [--exact NAME] [--objects N] [--steps N] [--runs N]
 //! [--reusing]` prints a line for each scene: the median and the worst step of both versions in
@@ -44,8 +45,8 @@ const PLANE: [Maker<2>; 2] =
 const SPACE: [Maker<3>; 2] =
     [|scene| Box::new(new::space(scene)), |scene| Box::new(old::space(scene))];
 
-/// The same constructors, with pairs that keep their contacts until they have moved by half of the
-/// prediction.
+/// The constructors of both versions with pairs that keep their contacts until they have moved by
+/// half of the prediction.
 const PLANE_REUSING: [Maker<2>; 2] =
     [|scene| Box::new(new::plane(scene).reusing()), |scene| Box::new(old::plane(scene).reusing())];
 const SPACE_REUSING: [Maker<3>; 2] =

@@ -3,10 +3,10 @@
 /// The suites to run, their sizes, and the selection of cases and contenders.
 #[derive(Clone, Debug)]
 pub struct Arguments {
-    /// The number of objects in scenes whose cases have no size of their own; the largest size of a
-    /// case in the others.
+    /// The number of objects of a scene. In suites whose cases have fixed sizes, the largest size
+    /// that runs.
     pub objects: usize,
-    /// The smallest size of a case, where the size is part of the case.
+    /// In suites whose cases have fixed sizes, the smallest size that runs.
     pub least: usize,
     /// The number of steps or rounds of a run.
     pub steps: u32,

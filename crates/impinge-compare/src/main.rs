@@ -7,13 +7,13 @@
 //! from those of impinge. Times are processor times of the thread: median, minimum and the
 //! ninetieth percentile.
 //!
-//! `--only` selects the contenders whose name contains a text, so that one of them can be profiled
-//! alone. `--case` selects the cases whose name contains a text, `--from` the cases with at least
-//! so many objects. `--angular` gives the scenes of the suite `world` an angular prediction, in
-//! radians. With any of these options the tables are incomplete or have other settings, and are not
-//! written.
+//! `--only` selects the contenders whose name contains a text, so that one contender can be
+//! profiled alone. `--case` selects the cases whose name contains a text, `--from` the cases with
+//! at least this number of objects. `--angular` gives the scenes of the suite `world` an angular
+//! prediction, in radians. With any of these options the tables are incomplete or have other
+//! settings, and are not written.
 //!
-//! Run it twice, for the default processor of Rust and for the actual one:
+//! Run it twice, compiled for the default target CPU of Rust and for the CPU of the machine:
 //!
 //! ```text
 //! cargo run --release --features c -- all --machine NAME

@@ -34,11 +34,11 @@ pub fn timed<R>(work: impl FnOnce() -> R) -> (f64, R) {
     (start.elapsed().as_secs_f64() * 1e9, result)
 }
 
-/// Runs the contenders in turn for `rounds` timed rounds, after one that is not timed.
+/// Runs the contenders in turn for `rounds` timed rounds, after one round that is not timed.
 ///
-/// Each round begins with the next contender, so that no contender always runs after the same one,
-/// with the caches that this one left. The times are nanoseconds divided by `operations`, the
-/// number of operations of one call.
+/// Each round begins with the next contender, so that no contender always runs first, or always
+/// finds the caches as the same other contender left them. The times are nanoseconds divided by
+/// `operations`, the number of operations of one call.
 pub fn in_turn(
     rounds: usize,
     operations: usize,

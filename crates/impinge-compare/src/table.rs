@@ -30,7 +30,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Creates an empty table and prints its head. `unit` is that of all times.
+    /// Creates an empty table and prints its head. `unit` is the unit of all times.
     pub fn new(suite: &'static str, unit: &'static str) -> Self {
         println!("\n{suite}, {unit}; the ratio is to impinge");
         println!(

@@ -35,14 +35,14 @@ use crate::{Dimension, Limit};
 pub struct FileError {
     /// The path of the file, as the caller named it.
     pub file: PathBuf,
-    /// The line, counted from 1. `None` for binary formats and scenes without a text, and if the
-    /// parser reports no line.
+    /// The line, counted from 1. `None` for binary formats and for scenes that were not parsed from
+    /// a text, and if the parser reports no line.
     pub line: Option<usize>,
     /// The column in characters, counted from 1; `None` if only the line or neither is known.
     pub column: Option<usize>,
     /// The path in the document, such as `objects[3].shape.ball.radius`; empty for the whole file.
     pub path: String,
-    /// The value at that position, on one line and shortened; `None` if no value is quoted.
+    /// The value at `path`, on one line and shortened; `None` if the message quotes no value.
     pub value: Option<String>,
     /// The problem; boxed, so that `Result`s stay small.
     pub problem: Box<Problem>,
@@ -116,15 +116,15 @@ pub enum Problem {
         /// The number.
         value: f64,
     },
-    /// An object has members that exclude each other, or not exactly one of several alternatives;
-    /// the text names them.
+    /// An object has members that exclude each other, or not exactly one of several alternatives.
+    /// The text names these members.
     Members(&'static str),
     /// No shape has this name.
     UnknownShape(String),
     /// A shape contains itself through the shapes with these names, the first of which is repeated
     /// at the end.
     ShapeCycle(Vec<String>),
-    /// Two objects have this name.
+    /// Two objects of a scene, or two joints of a robot, have this name.
     DuplicateName(String),
     /// The mesh file has no part of this name.
     UnknownPart(String),
@@ -160,7 +160,7 @@ pub enum Problem {
     },
     /// A joint mimics itself, directly or through other joints.
     MimicCycle(String),
-    /// No folder contains this package.
+    /// None of the searched folders contains this package.
     UnknownPackage(String),
 }
 
@@ -237,7 +237,7 @@ impl fmt::Display for Problem {
 }
 
 impl Problem {
-    /// Writes the problems about a name.
+    /// Writes the messages that `fmt` leaves to this function, most of which are about a name.
     fn fmt_names(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::UnknownFormat { extension } if extension.is_empty() => {
@@ -287,7 +287,8 @@ impl Problem {
         Self::Io { kind: error.kind(), message: error.to_string() }
     }
 
-    /// Returns the error of a recorder. Errors of its world become the same error as without a recorder.
+    /// Converts an error of a recorder. An error of the world in the recorder becomes
+    /// [`Self::Library`], as without a recorder.
     pub(crate) fn recorded(error: RecordError) -> Self {
         match error {
             RecordError::World(error) => error.into(),

@@ -33,9 +33,10 @@ struct Root {
 }
 
 impl Files {
-    /// Creates a reader for the file at `path`. Other files are read from the root of `options` or,
-    /// without one, from the folder of `path`. For a robot in a ROS package the default root is the
-    /// folder of the package, since its URDF file names meshes in folders beside its own.
+    /// Creates a reader for the file at `path` and the files that it names. These are read from the
+    /// root of `options`; without a root, from the folder of `path`. For a URDF file in a ROS
+    /// package the default root is the folder of the package, since the meshes usually lie beside
+    /// the folder of the URDF file.
     pub(crate) fn beside(path: &Path, options: &ReadOptions) -> Self {
         let own = path.parent().unwrap_or_else(|| Path::new(""));
         let package = || if extension(path) == "urdf" { package_of(own) } else { None };
@@ -63,10 +64,11 @@ impl Files {
         self.read(path).map_err(|problem| FileError::whole(path, problem))
     }
 
-    /// Returns the path without symbolic links; an error if it lies in none of the root folders.
+    /// Returns the path without symbolic links; an error unless it lies in a root folder or is the
+    /// first file.
     ///
-    /// A path that is written as outside is rejected before the disk is accessed, so that errors do
-    /// not reveal which files exist.
+    /// A path that lies outside before symbolic links are resolved is rejected before the disk is
+    /// accessed, so that errors do not reveal which files exist.
     pub(crate) fn locate(&self, path: &Path) -> Result<PathBuf, Problem> {
         if !self.holds(path) {
             return Err(self.outside(path));
@@ -112,7 +114,7 @@ impl Files {
         Ok(bytes)
     }
 
-    /// Adds to the number of bytes; an error if the sum exceeds the limit.
+    /// Adds `count` to the number of bytes read; an error if the sum exceeds the limit.
     pub(crate) fn count_bytes(&mut self, count: usize) -> Result<(), Problem> {
         let total = self.bytes.saturating_add(count);
         check(Limit::Bytes, total, self.limits.bytes)?;
@@ -120,8 +122,8 @@ impl Files {
         Ok(())
     }
 
-    /// Adds to the number of elements before they are created; an error if the sum exceeds the
-    /// limit.
+    /// Adds `count` to the number of elements. Called before the elements are created; an error if
+    /// the sum exceeds the limit.
     pub(crate) fn count_elements(&mut self, count: usize) -> Result<(), Problem> {
         let total = self.elements.saturating_add(count);
         check(Limit::Elements, total, self.allowed(self.limits.elements))?;
@@ -129,7 +131,8 @@ impl Files {
         Ok(())
     }
 
-    /// Returns the larger of `limit` and the number of bytes read.
+    /// Returns the larger of `limit` and the number of bytes read, since a large file may have as
+    /// many elements as bytes.
     pub(crate) fn allowed(&self, limit: usize) -> usize {
         limit.max(self.bytes)
     }
@@ -166,7 +169,8 @@ fn absolute(path: &Path) -> PathBuf {
     plain
 }
 
-/// Returns the nearest folder with a package manifest among this folder and its ancestors.
+/// Returns the nearest folder with a package manifest among this folder and its ancestors; `None`
+/// if there is none.
 fn package_of(folder: &Path) -> Option<PathBuf> {
     let folder = absolute(folder);
     let found = folder.ancestors().find(|folder| folder.join(MANIFEST).is_file());

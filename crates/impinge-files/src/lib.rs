@@ -24,11 +24,12 @@
 //! # Ok::<(), impinge_files::FileError>(())
 //! ```
 //!
-//! Files are treated as untrusted input. Errors are typed and name the file, the line, the path in
-//! the document and the value. [`Printable`] escapes control characters of texts from files. Files
-//! that a file names are read only from its folder, or from that of the [`ReadOptions`]. Time and
-//! memory are bounded by the size of the files, up to logarithms. Content that a few bytes can
-//! request without bound, such as grids of objects, has [`Limits`].
+//! Files are treated as untrusted input. Errors are typed and name the file and, where known, the
+//! line, the path in the document and the value. [`Printable`] escapes control characters of texts
+//! from files. Other files that a file names are read only from its folder, or from the root and
+//! package folders of the [`ReadOptions`]. Time and memory are bounded by the size of the files, up
+//! to a logarithmic factor. Content that a few bytes can request without bound, such as grids of
+//! objects, has [`Limits`].
 #![forbid(unsafe_code)]
 
 mod error;

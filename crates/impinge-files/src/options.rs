@@ -21,8 +21,9 @@ pub struct ReadOptions {
 }
 
 impl ReadOptions {
-    /// Creates the default options: the root is the folder of the first file, with no package
-    /// folders and the default limits.
+    /// Creates the default options: no package folders, the default limits, and as the root the
+    /// folder of the file that is read first. For a URDF file in a ROS package, the root is the
+    /// folder of the package.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
@@ -49,8 +50,9 @@ impl ReadOptions {
     }
 }
 
-/// Limits of a scene, so that small files cannot request much memory. A value above a limit is the
-/// error [`Problem::Limit`](crate::Problem::Limit); a value equal to it is accepted.
+/// Limits of a scene, so that small files cannot make the reader allocate much memory. A value
+/// above a limit is the error [`Problem::Limit`](crate::Problem::Limit); a value equal to it is
+/// accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// The maximum total size of all files, in bytes.

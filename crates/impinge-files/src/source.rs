@@ -99,7 +99,7 @@ fn place(text: &str, byte: usize) -> (usize, usize) {
 }
 
 /// Returns the first [`MAX_VALUE`] characters of a value, with white space replaced by single
-/// spaces.
+/// spaces, and `...` in place of omitted characters.
 fn shortened(text: &str) -> String {
     let mut line = String::new();
     let mut count = 0;
@@ -126,8 +126,8 @@ struct Found {
     value: String,
 }
 
-/// Returns the steps of a path such as `objects[3].shape`. A shape name with a dot or bracket is not found; the
-/// error then has the position of the enclosing value.
+/// Returns the steps of a path such as `objects[3].shape`. A shape whose name contains a dot or a
+/// bracket is not found; the error then has the position of the enclosing value.
 fn steps(path: &str) -> impl Iterator<Item = Step<'_>> {
     let parts = path.split(['.', '[']).filter(|part| !part.is_empty());
     parts.map(|part| {

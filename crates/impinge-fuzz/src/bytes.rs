@@ -23,12 +23,13 @@ impl<'a> Bytes<'a> {
         self.is_wild = true;
     }
 
-    /// Whether all numbers are moderate: multiples of 1/1024 with a magnitude of at most 32.
+    /// Returns whether all numbers are moderate: multiples of 1/1024 with a magnitude of at most
+    /// 32.
     pub(crate) const fn is_moderate(&self) -> bool {
         !self.is_wild
     }
 
-    /// Whether the input is used up.
+    /// Returns whether the input is used up.
     pub(crate) const fn is_empty(&self) -> bool {
         self.rest.is_empty()
     }
@@ -44,7 +45,7 @@ impl<'a> Bytes<'a> {
         std::array::from_fn(|_| self.byte())
     }
 
-    /// Returns one of `count` choices, at most 256.
+    /// Returns an index below `count`, which is from 1 to 256.
     pub(crate) fn choice(&mut self, count: usize) -> usize {
         usize::from(self.byte()) % count
     }

@@ -34,8 +34,9 @@ impl Task for Construct {
     }
 }
 
-/// Constructs a shape, scales and deforms it, and computes its boxes and parts. Also computes hulls
-/// and surfaces, and tests trees of boxes.
+/// Constructs a shape, scales and deforms it, and computes its boxes and parts. Also computes the
+/// hull of random points and, for some kinds of shapes, the surface, and compares trees of boxes
+/// with loops over the boxes.
 pub fn construct(data: &[u8]) {
     dispatch(Construct, data);
 }
@@ -56,7 +57,9 @@ fn check<N: Real, const D: usize>(shape: &dyn Shape<N, D>) {
     }
 }
 
-/// Returns the shape with other vertices or heights, if its kind has any.
+/// Returns the shape with some vertices, heights, holes or diagonals changed; a mesh is also
+/// flipped, or its equal vertices are merged. `None` for kinds without vertices and heights, and if
+/// the library rejects the values.
 pub(crate) fn deformed<N: Space<D>, M: Dimension<N, D>, const D: usize>(
     shape: &ShapeHandle<N, D>,
     bytes: &mut Bytes<'_>,
@@ -84,7 +87,7 @@ pub(crate) fn moved<N: Real, const D: usize>(
     vertices.iter().map(other).collect()
 }
 
-/// Returns a box at random corners; `None` if the constructor rejects them.
+/// Returns a box between two random corners; `None` if the constructor rejects the corners.
 pub(crate) fn any_box<N: Real, const D: usize>(bytes: &mut Bytes<'_>) -> Option<Aabb<N, D>> {
     let low = bytes.point::<N, D>();
     Aabb::try_new(low, low + bytes.sizes::<N, D>()).ok()

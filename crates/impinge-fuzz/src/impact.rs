@@ -90,7 +90,8 @@ fn check<N: Space<D>, R, const D: usize>(
     }
 }
 
-/// Checks that the distance at the time of impact is at most the target distance.
+/// Checks that the distance at the time of impact is at most the target distance, up to rounding
+/// errors. Checks nothing if the numbers are not moderate or the solver has used all its steps.
 fn check_meeting<N: Space<D>, R, const D: usize>(
     pair: &Pair<N, R, D>,
     found: &Impact<N, D>,

@@ -61,7 +61,7 @@ fn replay(name: &str, input: &str, is_reduced: bool) -> ExitCode {
 }
 
 /// Replays the regressions of a target, then runs it on random inputs for `time`. Returns `false`
-/// if it panicked.
+/// if the target panicked.
 fn run(name: &str, target: Target, time: Duration, seed: u64) -> bool {
     let known = regressions(name);
     let (start, mut random) = (Instant::now(), Random(seed));
@@ -125,13 +125,14 @@ impl Random {
         usize::try_from(self.next() % bound as u64).unwrap_or_default()
     }
 
-    /// Returns a byte; a quarter of them are small, which make simple shapes and poses.
+    /// Returns a random byte. At least a quarter of all bytes are below 32, since small bytes give
+    /// simple shapes and poses.
     const fn byte(&mut self) -> u8 {
         let [first, second, ..] = self.next().to_le_bytes();
         if first < 64 { second & 31 } else { second }
     }
 
-    /// Returns random bytes; in one of eight cases the bytes of a regression with up to five bytes
+    /// Returns random bytes; in one of eight cases the bytes of a regression with up to four bytes
     /// changed.
     fn input(&mut self, known: &[Vec<u8>]) -> Vec<u8> {
         if known.is_empty() || self.below(8) > 0 {

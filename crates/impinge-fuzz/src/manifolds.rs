@@ -1,4 +1,4 @@
-//! Contact manifolds of a pair over several small motions.
+//! Contact manifolds of a pair over several motions.
 
 use std::collections::BTreeSet;
 
@@ -123,8 +123,8 @@ fn check_order<N: Space<D>, R, const D: usize>(
     }
 }
 
-/// Checks that there is a manifold if and only if there is a contact. The largest depth of a convex
-/// pair must equal the depth of the contact up to rounding.
+/// Checks, for moderate numbers, that there is a manifold if and only if there is a contact. The
+/// largest depth of a convex pair must equal the depth of the contact up to rounding.
 fn check_deepest<N: Space<D>, R, const D: usize>(
     pair: &Pair<N, R, D>,
     contacts: &[TrackedContact<N, D>],

@@ -23,7 +23,7 @@ pub(crate) struct Pair<N: Space<D>, R, const D: usize> {
 impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D> {
     pub(crate) fn from_bytes<M: Dimension<N, D, Turn = R>>(bytes: &mut Bytes<'_>) -> Self {
         let (g1, m1) = (shape::<N, M, D>(bytes), M::position(bytes));
-        // Equal shapes are more frequent than by chance.
+        // Equal shapes and equal positions are more frequent than by chance.
         let g2 = if bytes.choice(8) == 0 { g1.clone() } else { shape::<N, M, D>(bytes) };
         let m2 = if bytes.choice(8) == 0 { m1 } else { M::position(bytes) };
         Self { m1, g1, m2, g2, is_moderate: bytes.is_moderate() }
@@ -39,8 +39,8 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D
         }
     }
 
-    /// Whether both shapes and both poses are equal, so that their order is arbitrary. The rotation
-    /// of a ball is ignored.
+    /// Returns whether both shapes and both poses are equal, so that their order is arbitrary. The
+    /// rotation of a ball is ignored.
     pub(crate) fn are_same(&self) -> bool {
         let is_ball = self.g1.geometry().kind() == ShapeKind::Ball;
         let place = |m| if is_ball { Pose::unturned(m) } else { Pose::from_isometry(m) };
@@ -48,12 +48,13 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D
         places[0] == places[1] && anatomy(&*self.g1) == anatomy(&*self.g2)
     }
 
-    /// Whether both poses are finite.
+    /// Returns whether both poses are finite.
     pub(crate) fn is_placed(&self) -> bool {
         [&self.m1, &self.m2].iter().all(|m| Pose::from_isometry(*m).is_finite())
     }
 
-    /// Checks that swapped arguments give the flipped result, bit for bit.
+    /// Checks that swapped arguments give the flipped result. If the shapes and poses are equal,
+    /// the result may also be the same without a flip.
     pub(crate) fn check_flip<A: PartialEq + Debug>(
         &self,
         own: &A,
@@ -84,7 +85,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Debug for Pair<N, R
     }
 }
 
-/// Whether both are equal, or equal when printed.
+/// Returns whether both values are equal, or are equal when printed, as two NaN are.
 pub(crate) fn same<A: PartialEq + Debug>(one: &A, other: &A) -> bool {
     one == other || format!("{one:?}") == format!("{other:?}")
 }
@@ -141,8 +142,8 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D
         [&*self.g1, &*self.g2]
     }
 
-    /// Whether both shapes are unbounded. If two half-spaces overlap without bound, the pair has no
-    /// contact, or only a contact of other parts.
+    /// Returns whether both shapes are unbounded. If two half-spaces overlap without bound, the
+    /// pair has no contact, or only a contact of other parts.
     fn may_be_endless(&self) -> bool {
         self.shapes().into_iter().all(is_unbounded)
     }

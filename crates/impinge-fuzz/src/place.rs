@@ -12,12 +12,12 @@ use impinge::{dim2, dim3};
 use crate::Bytes;
 use crate::shapes::made;
 
-/// The constructors of one dimension.
+/// The code for one dimension.
 pub(crate) trait Dimension<N: Space<D>, const D: usize> {
     /// The number of kinds of shapes that exist in this dimension only.
     const OWN_KINDS: usize;
 
-    /// Rotations.
+    /// The type of rotations.
     type Turn: AbstractRotation<N, D> + Copy + Debug;
 
     /// Returns a position; if numbers may be wild, its coordinates may be infinite or NaN.
@@ -29,27 +29,30 @@ pub(crate) trait Dimension<N: Space<D>, const D: usize> {
     /// Returns a shape that exists in this dimension only; `None` if a constructor rejects the
     /// numbers.
     fn own_shape(kind: usize, bytes: &mut Bytes<'_>) -> Option<ShapeHandle<N, D>>;
-    /// Whether the shape is a tetrahedron, whose kind changes if scaling makes it flat.
+    /// Returns whether the shape is a tetrahedron, whose kind changes if scaling makes it flat.
     fn is_tetrahedron(shape: &ShapeHandle<N, D>) -> bool;
     /// Returns a body that moves and rotates at constant rates.
     fn motion(
         position: Isometry<N, Self::Turn, D>,
         bytes: &mut Bytes<'_>,
     ) -> Box<dyn RigidMotion<N, D>>;
-    /// Changes heights or holes of a height field; `None` for other shapes.
+    /// Changes a height, a hole or a diagonal of a height field, or all heights. `None` for other
+    /// shapes, and if the library rejects a height.
     fn dig(shape: &ShapeHandle<N, D>, bytes: &mut Bytes<'_>) -> Option<ShapeHandle<N, D>>;
     /// Registers a filter that accepts only pairs that [`may_meet`].
     fn filter(world: &mut CollisionWorld<N, D, u8>);
-    /// Computes hulls and surfaces of points and of shapes.
+    /// Computes the convex hull of random points and, for some kinds of shapes, the surface of
+    /// `shape`. Checks the size of the hull, and that no coordinate of the surface is NaN.
     fn transform(shape: &ShapeHandle<N, D>, bytes: &mut Bytes<'_>);
 }
 
-/// Whether objects with these data may have a pair: unless the data differ in the lowest bit.
+/// Returns whether objects with these data may have a pair: only if the lowest bits of the data are
+/// equal.
 pub(crate) const fn may_meet(one: u8, two: u8) -> bool {
     (one ^ two) & 1 == 0
 }
 
-/// 2D.
+/// The code for 2D.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plane;
 
@@ -147,7 +150,7 @@ impl<N: Real> Dimension<N, 2> for Plane {
     }
 }
 
-/// 3D.
+/// The code for 3D.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Room;
 

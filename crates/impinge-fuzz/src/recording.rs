@@ -66,8 +66,8 @@ fn play<N: Recordable<D>, const D: usize>(
     back.err()
 }
 
-/// Checks that a recording in pieces equals the whole, and that salvaging keeps the records before
-/// the first error.
+/// Checks that a recording can be read in pieces if and only if it can be read as a whole, and that
+/// salvaging keeps the records before the first error.
 fn grow<N: Recordable<D>, const D: usize>(
     changed: &[u8],
     registry: &Registry<N, D, u32>,
@@ -88,8 +88,8 @@ fn grow<N: Recordable<D>, const D: usize>(
     assert_eq!(salvaged.loss().is_none(), growing.is_complete() && error.is_none());
 }
 
-/// Checks that a packed recording unpacks to itself without hashes, and that changed packed bytes
-/// do not panic.
+/// Checks that a recording that was packed and unpacked stays the same if it is packed and unpacked
+/// again, and that changed packed bytes do not panic.
 fn repack(changed: &[u8], bytes: &mut Bytes<'_>) {
     let Ok(mut packed) = pack(changed) else { return };
     let unpacked = unpack(&packed).expect("it was just packed");

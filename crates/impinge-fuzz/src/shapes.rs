@@ -103,7 +103,7 @@ fn compound<N: Space<D>, M: Dimension<N, D>, const D: usize>(
     made(Compound::try_new(children))
 }
 
-/// Returns a unit vector; along an axis half of the time.
+/// Returns a unit vector, which is along an axis at least half of the time.
 fn normal<N: Real, const D: usize>(bytes: &mut Bytes<'_>) -> Unit<Vector<N, D>> {
     let mut axis = Vector::<N, D>::zeros();
     axis[bytes.choice(D)] = if bytes.coin() { N::ONE } else { -N::ONE };
@@ -155,13 +155,13 @@ impl<N: Real, const D: usize> Shape<N, D> for Cloud<N, D> {
     }
 }
 
-/// Returns the geometry of a shape as text; for a composite that of its parts.
+/// Returns the geometry of a shape as text; for a composite, the geometry of each part.
 pub(crate) fn anatomy<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> String {
     let Some(parts) = shape.geometry().as_composite() else { return format!("{shape:?}") };
     (0..parts.num_parts()).map(|part| format!("{:?}\n", parts.part(part))).collect()
 }
 
-/// Whether the shape or a part of it is unbounded.
+/// Returns whether the shape or a part of it is unbounded.
 pub(crate) fn is_unbounded<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> bool {
     let aabb = shape.local_aabb();
     !(0..D).all(|axis| aabb.mins()[axis].is_finite_number() && aabb.maxs()[axis].is_finite_number())
@@ -172,8 +172,8 @@ pub(crate) fn parts_of<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> Opti
     shape.geometry().as_composite().map(CompositeShape::num_parts)
 }
 
-/// Returns the approximate distance of the farthest point of the shape from its origin, to which
-/// rounding errors are proportional. The positions of parts are included; unbounded parts are
+/// Returns an upper bound of the distance from the origin of the shape to its farthest point, to
+/// which rounding errors are proportional. The positions of parts are included; unbounded parts are
 /// ignored.
 pub(crate) fn reach<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> N {
     if let Some(parts) = shape.geometry().as_composite() {

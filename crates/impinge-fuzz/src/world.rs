@@ -171,7 +171,7 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         }
     }
 
-    /// Replaces the broad phase, the narrow phase or filters.
+    /// Replaces the broad phase or the narrow phase, or registers or unregisters the pair filter.
     fn exchange<M: Dimension<N, D>>(&mut self, bytes: &mut Bytes<'_>) {
         match bytes.choice(4) {
             0 => {
@@ -192,7 +192,7 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         }
     }
 
-    /// Makes the calls that a physics engine makes.
+    /// Makes one of the calls that are meant for physics engines.
     fn operate_as_engine<M: Dimension<N, D>>(
         &mut self,
         handle: CollisionObjectHandle,
@@ -240,8 +240,9 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         }
     }
 
-    /// Applies the events after the kept ones. For each pair, starts and stops alternate, and each
-    /// proximity event begins with the status of the last event.
+    /// Applies the events after the kept events, to `touching` and `near`. For each pair, starts
+    /// and stops alternate, and each proximity event begins with the status of the previous event
+    /// of the pair.
     fn hear(&mut self, kept: (usize, usize)) {
         for event in &self.world.contact_events()[kept.0..] {
             let (handles, changed) = match *event {
@@ -261,7 +262,7 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         }
     }
 
-    /// Checks that the pairs of the world are those that follow from its events.
+    /// Checks that the pairs of the world are the pairs that follow from its events.
     fn check_pairs(&self) {
         let mut ids = BTreeSet::new();
         let mut touching = BTreeSet::new();
@@ -286,7 +287,8 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         assert_eq!(near, self.near);
     }
 
-    /// Checks that every two objects are in the state that queries return.
+    /// Checks for every two objects that the contacts and the proximity of the world agree with the
+    /// queries on these two objects.
     fn check_model<M: Dimension<N, D>>(&self) {
         let objects: Vec<_> = self.world.collision_objects().collect();
         for (index, one) in objects.iter().enumerate() {

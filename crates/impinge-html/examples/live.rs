@@ -1,6 +1,6 @@
 //! Shows circling balls in a browser while they move: `cargo run -p impinge-html --features page
-//! --example live`. With a number of seconds as the argument it ends after that time, otherwise
-//! after an hour.
+//! --example live`. The optional argument is the number of seconds after which the program ends;
+//! without it the program ends after an hour.
 
 use std::thread::sleep;
 use std::time::Duration;
@@ -11,8 +11,8 @@ use impinge::dim3::world::{CollisionGroups, GeometricQueryType};
 use impinge_html::{Assets, Live};
 use impinge_record::{Recorder, Registry};
 
-/// Returns the position of a ball on its circle at `time` seconds; each ball has its own angular
-/// speed.
+/// Returns the position of a ball on a circle of radius 3 at `time` seconds. The angular speed
+/// increases with the number of the ball.
 fn place(ball: u8, time: f32) -> Isometry<f32> {
     let angle = time * (0.5 + f32::from(ball) / 10.0);
     Isometry::translation(3.0 * angle.cos(), 3.0 * angle.sin(), 0.0)

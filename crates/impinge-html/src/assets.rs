@@ -1,15 +1,15 @@
-//! The parts from which a page is built.
+//! The parts that all pages have in common.
 
 use std::fs;
 use std::path::Path;
 
 use crate::error::HtmlError;
 
-/// The parts of a page except the recording.
+/// The parts that all pages have in common: all but the title, the scene and the recording.
 #[derive(Clone, Debug)]
 pub struct Assets {
-    /// The HTML template. It contains each of the placeholders `{{TITLE}}`, `{{STYLE}}`,
-    /// `{{SCENE}}`, `{{RECORDING}}`, `{{WASM}}` and `{{SCRIPT}}` once.
+    /// The HTML template. It must contain each of the placeholders `{{TITLE}}`, `{{STYLE}}`,
+    /// `{{SCENE}}`, `{{RECORDING}}`, `{{WASM}}` and `{{SCRIPT}}` exactly once.
     pub template: String,
     /// The style sheet.
     pub style: String,

@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 /// The connection of a client, with a deadline.
 ///
 /// A time limit of the operating system restarts with each read and write, so a client that sends
-/// single bytes would never reach it. With the deadline all reads and writes share the remaining
-/// time.
+/// single bytes would never reach the limit. A deadline does not move: all reads and writes share
+/// the remaining time.
 #[derive(Debug)]
 pub(crate) struct Connection {
     stream: TcpStream,
@@ -16,7 +16,7 @@ pub(crate) struct Connection {
 }
 
 impl Connection {
-    /// Creates a connection with a deadline after `time`.
+    /// Creates a connection whose deadline is `time` from now.
     pub(crate) fn new(stream: TcpStream, time: Duration) -> io::Result<Self> {
         stream.set_nodelay(true)?;
         Ok(Self { stream, deadline: Instant::now() + time })
@@ -27,10 +27,11 @@ impl Connection {
         self.deadline = Instant::now() + time;
     }
 
-    /// Returns `true` if the client has closed the connection, or has sent unexpected bytes.
+    /// Returns `true` if the client has closed its side of the connection or has sent further
+    /// bytes, or if the connection has failed.
     ///
-    /// A client sends only its request, which has been read before. A client that closes its side
-    /// of the connection does not wait for a response.
+    /// A client sends only its request, which was read before this call. A client that closes its
+    /// side of the connection does not wait for a response.
     pub(crate) fn is_gone(&mut self) -> bool {
         let mut byte = [0];
         let read = self.stream.set_nonblocking(true).and_then(|()| self.stream.read(&mut byte));

@@ -14,19 +14,20 @@ pub enum HtmlError {
     Recording(ReadError),
     /// The template does not contain this placeholder exactly once.
     Placeholder {
-        /// The placeholder.
+        /// The name of the placeholder, without braces.
         name: &'static str,
         /// The number of its occurrences in the template.
         count: usize,
     },
-    /// A file cannot be read or written.
+    /// A file cannot be read or written, or a folder cannot be created.
     File {
-        /// The file.
+        /// The path of the file or folder.
         path: PathBuf,
         /// The reason.
         error: io::Error,
     },
-    /// The port of the loopback interface cannot be opened. Usually another program uses it.
+    /// The server cannot be started on this port of the loopback interface, usually because another
+    /// program uses the port.
     Port {
         /// The port.
         port: u16,

@@ -15,25 +15,28 @@ use crate::log::{More, PIECE, SharedLog};
 use crate::page::Page;
 use crate::request::{self, Route};
 
-/// The maximum number of requests that are served at once. Further requests get the status 503.
+/// The maximum number of requests that are served at once. Further requests get the status 503
+/// after [`ADMISSION_TIMEOUT`].
 const MAX_CLIENTS: usize = 32;
 
 /// The maximum number of connections whose requests are incomplete. A further connection closes the
 /// oldest of them, so that silent connections cannot keep a browser out.
 const MAX_PENDING: usize = 32;
 
-/// The time limit for the head of a request, and for each 64 KiB of a response. After it the
-/// connection is closed.
+/// The time limit for the head of a request, and for each 64 KiB of a response. A connection that
+/// exceeds the limit is closed.
 const IO_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// The interval at which an idle stream checks whether its client is still connected.
+/// The interval at which a response that waits for further bytes of the log checks whether its
+/// client is still connected.
 const POLL: Duration = Duration::from_millis(250);
 
-/// The time for which a request waits for a free slot. It is longer than a stream needs to notice
-/// that its client has gone.
+/// The maximum time for which a request waits until fewer than [`MAX_CLIENTS`] requests are served.
+/// It exceeds [`POLL`], so that the requests of clients that have gone end within this time.
 const ADMISSION_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// The time for which a stopping server waits until its clients have read the rest.
+/// The maximum time for which a stopping server waits until its clients have read the rest of their
+/// responses.
 const DRAIN_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// A server that shows the recording of a running program in a browser on the same machine.
@@ -45,8 +48,8 @@ const DRAIN_TIMEOUT: Duration = Duration::from_secs(1);
 /// neither the program nor other browsers. Up to 32 browsers follow at once.
 ///
 /// The server listens on 127.0.0.1 only, and accepts only requests to the names `127.0.0.1` and
-/// `localhost`. Only its own page may read the recording: requests of other sites are rejected.
-/// Dropping the server ends the streams; the pages keep the received data.
+/// `localhost`. Only the server's own page may read the recording: requests of other sites for it
+/// are rejected. Dropping the server ends the recording; open pages keep the received data.
 ///
 /// ```no_run
 /// # fn run(assets: impinge_html::Assets) -> Result<(), Box<dyn std::error::Error>> {
@@ -81,8 +84,8 @@ impl Live {
     /// Starts a server on a port; 0 selects a free port. The recording is empty at first.
     ///
     /// # Errors
-    /// If the port is in use or not allowed, or if the template does not contain each placeholder
-    /// exactly once.
+    /// If the port is in use or not allowed, if no thread can be started, or if the template does
+    /// not contain each placeholder exactly once.
     pub fn start(assets: &Assets, title: &str, port: u16) -> Result<Self, HtmlError> {
         let scene = json!({"open": "live", "title": title, "log": "/log"});
         let page = Page { title, scene, recording: &[] }.html(assets)?;
@@ -101,18 +104,19 @@ impl Live {
         format!("http://{}/", self.address)
     }
 
-    /// Appends bytes to the recording and wakes up the waiting readers. Never blocks on a reader;
-    /// costs a copy of the bytes.
+    /// Appends bytes to the recording and wakes up the threads that send it. Costs a copy of the
+    /// bytes; does not wait until a browser has received them.
     pub fn send(&self, bytes: &[u8]) {
         self.log.append(bytes);
     }
 }
 
-/// Ends the streams. Clients that are still reading get a second for the rest.
+/// Closes the log, which ends the responses that follow it. Clients that are still reading get at
+/// most a second for the rest.
 impl Drop for Live {
     fn drop(&mut self) {
         self.log.close();
-        // A connection to the own port wakes up the accepting thread.
+        // A connection to the server's own port wakes up the accepting thread.
         let woken = TcpStream::connect_timeout(&self.address, DRAIN_TIMEOUT).is_ok();
         if let Some(acceptor) = self.acceptor.take().filter(|_| woken) {
             // The thread does not panic, and there is nothing to clean up if it did.
@@ -155,15 +159,16 @@ impl Server {
         }
     }
 
-    /// Reads a request and selects the response. While the request is incomplete, the connection
-    /// counts as pending.
+    /// Reads a request and selects the response. While the request is incomplete, the connection is
+    /// registered as pending, so that newer connections can close it.
     fn route(&self, stream: TcpStream) -> io::Result<Route> {
         let mut connection = Connection::new(stream.try_clone()?, IO_TIMEOUT)?;
         let _pending = self.log.wait_for_request(stream, MAX_PENDING);
         request::read(&mut connection, self.port)
     }
 
-    /// Sends all bytes of the log in chunks, as they arrive, until the client has gone.
+    /// Sends the bytes of the log in chunks, as they arrive, until the log is closed or the client
+    /// has gone.
     fn stream_log(&self, connection: &mut Connection) -> io::Result<()> {
         let kind = "Content-Type: application/octet-stream\r\nTransfer-Encoding: chunked\r\n";
         connection.write_all(head("200 OK", kind).as_bytes())?;
@@ -188,8 +193,8 @@ impl Server {
     }
 }
 
-/// Returns the head of a response with these header fields. It forbids caching and the use by other
-/// sites.
+/// Returns the head of a response with this status and these header fields, followed by fields that
+/// forbid caching and the use by other sites.
 fn head(status: &str, fields: &str) -> String {
     format!(
         "HTTP/1.1 {status}\r\n{fields}Cache-Control: no-store\r\nConnection: close\r\n\

@@ -9,7 +9,7 @@ use std::time::Duration;
 pub(crate) const PIECE: usize = 64 * 1024;
 
 /// A sequence of bytes that grows until it is closed. Any number of readers can wait for more
-/// bytes.
+/// bytes. The log also counts the clients and the pending connections of the server.
 #[derive(Debug, Default)]
 pub(crate) struct SharedLog {
     state: Mutex<State>,
@@ -24,18 +24,18 @@ struct State {
     clients: usize,
     /// The connections with incomplete requests, by their number.
     pending: BTreeMap<u64, TcpStream>,
-    /// The number of connections so far, from which connections get their number.
+    /// The number of connections so far. It is the number of the newest connection.
     connections: u64,
 }
 
 /// The result of waiting for more bytes.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum More {
-    /// The next bytes.
+    /// The next bytes, at least one.
     Bytes(Vec<u8>),
     /// No bytes arrived within the time limit.
     Nothing,
-    /// The log is closed, and all of it was read.
+    /// The log is closed, and the reader has all its bytes.
     End,
 }
 
@@ -76,8 +76,9 @@ impl SharedLog {
         self.state().is_closed
     }
 
-    /// Waits until there are bytes from `offset` on, and returns at most [`PIECE`] of them. Returns
-    /// [`More::Nothing`] after `longest`, [`More::End`] if the log is closed.
+    /// Waits until there are bytes from `offset` on, and returns at most [`PIECE`] of them. If
+    /// there are none, returns [`More::End`] once the log is closed, or [`More::Nothing`] after
+    /// `longest`.
     pub(crate) fn wait_from(&self, offset: usize, longest: Duration) -> More {
         let waits = |state: &mut State| state.bytes.len() <= offset && !state.is_closed;
         let waited = self.changed.wait_timeout_while(self.state(), longest, waits);
@@ -90,8 +91,8 @@ impl SharedLog {
         }
     }
 
-    /// Takes a slot for a client. If all `limit` slots are taken, it waits for one, at most for
-    /// `longest`; `None` if none became free.
+    /// Takes one of `limit` slots for a client. If all slots are taken, waits until one is free or
+    /// the log is closed, at most for `longest`; `None` if all slots are still taken.
     pub(crate) fn enter(&self, limit: usize, longest: Duration) -> Option<Client<'_>> {
         let waits = |state: &mut State| state.clients >= limit && !state.is_closed;
         let waited = self.changed.wait_timeout_while(self.state(), longest, waits);
@@ -102,7 +103,7 @@ impl SharedLog {
     }
 
     /// Registers a connection while its request is read. If `limit` connections are registered
-    /// already, the oldest one is closed.
+    /// already, the oldest of them is closed. If the log is closed, so is the new connection.
     pub(crate) fn wait_for_request(&self, stream: TcpStream, limit: usize) -> Pending<'_> {
         let mut state = self.state();
         state.connections += 1;
@@ -119,7 +120,7 @@ impl SharedLog {
         Pending { log: self, number }
     }
 
-    /// Waits until no client and no incomplete request is left, at most for `longest`.
+    /// Waits until no slot is taken and no connection is registered, at most for `longest`.
     pub(crate) fn wait_for_clients(&self, longest: Duration) {
         let waits = |state: &mut State| state.clients + state.pending.len() > 0;
         let waited = self.changed.wait_timeout_while(self.state(), longest, waits);

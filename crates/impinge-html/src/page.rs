@@ -14,9 +14,9 @@ use crate::error::HtmlError;
 
 /// Returns a self-contained HTML page that shows a recording.
 ///
-/// A recording that is not packed is packed first. Its end may be missing, but it must end with a
-/// complete record: [`Replay::salvage`](impinge_record::Replay::salvage) returns such bytes. The
-/// page is about a third larger than its parts; the time is that of packing.
+/// A recording that is not packed is packed first. The end of the recording may be missing, but
+/// its last record must be complete: [`Replay::salvage`](impinge_record::Replay::salvage) returns
+/// such bytes. The page contains recording and engine in base64, which makes them a third larger.
 ///
 /// # Errors
 /// If the bytes cannot be packed, or if the template does not contain each placeholder exactly
@@ -46,12 +46,12 @@ pub fn export(assets: &Assets, recording: &[u8], title: &str) -> Result<String, 
 }
 
 /// Writes the page of the samples as `index.html` into a folder, which is created if it does not
-/// exist. For each sample the page shows `thumbnails/NAME.png` of this folder, if there is such a
-/// file.
+/// exist. For each sample the page shows the picture `thumbnails/NAME.png` of this folder, if there
+/// is such a file.
 ///
 /// # Errors
-/// If the file cannot be written, or if the template does not contain each placeholder exactly
-/// once.
+/// If the folder or the file cannot be written, or if the template does not contain each
+/// placeholder exactly once.
 pub fn gallery(assets: &Assets, folder: impl AsRef<Path>) -> Result<(), HtmlError> {
     let (folder, title) = (folder.as_ref(), "impinge: samples");
     let scene = json!({"open": "samples", "title": title});
@@ -76,9 +76,9 @@ impl Page<'_> {
     /// Returns the HTML of the page. All parts are inserted in one pass, so that a placeholder
     /// within a part is not replaced.
     pub(crate) fn html(&self, assets: &Assets) -> Result<String, HtmlError> {
-        // No part may contain the end tag of its own element. In JSON the character can be written
-        // as an escape, in strings of scripts and styles after a backslash. Outside of strings
-        // these sequences do not occur.
+        // No part may contain the end tag of its own element. A script may not contain `<!--`.
+        // In JSON `<` can be written as an escape. In strings of scripts and styles a backslash
+        // behind `<` breaks the sequence. Outside of strings these sequences do not occur.
         let scene = self.scene.to_string().replace('<', "\\u003c");
         let script = assets.script.replace("</script", "<\\/script").replace("<!--", "<\\!--");
         let parts = [

@@ -68,17 +68,18 @@ fn route(head: &[u8], port: u16) -> Option<Route> {
     })
 }
 
-/// Returns `true` if the `Host` of a request is a name of this machine. Any other name that
-/// resolves to this machine belongs to a foreign page, which must not read the recording (DNS
-/// rebinding). Browsers omit the port if it is 80.
+/// Returns `true` if the `Host` of a request is `127.0.0.1` or `localhost` with the server's port.
+/// A page of another site could use any other name that resolves to this machine (DNS rebinding),
+/// and must not read the recording. Browsers omit the port if it is 80.
 fn is_own_host(host: &[u8], port: u16) -> bool {
     ["127.0.0.1", "localhost"].iter().any(|name| host == format!("{name}:{port}").as_bytes())
         || (port == 80 && [&b"127.0.0.1"[..], b"localhost"].contains(&host))
 }
 
-/// Returns `true` if another site sent the request. Browsers report this in `Sec-Fetch-Site` or
-/// `Origin`, independent of the settings of that site. A page from another port of this machine is
-/// another site too. Programs other than browsers usually send neither header.
+/// Returns `true` if a page of another site sent the request. Browsers report the site in
+/// `Sec-Fetch-Site` or `Origin`, and a page cannot change these fields. A page from another port of
+/// this machine is another site too. Requests with neither field, which most programs other than
+/// browsers send, are not foreign.
 fn is_foreign(headers: &[httparse::Header<'_>], port: u16) -> bool {
     headers.iter().any(|header| {
         let is_it = |name: &str| header.name.eq_ignore_ascii_case(name);

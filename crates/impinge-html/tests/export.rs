@@ -1,4 +1,5 @@
-//! Tests that an exported file contains all parts and the same recording.
+//! Tests that an exported file contains all parts and the given recording, that the page of the
+//! samples is written, and that broken input is an error.
 
 use std::fs;
 
@@ -24,7 +25,7 @@ fn recording() -> Vec<u8> {
     recorder.finish().bytes
 }
 
-/// Returns the text between the start tag with this id and the next end tag.
+/// Returns the content of the script element with this id.
 fn part<'a>(html: &'a str, id: &str) -> &'a str {
     let (_, rest) = html.split_once(&format!("<script id={id}>")).expect("the part is there");
     rest.split_once("</script>").expect("the part ends").0

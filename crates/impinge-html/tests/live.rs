@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use impinge_html::{Assets, HtmlError, Live};
 
-/// Starts a server on a port.
+/// Starts a server on a port; 0 selects a free port.
 fn serve(port: u16) -> Result<Live, HtmlError> {
     let assets = Assets {
         template: "{{TITLE}}|{{STYLE}}|{{SCENE}}|{{RECORDING}}|{{WASM}}|{{SCRIPT}}".to_owned(),
@@ -33,8 +33,8 @@ fn connect(live: &Live) -> BufReader<TcpStream> {
     BufReader::new(stream)
 }
 
-/// Sends a request for `path` to `host`. Returns the connection, read up to the body of the
-/// response, and the head of the response.
+/// Sends a request for `path` to the server, with `host` in the field `Host`. Returns the
+/// connection, read up to the body of the response, and the head of the response.
 fn ask(live: &Live, path: &str, host: &str) -> (BufReader<TcpStream>, String) {
     let mut connection = connect(live);
     let request = format!("GET {path} HTTP/1.1\r\nHost: {host}\r\n\r\n");
@@ -58,7 +58,8 @@ fn chunk(connection: &mut BufReader<TcpStream>) -> Vec<u8> {
     bytes
 }
 
-/// Returns the next `count` bytes of a stream, whatever its chunks are.
+/// Reads chunks of a stream until they have at least `count` bytes in total, and returns all these
+/// bytes.
 fn bytes(connection: &mut BufReader<TcpStream>, count: usize) -> Vec<u8> {
     let mut all = Vec::new();
     while all.len() < count {
@@ -142,7 +143,7 @@ fn a_client_that_is_slow_or_gone_holds_nobody_up() {
     let (gone, _) = ask(&live, "/log", &host(&live));
     drop(gone);
     let piece = vec![1; 1 << 20];
-    // This is more than the buffers of a connection hold, and `stuck` is not read.
+    // 64 MiB are more than the buffers of a connection hold, and `stuck` is not read.
     (0..64).for_each(|_| live.send(&piece));
     let (mut quick, _) = ask(&live, "/log", &host(&live));
     assert_eq!(bytes(&mut quick, 64 << 20).len(), 64 << 20);
@@ -151,7 +152,7 @@ fn a_client_that_is_slow_or_gone_holds_nobody_up() {
     drop((silent, stuck));
 }
 
-/// A number of connections that is larger than the limit of the server.
+/// A number of connections that is larger than both limits of the server, which are 32.
 const MANY: usize = 100;
 
 #[test]
@@ -160,7 +161,7 @@ fn clients_that_have_gone_keep_nobody_out() {
     live.send(b"log");
     for _ in 0..MANY {
         // Each connection is dropped without being read further, as by a page that is reloaded. The
-        // server sends no data meanwhile, so it cannot notice this by a failed write.
+        // server sends no data meanwhile, so no failed write reveals the closed connection.
         let (mut connection, _) = ask(&live, "/log", &host(&live));
         assert_eq!(bytes(&mut connection, 3), b"log");
     }
@@ -183,7 +184,7 @@ fn silent_connections_keep_nobody_out() {
     let silent: Vec<_> = (0..MANY)
         .map(|_| {
             let mut connection = connect(&live);
-            // The server may have closed the connection already, in favour of others.
+            // The server may have closed the connection already, in favour of newer ones.
             let _written = connection.get_mut().write_all(b"G");
             connection
         })

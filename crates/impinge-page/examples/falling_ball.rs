@@ -1,9 +1,10 @@
 //! Writes the recordings that the tests of the page read: `cargo run -p impinge-page --example
 //! falling_ball`.
 //!
-//! A ball of radius 0.5 falls onto a floor whose top is at 0, two units beside a second ball that
-//! rests there. While the ball is at height `h` above its rest position, the distance between the
-//! balls is `sqrt(4 + h²) - 1`.
+//! A ball of radius 0.5 falls onto a floor whose top is at 0. A second ball of this radius rests on
+//! the floor, two units beside the first. While the first ball is at height `h` above its rest
+//! position, the distance between the balls is `sqrt(4 + h²) - 1`. On its way the ball passes a
+//! sensor with half extents of 0.5.
 
 use std::error::Error;
 use std::fs;
@@ -54,7 +55,8 @@ fn recording<N: Scalar + Recordable<D>, const D: usize>() -> Result<Vec<u8>, Box
     Ok(recorder.finish().bytes)
 }
 
-/// Moves the ball, casts a ray every tenth step, and updates.
+/// Moves the falling ball to its position at a step and updates. Every tenth step, casts a ray
+/// before the update.
 fn advance<N: Scalar + Recordable<D>, const D: usize>(
     recorder: &mut Recorder<N, D, String>,
     falling: CollisionObjectHandle,

@@ -6,7 +6,8 @@
 use impinge_samples::{Control, Entry, Readout};
 use serde::Serialize;
 
-/// The corners of a box with the least and the greatest coordinates; `None` for an unbounded box.
+/// The corner of a box with the least coordinates and the corner with the greatest coordinates;
+/// `None` for an unbounded box.
 pub type Ends = Option<[[f64; 3]; 2]>;
 
 /// The response to a request for the samples.
@@ -16,7 +17,8 @@ pub struct Gallery {
     pub samples: &'static [Entry],
 }
 
-/// The description of a stage. Members that do not apply to a kind of stage are empty or zero.
+/// The description of a stage. Members that do not apply to a kind of stage are empty, zero,
+/// `false` or `None`.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Info {
     /// `recording`, `stream` or `sample`.
@@ -31,20 +33,21 @@ pub struct Info {
     pub scalar: String,
     /// The name of a sample.
     pub name: String,
-    /// The heading.
+    /// The heading of a sample.
     pub title: String,
-    /// The description.
+    /// The description of a sample.
     pub about: String,
     /// The program that wrote a recording.
     pub written_by: String,
-    /// The number of updates of a recording so far.
+    /// The number of updates of a recording so far; `None` for a sample.
     pub steps: Option<usize>,
-    /// Whether the last record of a recording was read. It is missing from a stream until that
-    /// ends, and from a recording whose program crashed.
+    /// Whether the record that ends a recording was read. A stream has no such record before its
+    /// end, and a recording has none if its program crashed.
     pub complete: bool,
-    /// The time between two steps in seconds, if the recording does not define it.
+    /// The time between two steps in seconds, at the normal speed of the page. Recordings have the
+    /// value of samples, since they contain no time step.
     pub time_step: f64,
-    /// A box around all bounded objects, for the camera.
+    /// A box around all bounded objects at the current step, for the camera.
     pub bounds: [[f64; 3]; 2],
     /// The axis that points up on the screen.
     pub up: [f64; 3],
@@ -87,13 +90,13 @@ pub struct Status {
     pub pairs: usize,
     /// The number of contact points.
     pub contacts: usize,
-    /// The difference of a replay from its recording, as a sentence for readers.
+    /// The difference of a replay from its recording, as a text for readers; `None` if they agree.
     pub diverged: Option<String>,
     /// The events of the last update, up to a limit.
     pub events: Vec<StatusEvent>,
     /// The number of all events of the last update.
     pub event_count: usize,
-    /// Controls that the sample changed itself.
+    /// All controls of a sample, if their values differ from those that the page has; else empty.
     pub controls: Vec<Control>,
     /// The readouts of a sample.
     pub readouts: Vec<Readout>,
@@ -105,7 +108,7 @@ pub struct Status {
 pub enum StatusEvent {
     /// Two objects started or stopped touching.
     Contact {
-        /// `true` if they started, `false` if they stopped.
+        /// `true` if the objects started touching, `false` if they stopped.
         started: bool,
         /// The index of the object with the smaller handle.
         a: usize,
@@ -130,11 +133,11 @@ pub enum StatusEvent {
 pub struct ShapeText {
     /// The kind as a word.
     pub kind: &'static str,
-    /// The kind and the sizes.
+    /// The kind and the sizes as a text for readers.
     pub text: String,
 }
 
-/// A list of groups, or the word `all` for all 30.
+/// A list of groups, or the word `all` for all 30 groups.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(untagged)]
 pub enum GroupNumbers {
@@ -149,9 +152,9 @@ pub enum GroupNumbers {
 pub struct ShownGroups {
     /// The groups that the object is in.
     pub membership: GroupNumbers,
-    /// The groups with which it interacts.
+    /// The groups with which the object interacts.
     pub whitelist: GroupNumbers,
-    /// The groups with which it does not interact.
+    /// The groups with which the object does not interact, even if they are in the whitelist.
     pub blacklist: GroupNumbers,
     /// Whether the object interacts with itself.
     pub self_collision: bool,
@@ -161,14 +164,14 @@ pub struct ShownGroups {
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum ShownQuery {
-    /// The object has contact points.
+    /// The query of the object is for contact points.
     Contacts {
         /// The object's share of the prediction.
         linear: f64,
         /// The object's share of the angular prediction, in radians.
         angular: f64,
     },
-    /// The object has proximities.
+    /// The query of the object is for proximity.
     Proximity {
         /// The object's share of the margin.
         margin: f64,
@@ -187,14 +190,14 @@ pub enum ShownPair {
         contacts: usize,
         /// The depth of the deepest contact; negative if the objects are apart.
         depth: f64,
-        /// Whether there is a contact point.
+        /// Whether the pair has a contact point.
         touching: bool,
     },
     /// The proximity of the pair, as of the last update.
     Proximity {
         /// The index of the other object.
         object: usize,
-        /// The status as a word.
+        /// The proximity: `intersecting` or `within margin`.
         status: &'static str,
     },
 }
@@ -204,23 +207,25 @@ pub enum ShownPair {
 pub struct ObjectAnswer {
     /// The index of the object's handle.
     pub object: usize,
-    /// The description of its shape.
+    /// The description of the object's shape.
     pub shape: ShapeText,
-    /// Its data as text.
+    /// The object's data as text.
     pub label: String,
-    /// The position of its origin.
+    /// The position of the object's origin.
     pub translation: [f64; 3],
     /// The rotation, as a unit quaternion x, y, z, w.
     pub rotation: [f64; 4],
-    /// Its groups.
+    /// The object's groups.
     pub groups: ShownGroups,
-    /// Its query type.
+    /// The object's query type.
     pub query: ShownQuery,
-    /// Its bounding box at the current position.
+    /// The object's AABB at its current position.
     pub tight_box: Ends,
-    /// Its fat AABB in the broad phase, as of the last update.
+    /// The object's fat AABB in the broad phase, as of the last update; also `None` before the
+    /// first update.
     pub loosened_box: Ends,
-    /// Its pairs that touch or are near, sorted by the handles of the other objects.
+    /// The object's pairs with contacts, or with a proximity other than `disjoint`, sorted by the
+    /// handles of the other objects.
     pub pairs: Vec<ShownPair>,
 }
 
@@ -243,36 +248,36 @@ pub struct ManifoldPoint {
     /// The contact.
     #[serde(flatten)]
     pub contact: ShownContact,
-    /// The touching features of both shapes, as text.
+    /// The features of both shapes that the contact belongs to, as text.
     pub features: String,
 }
 
 /// A manifold.
 #[derive(Clone, Debug, Serialize)]
 pub struct ShownManifold {
-    /// Its points.
+    /// The contact points of the manifold.
     pub contacts: Vec<ManifoldPoint>,
 }
 
 /// The result of one of the conditions for two objects to touch.
 #[derive(Clone, Debug, Serialize)]
 pub struct Test {
-    /// `groups`, `filter`, `boxes` or `distance`.
+    /// The name of the condition: `groups`, `filter`, `boxes` or `distance`.
     pub name: &'static str,
     /// Whether the condition is satisfied.
     pub passes: bool,
-    /// The explanation.
+    /// The explanation of the result.
     pub text: String,
 }
 
-/// The reason why two objects touch, or do not.
+/// The reason why two objects touch or do not touch.
 #[derive(Clone, Debug, Serialize)]
 pub struct Why {
-    /// Whether they touch in the world.
+    /// Whether the objects touch in the world, as of the last update.
     pub touch: bool,
     /// The reason as a sentence for readers.
     pub text: String,
-    /// All conditions, in the order in which a world tests them.
+    /// The results of all conditions, in the order in which a world tests them.
     pub tests: Vec<Test>,
 }
 
@@ -283,18 +288,18 @@ pub struct PairAnswer {
     pub a: usize,
     /// The index of the second object.
     pub b: usize,
-    /// The distance; 0 if they touch or overlap.
+    /// The distance between the objects; 0 if they touch or overlap.
     pub distance: f64,
-    /// The closest points; `None` if they touch or overlap.
+    /// The closest points of the objects; `None` if the objects touch or overlap.
     pub points: Option<[[f64; 3]; 2]>,
-    /// The contact of the objects, if they are within the prediction.
+    /// The contact of the objects; `None` if their distance exceeds the prediction.
     pub contact: Option<ShownContact>,
-    /// The proximity as a word. Objects are near up to the sum of their margins, or of their
-    /// predictions if both have contact queries.
+    /// The proximity as a word. Objects are within the margin up to the sum of the margins of those
+    /// that have proximity queries, or up to the sum of their predictions and skins if neither has.
     pub proximity: &'static str,
-    /// The manifolds of the world, as of the last update.
+    /// The manifolds of the pair in the world, as of the last update.
     pub manifolds: Vec<ShownManifold>,
-    /// The reason why they touch, or do not.
+    /// The reason why the objects touch or do not touch.
     pub why: Why,
 }
 
@@ -303,26 +308,26 @@ pub struct PairAnswer {
 pub struct Picked {
     /// The index of the object; `None` if there is none at the point.
     pub object: Option<usize>,
-    /// The hit point; in 2D the nearest point of the object.
+    /// The hit point; in 2D the point of the object nearest to the requested point.
     pub point: [f64; 3],
     /// The outward normal at the hit point; zero in 2D.
     pub normal: [f64; 3],
-    /// The time of the hit: the distance divided by the length of the direction.
+    /// The time of the hit: the distance divided by the length of the direction; zero in 2D.
     pub time: f64,
 }
 
 /// An object that a ray hits.
 #[derive(Clone, Debug, Serialize)]
 pub struct RayHit {
-    /// The object.
+    /// The index of the object.
     pub object: usize,
     /// The hit point.
     pub point: [f64; 3],
-    /// The outward normal at the hit point.
+    /// The outward normal at the hit point; zero if the ray begins inside the object.
     pub normal: [f64; 3],
     /// The time of the hit: the distance divided by the length of the direction.
     pub time: f64,
-    /// The feature that is hit.
+    /// The feature of the shape that is hit, as text.
     pub feature: String,
 }
 
@@ -336,11 +341,11 @@ pub struct RayAnswer {
 /// An object near a point.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct NearObject {
-    /// The object.
+    /// The index of the object.
     pub object: usize,
-    /// The distance; 0 if the object contains the point.
+    /// The distance from the requested point; 0 if the object contains it.
     pub distance: f64,
-    /// The nearest point of the object.
+    /// The point of the object nearest to the requested point.
     pub point: [f64; 3],
 }
 
@@ -351,11 +356,11 @@ pub struct NearestAnswer {
     pub nearest: Vec<NearObject>,
 }
 
-/// A response and the bytes that it refers to.
+/// The response to a request for a frame: a text, and the bytes to which the text refers.
 #[derive(Clone, Debug)]
 pub struct Frame {
     /// The JSON text.
     pub text: String,
-    /// The sections to which the text refers, as bytes.
+    /// The bytes of all sections.
     pub payload: Vec<u8>,
 }

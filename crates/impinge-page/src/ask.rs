@@ -18,8 +18,8 @@ pub(crate) fn is_sensor<N: Space<D>, const D: usize, T>(object: &CollisionObject
     matches!(object.query_type(), GeometricQueryType::Proximity(_))
 }
 
-/// Returns the first object that a ray hits, preferably an opaque object. A ray that begins inside
-/// an object hits its far side, which a camera at that position shows.
+/// Returns the first opaque object that a ray hits; if there is none, the first transparent object.
+/// A ray that begins inside an object hits its far side, which a camera at that position shows.
 pub(crate) fn pick_by_ray<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     at: &PickRequest,
@@ -38,9 +38,10 @@ pub(crate) fn pick_by_ray<N: Space<D>, const D: usize, T>(
     })
 }
 
-/// Returns the object that contains a point; if there is none, the nearest one within `reach`. If
-/// several objects contain the point, opaque objects precede transparent ones, bounded objects
-/// precede unbounded ones, and among equals the object drawn last is returned.
+/// Returns the object that contains a point; if there is none, the nearest object within `reach`.
+/// If several objects have the same distance, or contain the point, opaque objects precede
+/// transparent ones, then bounded objects precede unbounded ones, then the largest handle is
+/// selected, since objects are drawn in the order of their handles.
 pub(crate) fn pick_by_point<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     at: &PickRequest,
@@ -62,7 +63,8 @@ pub(crate) fn pick_by_point<N: Space<D>, const D: usize, T>(
     })
 }
 
-/// Returns the nearest point on an object; `None` if the object contains the point of the query.
+/// Returns the point of an object nearest to the point of the query; `None` if the object contains
+/// that point.
 fn nearest_point<N: Real, const D: usize>(points: &ClosestPoints<N, D>) -> Option<[f64; 3]> {
     match points {
         ClosestPoints::WithinMargin(_, on_object) => Some(coordinates(&on_object.coords)),
@@ -70,7 +72,7 @@ fn nearest_point<N: Real, const D: usize>(points: &ClosestPoints<N, D>) -> Optio
     }
 }
 
-/// Returns all objects that a ray hits.
+/// Returns all objects that a ray hits up to its maximum time, in order of time.
 pub(crate) fn ray<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     asked: &RayRequest,
@@ -88,7 +90,7 @@ pub(crate) fn ray<N: Space<D>, const D: usize, T>(
     RayAnswer { hits: hits.collect() }
 }
 
-/// Returns the objects nearest to a point.
+/// Returns at most `count` objects nearest to a point, in order of distance.
 pub(crate) fn nearest<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     asked: &NearestRequest,

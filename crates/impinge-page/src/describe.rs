@@ -18,8 +18,8 @@ const MAX_EVENTS: usize = 200;
 /// The maximum number of bytes in the label of data that is not text.
 const MAX_BYTES: usize = 16;
 
-/// Returns the object whose handle has this index. The page does not know the generation of the
-/// handle, so all objects are searched.
+/// Returns the object whose handle has the index `number`; `None` if there is none. The page does
+/// not have the generation of the handle, so all objects are searched.
 pub(crate) fn object_of<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     number: u32,
@@ -47,7 +47,8 @@ pub(crate) fn object_answer<N: Viewed<D>, const D: usize, T: RecordData>(
     }
 }
 
-/// Returns the corners of a box; `None` if it is unbounded.
+/// Returns the corners of a box with the least and the greatest coordinates; `None` if the box is
+/// unbounded.
 fn ends<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> Ends {
     let corners = [aabb.mins(), aabb.maxs()].map(|point| coordinates(&point.coords));
     aabb.is_bounded().then_some(corners)
@@ -74,7 +75,8 @@ fn shown_query<N: Real>(query: GeometricQueryType<N>) -> ShownQuery {
     }
 }
 
-/// Returns the pairs of an object that touch or are near, sorted by the other objects.
+/// Returns the pairs of an object that have contacts, or a proximity other than disjoint, sorted by
+/// the handles of the other objects.
 fn pairs<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     handle: CollisionObjectHandle,
@@ -115,7 +117,7 @@ pub(crate) fn status<N: Space<D>, const D: usize, T>(
         before: proximity_text(event.prev_status),
         after: proximity_text(event.new_status),
     });
-    // Contacts come first in the list, since the page lists touching objects before near ones.
+    // The events of contacts precede those of proximities; the limit applies to the whole list.
     Status {
         step,
         objects: world.len(),

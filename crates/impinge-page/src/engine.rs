@@ -15,7 +15,7 @@ use crate::{EngineError, Recorded, Sampled, Shown, Stage, Viewed, message, parts
 /// A stage of any scalar and dimension.
 type Opened = Box<dyn Stage>;
 
-/// Answers the messages of `PROTOCOL.md`, and holds one stage.
+/// Processes the messages that `PROTOCOL.md` describes, and holds one stage.
 ///
 /// ```
 /// use impinge_page::{Engine, message, parts};
@@ -35,8 +35,8 @@ type Opened = Box<dyn Stage>;
 #[derive(Default)]
 pub struct Engine {
     stage: Option<Opened>,
-    /// The bytes of a stream whose header is still incomplete. Until it is complete, scalar and
-    /// dimension are unknown, and the stage is an empty one.
+    /// The bytes of a stream whose header is still incomplete; `None` for other stages. Until the
+    /// header is complete, scalar and dimension are unknown, and `stage` is an empty recording.
     begun: Option<Vec<u8>>,
 }
 
@@ -112,8 +112,8 @@ impl Engine {
         reply(&self.stage()?.info())
     }
 
-    /// Processes queries of the stage, and changes of it. The response to a change is the status of
-    /// the stage.
+    /// Processes queries and changes of the stage. The response to a change is the status of the
+    /// stage.
     fn ask(&mut self, request: Request) -> Result<Reply, EngineError> {
         let stage = self.stage()?;
         match request {
@@ -137,12 +137,13 @@ impl Engine {
         reply(&stage.status())
     }
 
-    /// Opens a stage; the current stage stays if this fails.
+    /// Opens a stage. If this fails, the current stage stays, unless the payload of a new stream is
+    /// invalid: then the stage is an empty stream.
     fn open(&mut self, opening: &Opening, payload: &[u8]) -> Result<(), EngineError> {
         let stage = match opening {
             Opening::Recording => open_recording(payload)?,
-            // An empty stage of arbitrary scalar and dimension: `push` replaces it when the header
-            // is complete.
+            // An empty stage of arbitrary scalar and dimension; `push` replaces it when the header
+            // of the stream is complete.
             Opening::Stream => Box::new(Shown::new(Recorded::<f32, 3>::growing(Registry::new()))),
             Opening::Sample { name } => open_sample(name)?,
         };
@@ -154,8 +155,8 @@ impl Engine {
         Ok(())
     }
 
-    /// Appends bytes to a stream. The bytes of the header are collected first; then they are passed
-    /// to a stage with the scalar and dimension of the header.
+    /// Appends bytes to a stream. Until the header is complete, the bytes are collected; then they
+    /// are passed to a new stage with the scalar and dimension of the header.
     fn push(&mut self, bytes: &[u8]) -> Result<(), EngineError> {
         let Some(begun) = &mut self.begun else { return self.stage()?.push(bytes) };
         let before = begun.len();
@@ -190,7 +191,8 @@ fn open_recording(bytes: &[u8]) -> Result<Opened, EngineError> {
     stage_of(&Header::read(&bytes)?, Some(&bytes))
 }
 
-/// Creates the stage of a recording: from all of its bytes, or for `None` an empty growing one.
+/// Creates a stage with the scalar and dimension of `header`: the recording `bytes`, or an empty
+/// growing recording if `bytes` is `None`.
 fn stage_of(header: &Header, bytes: Option<&[u8]>) -> Result<Opened, EngineError> {
     match (header.scalar_bytes, header.dimension) {
         (4, 2) => recorded::<f32, 2>(bytes),
@@ -201,8 +203,8 @@ fn stage_of(header: &Header, bytes: Option<&[u8]>) -> Result<Opened, EngineError
     }
 }
 
-/// Creates the stage of a recording with this scalar and dimension: from all of its bytes, or for
-/// `None` an empty growing one.
+/// Creates a stage with this scalar and dimension: the recording `bytes`, or an empty growing
+/// recording if `bytes` is `None`.
 fn recorded<N: Viewed<D>, const D: usize>(bytes: Option<&[u8]>) -> Result<Opened, EngineError> {
     let recorded = match bytes {
         Some(bytes) => Recorded::<N, D>::open(bytes, Registry::new())?,
@@ -211,7 +213,7 @@ fn recorded<N: Viewed<D>, const D: usize>(bytes: Option<&[u8]>) -> Result<Opened
     Ok(Box::new(Shown::new(recorded)))
 }
 
-/// Converts the value of a control; `null` is the press of a button.
+/// Converts the value of a control from JSON; `null` means that a button is pressed.
 fn control_value(value: Value) -> Result<ControlValue, EngineError> {
     match (value.as_f64(), value) {
         (Some(number), _) => Ok(ControlValue::Number(number)),

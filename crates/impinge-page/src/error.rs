@@ -7,7 +7,7 @@ use impinge_record::{Problem, ReadError, RecordError};
 use impinge_samples::SampleError;
 
 /// The reason why a message is rejected. The text is for authors of pages; the page translates the
-/// [`code`](EngineError::code) for readers.
+/// [`code`](EngineError::code) into a sentence for its readers.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum EngineError {
@@ -25,15 +25,16 @@ pub enum EngineError {
     /// The gallery has no sample of this name.
     UnknownSample(String),
     /// The operation is for recordings only: a sample has no recorded steps, and no bytes can be
-    /// appended to it.
+    /// appended to it. The text names what a sample lacks.
     OfRecordings(&'static str),
-    /// The operation is for samples only: a recording has no controls.
+    /// The operation is not for this recording: recordings have no controls, and only growing ones
+    /// accept bytes. The text names what the recording lacks.
     OfSamples(&'static str),
     /// The message requests more steps than one message may request.
     TooManySteps(u64),
     /// No object has a handle with this index.
     NoObject(u32),
-    /// The two objects of a pair are the same.
+    /// Both objects of a requested pair are this object.
     OneObject(u32),
     /// The quaternion has length zero, or is not finite.
     Rotation([f64; 4]),
@@ -45,7 +46,7 @@ pub enum EngineError {
     Kind {
         /// The dimension.
         dimension: u8,
-        /// The number of bytes of a number.
+        /// The number of bytes of each number.
         scalar_bytes: u8,
     },
     /// The world rejects a change.

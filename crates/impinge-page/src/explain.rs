@@ -19,24 +19,25 @@ pub(crate) struct Two<'a, N: Space<D>, const D: usize, T> {
     pub(crate) world: &'a CollisionWorld<N, D, T>,
     pub(crate) one: &'a CollisionObject<N, D, T>,
     pub(crate) two: &'a CollisionObject<N, D, T>,
-    /// The names of pair filters that are code of another program. Stand-ins, which accept all
-    /// pairs, replace them.
+    /// The names of the pair filters that stand-ins replace, since they are code of the recorded
+    /// program. A stand-in accepts all pairs.
     pub(crate) stand_ins: &'a [String],
 }
 
 /// The query type of a pair in a world, and the distance up to which it has a result.
 #[derive(Clone, Copy, Debug)]
 enum Limit<N> {
-    /// Contacts exist up to the sum of both predictions, and of both skins.
+    /// The pair has contacts up to this distance: the sum of the predictions and skins of both
+    /// objects.
     Prediction(N),
-    /// Contacts exist up to the sum of the predictions and skins of both objects.
+    /// The pair has the proximity `WithinMargin` up to this distance: the sum of the margins of its
+    /// proximity queries.
     Margin(N),
 }
 
 impl<N: Real> Limit<N> {
-    /// Returns the limit of a pair. If either object has a proximity query, the pair has a
-    /// proximity; then the prediction of the other object and `skins`, the sum of both skins, are
-    /// ignored.
+    /// Returns the limit of a pair; `skins` is the sum of both skins. If at least one object has a
+    /// proximity query, the pair has a proximity, and predictions and skins are ignored.
     fn of(one: GeometricQueryType<N>, two: GeometricQueryType<N>, skins: N) -> Self {
         use GeometricQueryType::{Contacts, Proximity};
         match (one, two) {
@@ -55,7 +56,8 @@ impl<N: Real> Limit<N> {
     }
 }
 
-/// The geometry of two objects at their current positions, which may differ from those of the last update.
+/// The geometry of two objects at their current positions, which may differ from their positions at
+/// the last update.
 struct Measures<N: Real, const D: usize> {
     distance: N,
     points: ClosestPoints<N, D>,
@@ -73,7 +75,7 @@ pub(crate) const fn proximity_text(proximity: Proximity) -> &'static str {
 }
 
 impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
-    /// Returns the description of the pair. Costs four queries about the two shapes.
+    /// Returns the description of the pair. Costs four queries on the two shapes.
     pub(crate) fn answer(&self) -> PairAnswer {
         let skin = |object: &CollisionObject<N, D, T>| self.world.skin(object.handle());
         let skins = skin(self.one).zip(skin(self.two)).map_or(N::ZERO, |(one, two)| one + two);
@@ -129,10 +131,10 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         ManifoldPoint { contact, features: format!("{feature1}, {feature2}") }
     }
 
-    /// Explains whether the two objects touch as of the last update. The conditions are tested with
-    /// the current state of the world. So they may contradict the result after a change without an
-    /// update. They may also contradict it for a one-sided surface, since the side is not one of
-    /// the conditions.
+    /// Explains why the two objects touch or do not touch, as of the last update. All conditions
+    /// but the boxes are tested with the current state of the world. So they may contradict the
+    /// update if the world has changed since. They may also contradict it for a one-sided surface,
+    /// since no condition tests the side.
     fn why(&self, limit: Limit<N>, measures: &Measures<N, D>) -> Why {
         let tests =
             vec![self.groups(), self.filters(), self.boxes(), distance_test(limit, measures)];
@@ -150,7 +152,7 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
     }
 
     /// Returns whether the pair touches as of the last update, and a phrase that describes the
-    /// result.
+    /// contacts or the proximity of the pair.
     fn found(&self) -> (bool, String) {
         let (one, two) = (self.one.handle(), self.two.handle());
         if let Some(pair) = self.world.proximity_pair(one, two) {
@@ -176,8 +178,8 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         }
     }
 
-    /// Tests the groups of both objects. Two fixed objects fail the test independent of their
-    /// groups.
+    /// Tests whether the groups of both objects allow the pair. Two fixed objects fail the test,
+    /// whatever their groups are.
     fn groups(&self) -> Test {
         if self.one.is_fixed() && self.two.is_fixed() {
             let text =
@@ -192,7 +194,8 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         Test { name: "groups", passes, text: groups::text(one, two) }
     }
 
-    /// Tests the pair filters of the world. The text mentions stand-ins, which reject nothing.
+    /// Tests whether all pair filters of the world accept the pair. The text mentions stand-ins,
+    /// which accept all pairs.
     fn filters(&self) -> Test {
         let refusing = self.world.refusing_pair_filters(self.one.handle(), self.two.handle());
         let names: Vec<&str> = self.world.broad_phase_pair_filter_names().collect();
@@ -209,7 +212,7 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         Test { name: "filter", passes: refusing.is_empty(), text }
     }
 
-    /// Tests the boxes of the broad phase, as of the last update.
+    /// Tests whether the fat AABBs of both objects overlap, as of the last update.
     fn boxes(&self) -> Test {
         let boxes = [self.one, self.two].map(|object| self.world.loosened_aabb(object.handle()));
         let [Some(box1), Some(box2)] = boxes else {
@@ -240,13 +243,14 @@ fn overlap<N: Real, const D: usize>(box1: &Aabb<N, D>, box2: &Aabb<N, D>) -> N {
     (0..D).map(on_axis).fold(N::INFINITY, min)
 }
 
-/// Tests the distance of the shapes against the limit. The text also has the depth.
+/// Tests whether the distance of the shapes is at most the limit. The text has the distance, or the
+/// depth if the shapes overlap.
 fn distance_test<N: Real, const D: usize>(limit: Limit<N>, measures: &Measures<N, D>) -> Test {
     let (length, apart) = (short(limit.length().as_f64()), short(measures.distance.as_f64()));
     let passes = measures.distance <= limit.length();
     let depth = measures.contact.as_ref().map(|contact| contact.depth.as_f64());
-    // If the shapes are apart within the prediction, the depth is negative and the distance
-    // positive.
+    // The distance is tested before the depth: shapes that are apart, but within the prediction,
+    // have a contact of negative depth.
     let state = match depth {
         _ if measures.distance > N::ZERO => format!("{apart} apart"),
         Some(depth) if depth > 0.0 => format!("they overlap, {} deep", short(depth)),
@@ -271,7 +275,7 @@ pub(crate) fn shown_contact<N: Real, const D: usize>(contact: &Contact<N, D>) ->
 }
 
 /// Formats a number with four significant digits and without trailing zeros. Magnitudes below 0.001
-/// and from a million on are in scientific notation.
+/// and magnitudes of at least a million have an exponent.
 pub(crate) fn short(number: f64) -> String {
     // Parsing the rounded number drops trailing zeros; adding zero turns -0 into 0.
     let rounded = format!("{number:.3e}").parse().unwrap_or(number) + 0.0;

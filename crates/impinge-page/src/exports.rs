@@ -22,8 +22,8 @@ thread_local! {
         const { RefCell::new(Host { engine: Engine::new(), message: Vec::new(), answer: Vec::new() }) };
 }
 
-/// Returns the address of a buffer for a message of `bytes` bytes, which is valid until the next call; 0 if there is
-/// not enough memory.
+/// Returns the address of a buffer for a message of `bytes` bytes; 0 if there is not enough memory.
+/// The buffer is valid until the next `reserve` or `call`.
 #[unsafe(no_mangle)]
 extern "C" fn reserve(bytes: usize) -> usize {
     HOST.with_borrow_mut(|host| {
@@ -37,7 +37,7 @@ extern "C" fn reserve(bytes: usize) -> usize {
 }
 
 /// Processes the first `bytes` bytes of the buffer as a message. Returns the address of the
-/// response, which is valid until the next call.
+/// response, which is valid until the next `call`.
 #[unsafe(no_mangle)]
 extern "C" fn call(bytes: usize) -> usize {
     HOST.with_borrow_mut(|host| {
@@ -48,7 +48,7 @@ extern "C" fn call(bytes: usize) -> usize {
     })
 }
 
-/// Returns the length of the response.
+/// Returns the length of the last response in bytes.
 #[unsafe(no_mangle)]
 extern "C" fn answer_bytes() -> usize {
     HOST.with_borrow(|host| host.answer.len())

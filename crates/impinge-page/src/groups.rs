@@ -14,13 +14,13 @@ pub(crate) fn shown(groups: &CollisionGroups) -> ShownGroups {
     }
 }
 
-/// Returns the groups of a mask: bit `g` is group `g`.
+/// Returns the indices of the groups in a mask: bit `g` is group `g`.
 fn bits(mask: u32) -> impl Iterator<Item = usize> {
     (0..u32::BITS as usize).filter(move |group| mask >> group & 1 == 1)
 }
 
 fn numbers(mask: u32) -> GroupNumbers {
-    // A new object is in all groups.
+    // New groups have a membership in all groups.
     let is_all = mask == CollisionGroups::new().membership_mask();
     if is_all { GroupNumbers::All("all") } else { GroupNumbers::Some(bits(mask).collect()) }
 }
@@ -45,15 +45,16 @@ pub(crate) struct Named<'a> {
 }
 
 /// Explains why the groups of two objects allow or exclude a pair, according to
-/// [`CollisionGroups::can_interact_with_groups`]. For an exclusion it names the first reason.
+/// [`CollisionGroups::can_interact_with_groups`]. If there are several reasons for an exclusion,
+/// the text has the first of them.
 pub(crate) fn text(one: Named<'_>, two: Named<'_>) -> String {
     let refusals = [refusal(one, two), refusal(two, one)];
     let first = refusals.into_iter().flatten().next();
     first.unwrap_or_else(|| "each has a group that the other allows".to_owned())
 }
 
-/// Explains why the lists of `other` exclude the object `one`; `None` if they allow it. The
-/// blacklist has precedence.
+/// Explains why the lists of `other` exclude the object `one`; `None` if the lists allow it. The
+/// blacklist has precedence over the whitelist.
 fn refusal(one: Named<'_>, other: Named<'_>) -> Option<String> {
     let membership = one.groups.membership_mask();
     let [whitelist, blacklist] = [other.groups.whitelist_mask(), other.groups.blacklist_mask()];

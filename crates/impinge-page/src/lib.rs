@@ -1,12 +1,13 @@
 //! The engine of a web page that shows worlds and runs queries on them.
 //!
 //! An [`Engine`] takes messages as bytes and returns responses as bytes; `PROTOCOL.md` describes
-//! both. It holds one *stage*: a recording, a growing recording, or a running sample. The page
-//! draws and sends requests. All geometry is computed here, by the public functions of the library.
+//! both. The engine holds one *stage*: a recording, a growing recording, or a running sample. The
+//! page draws and sends requests. The engine computes all geometry, by public functions of the
+//! library.
 //!
-//! As a WebAssembly module it exports three functions with numeric arguments and results. Native
-//! programs call the same engine directly: tests, and programs whose recordings have shapes and
-//! pair filters of their own.
+//! Compiled to a WebAssembly module, this crate exports three functions with numeric arguments and
+//! results. Native programs call the engine directly: tests, and programs whose recordings use
+//! their own shape types and pair filters.
 
 pub mod answer;
 mod ask;

@@ -2,9 +2,8 @@
 
 use crate::EngineError;
 
-/// Returns the bytes of a message. They consist of the length of the text in four bytes, the JSON
-/// text padded with spaces to a multiple of four bytes, and the payload. The length includes the
-/// spaces.
+/// Returns the bytes of a message: the length of the padded text in four bytes (little-endian), the
+/// JSON text padded with spaces to a multiple of four bytes, and the payload.
 ///
 /// ```
 /// let bytes = impinge_page::message(r#"{"do": "samples"}"#, &[7]);
@@ -29,7 +28,7 @@ pub fn message(text: &str, payload: &[u8]) -> Vec<u8> {
 /// Splits a message into text and payload. Does not check whether the text is JSON, or UTF-8.
 ///
 /// # Errors
-/// If the bytes end before the text does.
+/// If there are fewer bytes than the length of the text requires.
 pub fn parts(bytes: &[u8]) -> Result<(&[u8], &[u8]), EngineError> {
     let truncated = |wanted| EngineError::Truncated { wanted, found: bytes.len() };
     let (length, rest) = bytes.split_first_chunk::<4>().ok_or_else(|| truncated(4))?;

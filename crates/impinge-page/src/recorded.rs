@@ -19,8 +19,9 @@ use crate::{EngineError, Viewed};
 /// A replayed recording, complete or still growing. The data of its objects may be any bytes.
 ///
 /// Pair filters and shapes that the registry lacks get stand-ins: filters that accept all pairs,
-/// and balls. If they matter, the replay differs from the recording. Of a recording without an end,
-/// or with a damaged one, the records before that are replayed. [`Info::notes`] mentions both.
+/// and balls. A stand-in can make the replay differ from the recording. If the end of the recording
+/// is missing or damaged, the records before that part are replayed. [`Info::notes`] lists the
+/// stand-ins and the lost part.
 #[derive(Debug)]
 pub struct Recorded<N: Viewed<D>, const D: usize> {
     replay: Replay<N, D, Vec<u8>>,
@@ -34,7 +35,8 @@ pub struct Recorded<N: Viewed<D>, const D: usize> {
 impl<N: Viewed<D>, const D: usize> Recorded<N, D> {
     /// Opens a recording that does not grow, at its first update.
     ///
-    /// Costs O(bytes) time and a copy of them.
+    /// Takes time in proportion to the number of bytes, again for each stand-in, and copies the
+    /// bytes.
     ///
     /// # Errors
     /// As [`Replay::salvage`] and [`Replay::seek`], except for names that the registry lacks.
@@ -54,12 +56,13 @@ impl<N: Viewed<D>, const D: usize> Recorded<N, D> {
         Self { replay, stand_ins, is_stream: true, loss: None }
     }
 
-    /// Reads the bytes of a recording from its beginning. This is repeated whenever a missing name
+    /// Reads the bytes of a recording from its beginning, and once more for each missing name that
     /// gets a stand-in.
     fn read(&mut self, bytes: &[u8]) -> Result<(), ReadError> {
         loop {
             let error = if self.is_stream {
-                // In a stream damage is an error, since the bytes after it could never be read.
+                // In a stream, damage is an error, since the bytes after the damage could never be
+                // read.
                 self.replay = Replay::growing(&self.stand_ins.registry);
                 self.replay.push(bytes).err()
             } else {
@@ -77,7 +80,8 @@ impl<N: Viewed<D>, const D: usize> Recorded<N, D> {
     /// Adds a stand-in for the missing name in an error, and reads all bytes again.
     ///
     /// # Errors
-    /// Returns `error` itself if it is of another kind.
+    /// Returns `error` itself if it is not about a missing name, or if there are too many
+    /// stand-ins.
     fn reread(&mut self, error: ReadError) -> Result<(), ReadError> {
         if !self.stand_ins.add_for(&error) {
             return Err(error);
@@ -86,8 +90,8 @@ impl<N: Viewed<D>, const D: usize> Recorded<N, D> {
         self.read(&bytes)
     }
 
-    /// Goes to a step, or to the last one before it. Missing pair filters are detected here, when
-    /// the calls that register them are replayed.
+    /// Goes to a step, or to the last step if there are fewer steps. Missing pair filters are
+    /// detected here, when the calls that register them are replayed.
     fn go(&mut self, step: usize) -> Result<(), ReadError> {
         while let Err(error) = self.replay.seek(step) {
             self.reread(error)?;
@@ -159,7 +163,8 @@ impl<N: Viewed<D>, const D: usize> Source<N, D> for Recorded<N, D> {
         Err(EngineError::OfSamples("controls"))
     }
 
-    /// Moves an object in the replayed world; the next seek restores the recorded position.
+    /// Moves an object in the replayed world. The next seek or advance restores the recorded
+    /// position.
     fn drag(&mut self, object: CollisionObjectHandle, to: &N::Isometry) -> Result<(), EngineError> {
         let world = self.replay.world_mut();
         world.try_set_position(object, *to)?;

@@ -50,25 +50,27 @@ pub(crate) enum Opening {
     Sample { name: String },
 }
 
-/// A request for a frame, and its content.
+/// A request for a frame: the layers and the selected objects that it shows.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default)]
 pub struct FrameRequest {
     /// The names of the visible layers.
     pub layers: Vec<String>,
-    /// The objects whose boxes and contacts are drawn even if these layers are invisible.
+    /// The indices of the selected objects. Their boxes and contacts are drawn even if the layers
+    /// of boxes and contacts are invisible.
     pub selected: Vec<u32>,
     /// The number of mesh ids that the page has received. Meshes with smaller ids are not sent
     /// again.
     pub known: u32,
 }
 
-/// A point on the screen: in 3D the ray through it, in 2D the point `from`.
+/// A request for the object at a point on the screen. The point is given in 3D by the ray through
+/// it, in 2D by its coordinates.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub struct PickRequest {
     /// The origin of the ray; in 2D the point.
     pub from: [f64; 3],
-    /// Its direction, of any length; ignored in 2D.
+    /// The direction of the ray, of any length; ignored in 2D.
     #[serde(default)]
     pub direction: [f64; 3],
     /// In 2D, the maximum distance of an object that does not contain the point.
@@ -79,9 +81,9 @@ pub struct PickRequest {
 /// A ray whose points are `from + time * direction`.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub struct RayRequest {
-    /// Its origin.
+    /// The origin of the ray.
     pub from: [f64; 3],
-    /// Its direction, of any length.
+    /// The direction of the ray, of any length.
     pub direction: [f64; 3],
     /// The maximum time; without it the ray is unbounded.
     #[serde(default)]
@@ -101,12 +103,12 @@ pub struct NearestRequest {
 /// A request to move an object by hand.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub struct DragRequest {
-    /// The object.
+    /// The index of the object.
     pub object: u32,
-    /// The new position of its origin.
+    /// The new position of the object's origin.
     pub translation: [f64; 3],
-    /// The new rotation: a quaternion x, y, z, w of any length but zero. Without it the object
-    /// keeps its rotation.
+    /// The new rotation: a quaternion x, y, z, w of any length but zero. If it is `None`, the
+    /// object keeps its rotation.
     #[serde(default)]
     pub rotation: Option<[f64; 4]>,
 }

@@ -19,8 +19,8 @@ where
 {
     running: Running<D>,
     entry: Entry,
-    /// The controls with the values that the page knows: those that it received, and those that it
-    /// has set.
+    /// The controls with the values that the page has: the values that it received last, or that it
+    /// has set since.
     known: Vec<Control>,
 }
 
@@ -31,7 +31,7 @@ where
     /// Creates the stage with the sample at step 0.
     ///
     /// # Errors
-    /// If its world rejects its objects.
+    /// If the world rejects an object of the sample.
     pub fn new(entry: &Entry, sample: Box<dyn Sample<D>>) -> Result<Self, EngineError> {
         let mut running = Running::new(sample)?;
         drop(running.take_bytes());
@@ -39,7 +39,7 @@ where
         Ok(Self { running, entry: *entry, known })
     }
 
-    /// Drops the recorded bytes, which nothing here reads.
+    /// Drops the recorded bytes, which the page does not use.
     fn drop_recording(&mut self) {
         drop(self.running.take_bytes());
     }
@@ -98,7 +98,8 @@ where
         Ok(())
     }
 
-    /// Sets a control. The page knows this value, so the next status does not report it.
+    /// Sets a control. The page already has the value, so the next status lists the controls only
+    /// if the sample has changed another control.
     fn control(&mut self, name: &str, value: &ControlValue) -> Result<(), EngineError> {
         self.running.set_control(name, value)?;
         self.drop_recording();

@@ -1,5 +1,5 @@
-//! Describes shapes as text: the kind, and the arguments of the constructor with four significant
-//! digits.
+//! Describes shapes as text: the kind, and sizes such as radii, lengths or numbers of parts.
+//! Lengths have four significant digits.
 
 use impinge::math::{Point, Real, Vector};
 use impinge::shape::{
@@ -11,8 +11,8 @@ use impinge_record::{Recordable, ShapeData};
 use crate::answer::ShapeText;
 use crate::explain::short;
 
-/// Returns the kind and the sizes of a shape. A shape type of the recorded program has a kind but
-/// no sizes.
+/// Returns the kind and the sizes of a shape. For a shape type that is not of the library, the text
+/// has no sizes.
 pub(crate) fn shape_text<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> ShapeText {
     let kind = kind_text(shape.geometry().kind());
     let sizes = solid_sizes(shape).or_else(|| composite_sizes(shape)).or_else(|| own_sizes(shape));
@@ -125,8 +125,8 @@ fn composite_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) ->
     sizes("compound", format!("{} shapes", compound.num_children()))
 }
 
-/// Describes the shapes that exist in one dimension only, by the data with which they are recorded:
-/// generic code cannot name their types.
+/// Describes the shapes that exist only in 2D or only in 3D, and height fields, by the data with
+/// which they are recorded, since generic code cannot name their types; `None` for other shapes.
 fn own_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Option<ShapeText> {
     let [kind, height, radius] = ["cylinder", "half height", "radius"];
     match N::own_data(shape)? {
@@ -141,7 +141,7 @@ fn own_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Optio
             sizes("cone", format!("{height} {}, {radius} {}", length(h), length(r)))
         }
         ShapeData::Tetrahedron([a, b, c, d]) => {
-            // The six edges: each corner is connected with those after it.
+            // The six edges connect each corner with all corners after it.
             let edges = [[a, b], [a, c], [a, d], [b, c], [b, d], [c, d]];
             let edges = edges.map(|[from, to]| distance(&from, &to)).join(", ");
             sizes("tetrahedron", format!("edges {edges}"))

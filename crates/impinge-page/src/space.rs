@@ -1,4 +1,5 @@
-//! Converts between the dimension of the world and the page, which always has three coordinates.
+//! Converts between the dimension of the world and the three coordinates that the page uses in
+//! both dimensions.
 
 use impinge::math::na::{Quaternion, Translation2, Translation3, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry2, Isometry3, Point, Pose, Real, Vector, na};
@@ -9,28 +10,30 @@ use crate::answer::Picked;
 use crate::ask;
 use crate::request::PickRequest;
 
-/// The requirements of the page on scalar and dimension. They are met for every [`Scalar`] with `D`
-/// = 2 and `D` = 3.
+/// The operations of the page that depend on the dimension. Every [`Scalar`] implements them for
+/// `D` = 2 and `D` = 3.
 pub trait Viewed<const D: usize>: Recordable<D> {
-    /// Returns the rotation of an isometry as a unit quaternion x, y, z, w. In 2D it is about the
-    /// third axis.
+    /// Returns the rotation of an isometry as a unit quaternion x, y, z, w. In 2D the rotation is
+    /// about the third axis.
     fn quaternion(isometry: &Self::Isometry) -> [f64; 4];
 
-    /// Returns the isometry with a translation and a unit quaternion x, y, z, w. 2D uses only z and
-    /// w.
+    /// Returns the isometry with a translation and a unit quaternion x, y, z, w. In 2D, x and y of
+    /// the quaternion are ignored.
     fn placed(translation: &Vector<Self, D>, quaternion: [f64; 4]) -> Self::Isometry;
 
-    /// Adds a pair filter that accepts all pairs to a registry. It is implemented for each
-    /// dimension: a closure is a filter in one dimension only, and a type that is a filter in both
-    /// would conflict with closures.
+    /// Adds a pair filter that accepts all pairs to a registry. Each dimension has an
+    /// implementation: a closure is a filter in one dimension only, and a type that is a filter in
+    /// both would conflict with closures.
     fn with_open_filter<T>(registry: Registry<Self, D, T>, name: &str) -> Registry<Self, D, T>;
 
-    /// Returns the object at a point on the screen, with the hit point and the normal.
+    /// Returns the object at a point on the screen, with the hit point, and in 3D with the normal
+    /// and the time.
     fn pick<T>(world: &CollisionWorld<Self, D, T>, at: &PickRequest) -> Picked;
 }
 
 impl<N: Scalar> Viewed<2> for N {
-    /// Computes sine and cosine of the half angle, the larger of them first, to avoid cancellation.
+    /// Computes sine and cosine of the half angle. The one with the larger magnitude is computed
+    /// first and the other by a division, which avoids cancellation.
     fn quaternion(isometry: &Isometry2<N>) -> [f64; 4] {
         let [cosine, sine] = [isometry.rotation.re, isometry.rotation.im].map(N::as_f64);
         if cosine >= 0.0 {
@@ -107,7 +110,7 @@ pub(crate) fn point<N: Real, const D: usize>(three: [f64; 3]) -> Point<N, D> {
 }
 
 /// Converts a pose to the isometry type that queries of two shapes accept in either dimension. The
-/// rotation matrix keeps its bits.
+/// rotation matrix is copied without rounding.
 pub(crate) fn isometry<N: Real, const D: usize>(
     pose: &Pose<N, D>,
 ) -> na::Isometry<N, na::Rotation<N, D>, D> {
@@ -115,11 +118,12 @@ pub(crate) fn isometry<N: Real, const D: usize>(
     na::Isometry::from_parts(na::Translation::from(pose.translation), rotation)
 }
 
-/// Normalizes a quaternion; `None` if its length is zero or not finite.
+/// Normalizes a quaternion; `None` if all its components are zero or one of them is infinite.
 pub(crate) fn unit_quaternion(quaternion: [f64; 4]) -> Option<[f64; 4]> {
     let largest = quaternion.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
     let is_usable = largest > 0.0 && largest.is_finite();
-    // Scaled by the largest component first, which avoids overflow and underflow of the squares.
+    // The components are divided by the largest magnitude first, so that their squares neither
+    // overflow nor all underflow.
     let scaled = quaternion.map(|x| x / largest);
     let length = scaled.iter().map(|x| x * x).sum::<f64>().sqrt();
     is_usable.then(|| scaled.map(|x| x / length))

@@ -23,21 +23,21 @@ pub(crate) const MAX_STEPS: u64 = 10_000;
 /// A stage of an engine. It has a method for each message of the page, independent of scalar and
 /// dimension.
 ///
-/// A method that fails has changed nothing. The exception is a sequence of steps that fails midway:
-/// the steps before the failure remain.
+/// A method that fails has changed nothing, with one exception: if a sequence of steps fails
+/// midway, the steps before the failure remain.
 #[expect(clippy::missing_errors_doc, reason = "the variants of the error say when they are")]
 pub trait Stage {
     /// Returns the description of the stage.
     fn info(&self) -> Info;
 
-    /// Returns the state at the current step. It lists the controls of a sample that have changed
-    /// since the last call.
+    /// Returns the state at the current step. It lists the controls of a sample only if one of them
+    /// has a value that the page neither received nor set.
     fn status(&mut self) -> Status;
 
-    /// Appends bytes to a growing recording.
+    /// Appends bytes to a growing recording; an error for other stages.
     fn push(&mut self, bytes: &[u8]) -> Result<(), EngineError>;
 
-    /// Goes to a step of a recording. Steps after the last one count as the last one.
+    /// Goes to a step of a recording, or to its last step if it has fewer; an error for samples.
     fn seek(&mut self, step: usize) -> Result<(), EngineError>;
 
     /// Advances by `steps` steps. A recording stays at its end.
@@ -46,7 +46,7 @@ pub trait Stage {
     /// Goes back to the start: the first update of a recording, step 0 of a sample.
     fn reset(&mut self) -> Result<(), EngineError>;
 
-    /// Sets a control of a sample.
+    /// Sets a control of a sample; an error for recordings.
     fn control(&mut self, name: &str, value: &ControlValue) -> Result<(), EngineError>;
 
     /// Draws a frame.
@@ -58,7 +58,7 @@ pub trait Stage {
     /// Describes a pair of objects, and explains why they touch or do not.
     fn pair(&self, a: u32, b: u32) -> Result<PairAnswer, EngineError>;
 
-    /// Returns the object at a point on the screen.
+    /// Returns the object at a point on the screen; see [`Picked`].
     fn pick(&self, at: &PickRequest) -> Picked;
 
     /// Returns the objects that a ray hits.
@@ -67,7 +67,7 @@ pub trait Stage {
     /// Returns the objects nearest to a point.
     fn nearest(&self, asked: &NearestRequest) -> NearestAnswer;
 
-    /// Moves an object by hand.
+    /// Moves an object to a position that the reader has chosen, and updates the world.
     fn drag(&mut self, asked: &DragRequest) -> Result<(), EngineError>;
 }
 

@@ -9,7 +9,7 @@ use crate::space::Viewed;
 /// The maximum number of stand-ins of a recording; the recording is read again for each of them.
 const MAX_STAND_INS: usize = 64;
 
-/// A registry, and the names in it that are stand-ins.
+/// A registry, and the names of its filters and shapes that are stand-ins.
 #[derive(Clone, Debug)]
 pub(crate) struct StandIns<N: Space<D>, const D: usize> {
     pub(crate) registry: Registry<N, D, Vec<u8>>,
@@ -22,8 +22,8 @@ impl<N: Viewed<D>, const D: usize> StandIns<N, D> {
         Self { registry, filters: Vec::new(), shapes: Vec::new() }
     }
 
-    /// Adds a stand-in for the missing name in an error. Returns `false` if the error is of another
-    /// kind, or if there are too many stand-ins.
+    /// Adds a stand-in for the missing name in an error. Returns `false` if the error is not about
+    /// a missing name, or if there are too many stand-ins.
     pub(crate) fn add_for(&mut self, error: &ReadError) -> bool {
         if self.filters.len() + self.shapes.len() >= MAX_STAND_INS {
             return false;
@@ -44,7 +44,7 @@ impl<N: Viewed<D>, const D: usize> StandIns<N, D> {
         true
     }
 
-    /// Returns a sentence for each name, for readers.
+    /// Returns a sentence for readers about each stand-in.
     pub(crate) fn notes(&self) -> impl Iterator<Item = String> {
         let filters = self.filters.iter().map(|name| {
             format!("The pair filter {name} is code of the program that was recorded; here it lets all pairs through.")

@@ -7,8 +7,8 @@ use crate::answer::StepMark;
 /// The maximum number of marks that are sent to the page.
 pub(crate) const MAX_MARKS: usize = 10_000;
 
-/// Returns a mark for each step with changes. If there are more than [`MAX_MARKS`], the counts of
-/// neighbouring marks are added up at the step of the first of them.
+/// Returns a mark for each step with changes. If there are more than [`MAX_MARKS`] such steps, each
+/// mark has the sums of several consecutive marks, at the step of the first of them.
 pub(crate) fn marks(of_updates: &[Mark]) -> Vec<StepMark> {
     let marks = (1..).zip(of_updates).map(|(step, mark)| step_mark(step, mark));
     let marks: Vec<_> =
@@ -31,7 +31,7 @@ fn step_mark(step: usize, mark: &Mark) -> StepMark {
     }
 }
 
-/// Returns the sum of two marks, at the step of the first.
+/// Returns a mark with the sums of the counts of two marks, at the step of the first mark.
 const fn sum(first: StepMark, other: StepMark) -> StepMark {
     StepMark {
         step: first.step,

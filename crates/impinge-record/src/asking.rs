@@ -27,10 +27,12 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(answer)
     }
 
-    /// Runs a query about the objects that satisfy a predicate. Predicates are code, so that the
-    /// recording lists the other objects as excluded.
+    /// Runs a query about the objects that satisfy a predicate. Predicates are code and cannot be
+    /// recorded, so that the recording lists the objects that do not satisfy the predicate as
+    /// excluded.
     ///
-    /// Costs a call of the predicate for each object of the world, and four bytes for each excluded object.
+    /// Calls the predicate once for each object of the world. The recording gets four bytes for
+    /// each excluded object.
     ///
     /// # Errors
     /// If a shape of the query cannot be written.

@@ -12,7 +12,7 @@ pub(crate) const fn zigzag(number: i64) -> u64 {
     ((number << 1) ^ (number >> 63)).cast_unsigned()
 }
 
-/// Maps a number of [`zigzag`] back.
+/// Returns the signed number that [`zigzag`] maps to this number.
 pub(crate) const fn from_zigzag(zigzag: u64) -> i64 {
     (zigzag >> 1).cast_signed() ^ -(zigzag & 1).cast_signed()
 }

@@ -20,7 +20,7 @@ pub(crate) mod kinds {
     pub(crate) const UPDATE: u8 = 15;
 }
 
-/// The arguments of the call that adds an object.
+/// An object in a record: the arguments of the call that adds it, or its state in a key frame.
 #[derive(Clone, Debug)]
 pub(crate) struct ObjectData<N: Space<D>, const D: usize> {
     /// The index of the object's handle.
@@ -51,7 +51,7 @@ pub(crate) enum Call<N: Space<D>, const D: usize> {
     Shape(ShapeData<N, D>),
     /// Adds an object. Its index is the next one that the world assigns.
     Add(ObjectData<N, D>),
-    /// Moves objects. On an error none of them is moved.
+    /// Moves objects. A recorder writes this record only if all of them were moved.
     SetPositions(Vec<(u32, N::Isometry)>),
     SetShape {
         index: u32,
@@ -95,7 +95,8 @@ pub(crate) enum Call<N: Space<D>, const D: usize> {
     UnregisterFilter(String),
     /// Runs a query, which does not change the world.
     Query(Box<QueryData<N, D>>),
-    /// The state of the whole world. Replaying it also replaces the phases by new ones.
+    /// All objects of the world. A new player adds these objects. Every player then replaces the
+    /// broad phase and the narrow phase of its world by new ones.
     KeyFrame(KeyFrame<N, D>),
     /// Updates the world, with the hashes of the state after it.
     Update(Observation),

@@ -1,6 +1,6 @@
 //! Converts the user data of objects to bytes.
 
-/// User data of objects that can be recorded. It is recorded because filters may read it.
+/// User data of objects that can be recorded. The data is recorded because filters may read it.
 ///
 /// ```
 /// use impinge_record::RecordData;

@@ -1,5 +1,5 @@
-//! The hash of a recording: FNV-1a over 64-bit words, each mixed as in `SplitMix64`. It is the same
-//! on every platform.
+//! The hash of a recording: FNV-1a over 64-bit words, each mixed as in `SplitMix64`. The hash is
+//! the same on every platform.
 
 use std::hash::{Hash, Hasher};
 
@@ -28,8 +28,8 @@ impl Digest {
         (self.0 ^ (self.0 >> 32)) as u32
     }
 
-    /// Adds a word. It is mixed first, so that words that differ only in a high bit change the low
-    /// bits too.
+    /// Adds a word. The word is mixed first, so that words that differ only in a high bit change
+    /// the low bits too.
     pub(crate) const fn word(&mut self, word: u64) {
         let mixed = (word ^ (word >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -58,8 +58,8 @@ impl Digest {
     }
 }
 
-/// Returns the two parts of a contact id: the index of the pair, and the index within the pair.
-/// They are read through the `Hash` of the id.
+/// Returns the two parts of a contact id: the index of the pair, and the index within the pair. The
+/// parts are read through the `Hash` of the id.
 pub(crate) fn id_parts(id: ContactId) -> [u64; 2] {
     let mut parts = IdParts::default();
     id.hash(&mut parts);

@@ -15,9 +15,9 @@ pub struct Divergence {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Difference {
-    /// An object differs after an update. It is the first such object in the order of handles.
+    /// An object differs after an update: the first such object in the order of handles.
     Object {
-        /// The index of its handle.
+        /// The index of the object's handle.
         index: usize,
         /// The field of the object.
         field: ObjectField,
@@ -35,7 +35,8 @@ pub enum Difference {
 /// A field of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ObjectField {
-    /// Its position, groups or query type.
+    /// The state that calls have set: position, groups, query type, fixed flag, skin and predicted
+    /// position.
     Description,
     /// The contacts and proximities of the pairs in which it is the first object.
     Pairs,

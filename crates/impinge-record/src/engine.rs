@@ -65,8 +65,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(())
     }
 
-    /// Updates the world with a filter for this update, and records the rejected pairs and the hashes of the
-    /// result. A replay needs no filter.
+    /// Updates the world with a filter for this update. Records the pairs that the filter rejects
+    /// and the hashes of the result, so that a replay needs no filter.
     ///
     /// The update of a key frame ([`Self::with_key_frames`]) filters all pairs again.
     ///

@@ -1,5 +1,5 @@
-//! Recordings of collision worlds as logs of calls. They are written, replayed forwards and
-//! backwards, and validated.
+//! Recordings of collision worlds as logs of calls: written, replayed forwards and backwards, and
+//! validated.
 //!
 //! A [`Recorder`] wraps a world. It records each call that changes the world, each query made
 //! through the recorder, and after each update hashes of the state of the world. Since a recording

@@ -202,8 +202,8 @@ impl Cursor {
         Ok(margin)
     }
 
-    /// Verifies the checksum at the offset `end`, which is that of all bytes before it, and moves
-    /// behind it.
+    /// Verifies the checksum at the offset `end`, which covers all earlier bytes except checksums.
+    /// Moves the cursor behind this checksum.
     pub(crate) fn pass(&mut self, bytes: &[u8], end: usize) -> Result<(), ReadError> {
         let mut source = Source::new(bytes, end..bytes.len());
         let expected = source.word()?;
@@ -217,8 +217,8 @@ impl Cursor {
     }
 }
 
-/// Recomputes the checksums of a recording, up to the first incomplete record. With it tests can
-/// change bytes that checksums protect.
+/// Recomputes the checksums of a recording, up to the first incomplete record. For tests that
+/// change bytes of a recording.
 #[doc(hidden)]
 pub fn reseal(bytes: &mut [u8]) {
     let mut checksum = crc32fast::Hasher::new();

@@ -1,4 +1,5 @@
-//! The time line of a recording: the changes and events of each update, and the offsets of its records.
+//! The time line of a recording: the changes and events of each update, and the offsets of the key
+//! frames.
 
 use impinge::narrow_phase::ContactEvent;
 use impinge::world::CollisionWorld;

@@ -39,21 +39,22 @@ pub(crate) struct Player<N: Recordable<D>, const D: usize, T> {
     asked: Vec<Asked<N, D>>,
     /// The queries between the last two updates, with their results.
     pub(crate) queries: Vec<Asked<N, D>>,
-    /// Whether no call was applied yet. Then a key frame creates the objects instead of only
-    /// replacing the phases.
+    /// Whether no call was applied yet that changes the world. A key frame then creates the
+    /// objects; otherwise it only replaces the phases.
     is_new: bool,
     /// Whether a key frame has created the objects and no update followed. In the next update all
     /// pairs start.
     is_remade: bool,
-    /// Whether the events of the last update include those of a rebuilt world, which differ from
+    /// Whether the events of the last update include events of a rebuilt world, which differ from
     /// the recorded events.
     has_other_events: bool,
     /// Whether `keep_events` was called since the last update.
     keeps_events: bool,
 }
 
-/// Replaces the phases of a world by new ones, whose pairs start at the next update. The later
-/// results then depend only on the objects, not on the history of the world.
+/// Replaces the phases of a world (the broad phase and the narrow phase) by new ones, whose pairs
+/// start at the next update. The later results then depend only on the objects, not on the history
+/// of the world.
 pub(crate) fn exchange_phases<N: Recordable<D>, const D: usize, T>(
     world: &mut CollisionWorld<N, D, T>,
     margin: N,
@@ -198,8 +199,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         self.refused = pairs;
     }
 
-    /// Updates the world. If the recorded update had a filter, its recorded results are used
-    /// instead.
+    /// Updates the world. If the recorded update had a filter, the recorded results of the filter
+    /// are used.
     fn update_world(&mut self) {
         let refused = std::mem::take(&mut self.refused);
         if refused.is_empty() {
@@ -273,7 +274,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         Ok(())
     }
 
-    /// Adds a temporary object that only occupies an index. It is removed before the next update.
+    /// Adds a temporary object that only occupies an index. The temporary object is removed before
+    /// the next update.
     fn hold_place(&mut self, index: u32) -> Result<(), Problem> {
         let (position, ball) = (N::isometry(&Pose::identity()), Ball::try_new(N::ONE)?);
         let (shape, groups) = (ShapeHandle::new(ball), CollisionGroups::empty());
@@ -282,8 +284,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         self.enter(handle, index)
     }
 
-    /// Updates the world and compares its hashes with the recorded ones. Objects are compared only
-    /// if the hash of the state differs.
+    /// Updates the world and compares its hashes with the recorded ones. The hashes of objects are
+    /// compared only if the hash of the state differs.
     fn update(&mut self, recorded: &Observation) -> Option<Difference> {
         let before = self.observer.clone();
         self.update_world();

@@ -126,7 +126,7 @@ pub struct Found<N: Space<D>, const D: usize> {
 /// The data that a query computes for an object.
 #[derive(Clone, Copy, Debug)]
 pub enum Detail<N: Space<D>, const D: usize> {
-    /// No data; of queries for points, boxes and overlaps.
+    /// No data: the query returns only the objects at a point, in a box or overlapping a shape.
     Object,
     /// The hit of a ray.
     Ray(RayIntersection<N, D>),

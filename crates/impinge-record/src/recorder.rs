@@ -62,7 +62,7 @@ pub struct Recorder<N: Recordable<D>, const D: usize, T> {
     observer: Observer,
     log: Log,
     updates: u64,
-    /// The number of updates between key frames; without it no key frames are written.
+    /// The number of updates between key frames; `None` if no key frames are written.
     key_frames: Option<NonZeroU64>,
 }
 
@@ -96,13 +96,15 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
 
     /// Records a world that already has objects, beginning with a key frame, and updates it.
     ///
-    /// The update installs new phases of the library with this margin, as
-    /// [`set_narrow_phase`](CollisionWorld::set_narrow_phase) does: events of this update are those of the changes of
-    /// objects, and contacts get new ids. So all later results depend on the key frame alone, not on the history of the
-    /// world.
+    /// Before this update, the broad phase and the narrow phase of the world are replaced by new
+    /// ones of the library, with this margin, as
+    /// [`set_narrow_phase`](CollisionWorld::set_narrow_phase) does. The exchange itself causes no
+    /// events, but contacts get new ids. All later results depend on the key frame alone, not on
+    /// the history of the world.
     ///
     /// # Errors
-    /// If the margin is invalid, a shape cannot be written, or the registry lacks a filter of the world.
+    /// If the margin is invalid, a shape cannot be written, or the registry lacks a pair filter
+    /// that is registered in the world.
     pub fn of_world(
         world: CollisionWorld<N, D, T>,
         margin: N,
@@ -134,9 +136,9 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
     /// replay that goes backwards then repeats little more than `updates` updates. Without key
     /// frames, the default, it goes back to the start of the recording.
     ///
-    /// A key frame takes about as many bytes as adding all objects. Its update recomputes every
-    /// pair, and contacts get new ids, as with [`Self::of_world`]. Key frames do not change the
-    /// events.
+    /// A key frame takes about as many bytes as adding all objects. The update after it recomputes
+    /// every pair, and contacts get new ids, as with [`Self::of_world`]. Key frames do not change
+    /// the events.
     #[must_use]
     pub const fn with_key_frames(mut self, updates: NonZeroU64) -> Self {
         self.key_frames = Some(updates);
@@ -146,7 +148,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
     /// Adds an object.
     ///
     /// # Errors
-    /// If the world rejects it, or the shape cannot be written.
+    /// If the world rejects the object, or the shape cannot be written.
     pub fn add(
         &mut self,
         position: N::Isometry,
@@ -175,7 +177,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(())
     }
 
-    /// Removes the objects for which `keeps` returns `false`. It is called in the order of handles.
+    /// Removes the objects for which `keeps` returns `false`. `keeps` is called in the order of
+    /// handles.
     pub fn retain(&mut self, mut keeps: impl FnMut(&CollisionObject<N, D, T>) -> bool) {
         let leaving = self.world.collision_objects().filter(|object| !keeps(object));
         let leaving: Vec<_> = leaving.map(CollisionObject::handle).collect();
@@ -229,15 +232,16 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(())
     }
 
-    /// Changes the shape of an object, whose type is given, and returns the result of `change`; see
-    /// [`CollisionWorld::deform`].
+    /// Changes a copy of the shape of an object, which must have the type `S`, and replaces the
+    /// shape by this copy. Returns the result of `change`; see [`CollisionWorld::deform`].
     ///
-    /// The recording gets the whole shape, as with [`Self::set_shape`]: a mesh of many vertices that changes at every
-    /// step makes a large recording, and all its shapes are kept alive while the recorder lives.
+    /// The recording gets the whole shape, as with [`Self::set_shape`]. A mesh of many vertices
+    /// that changes at every step makes a large recording, and the recorder keeps every version of
+    /// the shape alive.
     ///
     /// # Errors
-    /// If the handle is stale or the shape has another type; `change` is then not called. If the changed shape cannot
-    /// be written.
+    /// If the handle is stale or the shape has another type; `change` is then not called. If the
+    /// changed shape cannot be written.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point};
@@ -334,7 +338,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         self.end_step();
     }
 
-    /// Writes a key frame, if the next update is to have one.
+    /// Writes a key frame if the next update gets one; see [`Self::with_key_frames`].
     pub(crate) fn begin_step(&mut self) {
         if self.key_frames.is_some_and(|every| self.updates > 0 && self.updates % every == 0) {
             let known = self.key_frame();
@@ -419,7 +423,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         self.shapes.number(shape, &self.registry)
     }
 
-    /// Writes a record, preceded by those of the new shapes to which it refers.
+    /// Writes a record, after the records of the shapes that are not written yet.
     pub(crate) fn record(&mut self, call: &Call<N, D>) {
         for shape in self.shapes.unwritten.drain(..) {
             self.log.record(&Call::Shape(shape));

@@ -16,12 +16,12 @@ use crate::space::Recordable;
 
 /// A recording and its world at a step, which is the number of applied updates.
 ///
-/// Going forwards applies the calls of each step; if a key frame lies between, it applies the calls
-/// from there on. Going backwards rebuilds the world from the last key frame at least two updates
-/// before the step, or from the start.
+/// To go forwards, a replay applies the calls of each step; if a key frame lies between, it
+/// rebuilds the world from the key frame instead. To go backwards, it rebuilds the world from the
+/// last key frame at least two updates before the step, or from the start.
 ///
-/// It takes the memory of the recording and its shapes, of a [`Mark`] for each update, and of one
-/// world.
+/// A replay takes the memory of the recording and its shapes, of a [`Mark`] for each update, and of
+/// one world.
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;
@@ -75,9 +75,9 @@ pub struct Replay<N: Recordable<D>, const D: usize, T> {
 pub struct Loss {
     /// The offset at which the unreadable part begins; the bytes before it are kept.
     pub offset: usize,
-    /// The number of its bytes; 0 if only the last record is missing.
+    /// The number of bytes of the unreadable part; 0 if the bytes end after a complete record.
     pub bytes: usize,
-    /// The reason why it could not be read.
+    /// The reason why the part could not be read.
     pub error: ReadError,
 }
 
@@ -94,8 +94,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
     /// Opens a recording at step 0, before the first call. Reads all records and makes the shapes.
     ///
     /// # Errors
-    /// If the bytes are not a complete recording of this scalar and dimension, in this version of the format or an
-    /// earlier one, or if the registry lacks a name.
+    /// If the bytes are not a complete recording of this scalar and dimension, in this version of
+    /// the format or an earlier one, or if the registry lacks a shape of the recording.
     pub fn open(
         bytes: impl Into<Vec<u8>>,
         registry: &Registry<N, D, T>,
@@ -108,8 +108,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         }
     }
 
-    /// Creates a recording without bytes, to which [`Self::push`] appends them as they arrive. Its world has no
-    /// object.
+    /// Creates a replay of a recording without bytes, to which [`Self::push`] appends bytes as they
+    /// arrive. The world has no objects.
     ///
     /// ```
     /// use impinge_record::{Recorder, Registry, Replay};
@@ -146,10 +146,10 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         }
     }
 
-    /// Opens a recording whose end is missing, because the program crashed, or damaged: reads all records up to the
-    /// first that is incomplete or has a wrong checksum. [`Self::loss`] describes the rest.
+    /// Opens a recording whose end is damaged, or missing because the program crashed. Reads all
+    /// records up to the first that is incomplete or invalid. [`Self::loss`] describes the rest.
     ///
-    /// Records after a damaged one cannot be read: each checksum covers all bytes before it.
+    /// Records after a damaged one cannot be read, since each checksum covers all earlier bytes.
     ///
     /// # Errors
     /// As [`Self::open`], if the header cannot be read.
@@ -189,12 +189,12 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         Ok(replay)
     }
 
-    /// Appends bytes to a growing recording, and reads the records that are now complete, each once. Returns the
-    /// number of updates among them. The step does not change.
+    /// Appends bytes to a growing recording, and reads the records that are now complete. Returns
+    /// the number of updates among these records. The current step does not change.
     ///
     /// # Errors
-    /// As [`Self::open`], but incomplete records are no error: they wait for the rest. After an error the replay
-    /// keeps the earlier records, and every later call returns the error again.
+    /// As [`Self::open`], but incomplete records are no error: they wait for the rest. After an
+    /// error the replay keeps the earlier records, and every later call returns the same error.
     pub fn push(&mut self, bytes: &[u8]) -> Result<usize, ReadError> {
         if let Some(damage) = &self.damage {
             return Err(damage.clone());
@@ -210,8 +210,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         }
     }
 
-    /// Reads the complete records. It verifies their checksums and fields, creates the shapes, and
-    /// extends the time line.
+    /// Reads the complete records that were not read yet: verifies their checksums and fields,
+    /// creates the shapes, and extends the time line.
     fn scan(&mut self) -> Result<Reading, ReadError> {
         if self.cursor.offset() == 0 {
             match self.scan_header() {
@@ -284,7 +284,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         self.is_complete
     }
 
-    /// Returns the part that [`Self::salvage`] has dropped; `None` if the recording is complete.
+    /// Returns the part that [`Self::salvage`] has dropped; `None` if nothing was lost.
     #[must_use]
     pub const fn loss(&self) -> Option<&Loss> {
         self.loss.as_ref()
@@ -321,7 +321,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         self.timeline.marks.is_empty()
     }
 
-    /// Returns the time line: a mark for each update. It is available without replaying.
+    /// Returns the time line: a mark for each update. The time line is available without replaying.
     #[must_use]
     pub fn marks(&self) -> &[Mark] {
         &self.timeline.marks
@@ -366,8 +366,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
     /// last one goes to the last one.
     ///
     /// # Errors
-    /// If a call cannot be applied; then the bytes were not written by a recorder. The world is in
-    /// the state after the calls before it.
+    /// If a call cannot be applied, because the registry lacks a pair filter or the bytes were not
+    /// written by a recorder. The calls before it remain applied.
     pub fn seek(&mut self, step: usize) -> Result<(), ReadError> {
         let step = step.min(self.len());
         let frame = self.timeline.frame_before(step);

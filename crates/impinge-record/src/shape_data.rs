@@ -52,9 +52,9 @@ pub struct Mesh<N: Space<D>, const D: usize, const ENDS: usize> {
     pub parts: Vec<[u32; ENDS]>,
     /// The vertex indices of each ghost triangle of a mesh; empty for a polyline.
     pub ghosts: Vec<[u32; ENDS]>,
-    /// Whether it has no contacts from behind; also `true` for a solid.
+    /// Whether the shape has no contacts from behind; also `true` for a solid.
     pub is_one_sided: bool,
-    /// Whether it is a solid instead of a surface.
+    /// Whether the shape is a solid instead of a surface.
     pub is_solid: bool,
     /// Whether contacts treat each part separately.
     pub keeps_internal_edges: bool,
@@ -67,12 +67,12 @@ pub struct Field<N: Space<D>, const D: usize> {
     pub columns: usize,
     /// The heights, row by row.
     pub heights: Vec<N>,
-    /// The scale.
+    /// The extents of the whole field; the y component is the factor of the heights.
     pub scale: Vector<N, D>,
     /// A byte for each cell: bits 0 and 1 mark removed parts, bit 2 a backward diagonal, bit 3 a
     /// ghost.
     pub marks: Vec<u8>,
-    /// Whether it has no contacts from behind.
+    /// Whether the field has no contacts from behind.
     pub is_one_sided: bool,
     /// Whether contacts treat each part separately.
     pub keeps_internal_edges: bool,
@@ -420,8 +420,8 @@ impl Source<'_> {
     ) -> Result<Mesh<N, D, ENDS>, ReadError> {
         let vertices = self.point_list()?;
         let parts = self.corners()?;
-        // The bits of `sides`: 0 and 1 for one-sided and solid, 2 for ghosts, which polylines do
-        // not have.
+        // Bits of `sides`: bit 0 for a one-sided surface, bit 1 for a solid, bit 2 if there are
+        // ghosts. Polylines have no ghosts.
         let sides = self.choice(if ENDS == 3 { 7 } else { 3 }, SIDES)?;
         let keeps_internal_edges = self.flag()?;
         let ghosts = if sides < GHOSTS { Vec::new() } else { self.corners()? };

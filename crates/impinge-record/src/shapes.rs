@@ -10,7 +10,8 @@ use crate::registry::Registry;
 use crate::shape_data::{ShapeData, data_of, joins_alike};
 use crate::space::Recordable;
 
-/// The maximum nesting depth of a shape. A rounded shape or compound has one more than its content.
+/// The maximum nesting depth of a shape. The depth of a rounded shape or compound is one more than
+/// that of the deepest shape in it.
 pub const MAX_DEPTH: u32 = impinge::shape::MAX_NESTING;
 
 /// The maximum number of parts of a shape. The parts of a shared shape count for each use.
@@ -67,7 +68,7 @@ impl<N: Recordable<D>, const D: usize> ShapeTable<N, D> {
     }
 
     /// Returns the nesting depth that a shape with this data would have, and the number of parts of
-    /// its children.
+    /// its children; an error if one of them exceeds its maximum.
     fn check(&self, data: &ShapeData<N, D>) -> Result<[usize; 2], Problem> {
         let (mut depth, mut parts) = (0, 0_usize);
         for number in data.inner() {
@@ -89,13 +90,13 @@ impl<N: Recordable<D>, const D: usize> ShapeTable<N, D> {
     }
 }
 
-/// The shapes that a recorder has written. They are kept alive, since they are identified by their
-/// addresses.
+/// The shapes that a recorder has written. The shapes are kept alive, since an address identifies
+/// each shape.
 #[derive(Clone, Debug)]
 pub(crate) struct KnownShapes<N: Space<D>, const D: usize> {
     table: ShapeTable<N, D>,
-    /// The index of each shape by its address. It is used for look-ups only: no result depends on
-    /// the order of addresses.
+    /// The index of each shape by its address. Addresses are used for look-ups only: no result
+    /// depends on their order.
     numbers: BTreeMap<usize, u32>,
     /// The shapes that are not written yet.
     pub(crate) unwritten: Vec<ShapeData<N, D>>,
@@ -133,7 +134,7 @@ impl<N: Recordable<D>, const D: usize> KnownShapes<N, D> {
 
     /// Checks that the data reproduces the shape: with the same data and the same adjacency of
     /// parts. A mesh whose vertices were moved keeps its original adjacency, which may not follow
-    /// from the new positions.
+    /// from the new positions. Named shapes and shapes with shapes in them are not compared.
     fn check<T>(
         &self,
         data: &ShapeData<N, D>,
@@ -154,7 +155,7 @@ impl<N: Recordable<D>, const D: usize> KnownShapes<N, D> {
     }
 }
 
-/// Returns the name under which the registry has a shape; `None` if it has none.
+/// Returns data with the name under which the registry has a shape; `None` if it has none.
 fn named<N: Recordable<D>, const D: usize, T>(
     shape: &ShapeHandle<N, D>,
     registry: &Registry<N, D, T>,

@@ -23,20 +23,21 @@ impl Scalar for f64 {
     const BYTES: usize = 8;
 }
 
-/// A scalar and a dimension whose worlds can be recorded: every [`Scalar`] with `D` = 2 and `D` = 3.
+/// A scalar and a dimension whose worlds can be recorded: every [`Scalar`] with `D` = 2 and `D` =
+/// 3.
 pub trait Recordable<const D: usize>: Space<D> + Scalar {
     /// The number of scalars that represent an isometry.
     const ISOMETRY_NUMBERS: usize;
 
     /// Returns the scalars of an isometry: the translation, then the cosine and sine of the
-    /// rotation in 2D, or the components i, j, k, w of its quaternion in 3D. They are not
-    /// normalized, since that could change bits.
+    /// rotation in 2D, or the components i, j, k, w of its quaternion in 3D. The scalars of the
+    /// rotation are not normalized, since that could change bits.
     fn isometry_numbers(isometry: &Self::Isometry) -> Vec<Self> {
         Self::numbers(isometry)[..Self::ISOMETRY_NUMBERS].to_vec()
     }
 
-    /// Returns the isometry with these scalars. Its rotation is not normalized. `None` if their
-    /// number is wrong.
+    /// Returns the isometry with these scalars. Its rotation is not normalized. `None` if the
+    /// number of scalars is wrong.
     fn isometry_of(numbers: &[Self]) -> Option<Self::Isometry> {
         let mut padded = [Self::ZERO; 7];
         padded[..Self::ISOMETRY_NUMBERS].copy_from_slice(numbers.get(..Self::ISOMETRY_NUMBERS)?);
@@ -64,7 +65,7 @@ pub trait Recordable<const D: usize>: Space<D> + Scalar {
     /// If the polyline bounds no area or is inside out.
     fn solid_line(line: Polyline<Self, D>) -> Result<Polyline<Self, D>, MeshError>;
 
-    /// Returns the solid mesh in 3D; in 2D the mesh itself, which is filled.
+    /// Returns the solid mesh in 3D; in 2D the mesh itself, since 2D meshes are filled.
     ///
     /// # Errors
     /// If the mesh bounds no volume or is inside out.
@@ -159,7 +160,8 @@ impl<N: Scalar> Recordable<3> for N {
     }
 }
 
-/// Converts a hull. Its faces are omitted if the hull of its points is equal to it, to the bit.
+/// Converts a hull. The faces are omitted if the convex hull of the points is equal to the hull, to
+/// the bit.
 fn hull_data<N: Scalar>(hull: &ConvexHull<N>, faces: Vec<Vec<u32>>) -> ShapeData<N, 3> {
     let points = hull.vertices().to_vec();
     let is_given_by_points = hull_of(&points, &[]).is_ok_and(|other| other == *hull);
@@ -182,7 +184,7 @@ const HOLES: [u8; 2] = [1, 2];
 const BACKWARD: u8 = 4;
 const GHOST: u8 = 8;
 
-/// Converts a height field in 2D; it has a mark for each segment.
+/// Converts a height field in 2D to data with a mark for each segment.
 fn line_data<N: Scalar>(field: &HeightField<N, 2>) -> Field<N, 2> {
     let mark = |cell| u8::from(field.is_hole(cell)) + GHOST * u8::from(field.is_ghost(cell));
     let marks = (0..).take(field.num_cells()).map(mark);
@@ -206,8 +208,8 @@ fn line_of<N: Scalar>(data: &Field<N, 2>) -> Result<HeightField<N, 2>, Problem> 
     Ok(if data.keeps_internal_edges { field.with_internal_edges_kept() } else { field })
 }
 
-/// Converts a height field in 3D; it has a mark for each cell of two triangles. The diagonal of
-/// each cell is written, whichever rule has set it.
+/// Converts a height field in 3D to data with a mark for each cell of two triangles. The diagonal
+/// of each cell is written, whichever rule has set it.
 fn sheet_data<N: Scalar>(field: &HeightField<N, 3>) -> Field<N, 3> {
     let columns = field.columns() - 1;
     let mark = |cell: u32| {

@@ -30,7 +30,7 @@ pub(crate) struct Observation {
     pub(crate) events: u64,
     /// The number of events of each kind in the update; `None` in version 1 of the format.
     pub(crate) counts: Option<EventCounts>,
-    /// The objects whose hashes differ from those after the previous update, in the order of
+    /// The objects whose hashes differ from their hashes after the previous update, in the order of
     /// indices; `None` in packed recordings.
     pub(crate) changed: Option<Vec<ObjectHashes>>,
 }
@@ -160,7 +160,7 @@ impl Observer {
 }
 
 /// Returns the hash of the state of an object that calls have set: its position, groups, query
-/// type, and rare properties.
+/// type, fixed flag, skin and predicted position.
 fn description_digest<N: Recordable<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     object: &CollisionObject<N, D, T>,
@@ -209,7 +209,8 @@ fn events_hash<N: Recordable<D>, const D: usize, T>(world: &CollisionWorld<N, D,
     digest.finish()
 }
 
-/// Returns a code for a proximity. It does not depend on the order of the variants in the library.
+/// Returns a code for a proximity. The code does not depend on the order of the variants in the
+/// library.
 const fn proximity_number(proximity: Proximity) -> u64 {
     match proximity {
         Proximity::Intersecting => 2,

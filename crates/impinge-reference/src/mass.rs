@@ -44,7 +44,7 @@ pub fn counted<const D: usize>(
     let total = (0..D).fold(1, |total, _| total * cells);
     for index in 0..total {
         let mut rest = index;
-        // Coordinates are relative to the low corner of the box, which saves digits.
+        // Coordinates are relative to the low corner of the box, which keeps rounding errors small.
         let place: [f64; D] = std::array::from_fn(|axis| {
             let step = rest % cells;
             rest /= cells;

@@ -40,8 +40,8 @@ impl Random {
         low + (high - low) * self.share()
     }
 
-    /// Returns a number in [low, low * 2^doublings) in which all powers of two are equally likely;
-    /// `low` if `doublings` is 0.
+    /// Returns a number in [low, low * 2^doublings): first the number of doublings of `low` is
+    /// drawn, then a factor in [1, 2). Returns `low` if `doublings` is 0.
     pub fn magnitude(&mut self, low: f64, doublings: u32) -> f64 {
         let Ok(count @ 1..) = usize::try_from(doublings) else { return low };
         let doubled = (0..self.below(count)).fold(low, |value, _| 2.0 * value);
@@ -79,8 +79,8 @@ impl Random {
         (step as f64 - steps as f64) / (1u64 << k) as f64
     }
 
-    /// Returns a number in [low, high), rounded toward zero to an `f32`. Exact for numbers in the
-    /// normal range of `f32`.
+    /// Returns a number in [low, high), rounded toward zero to an `f32`. The result is an `f32`
+    /// without rounding if it is in the normal range of `f32`.
     pub fn single(&mut self, low: f64, high: f64) -> f64 {
         f32_toward_zero(self.range(low, high))
     }

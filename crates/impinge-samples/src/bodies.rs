@@ -2,9 +2,9 @@
 //! and stacks.
 //!
 //! The library computes contacts and leaves motion to its users. The method is sequential impulses
-//! with warm starts (Catto, "Iterative dynamics with temporal coherence", 2005). Each contact point
-//! in turn, and several times, gets the impulse that stops its approach. The initial impulse is
-//! that of the point with the same id in the previous step.
+//! with warm starts (Catto, "Iterative dynamics with temporal coherence", 2005). In each of several
+//! rounds, each contact point in turn gets the impulse that stops its approach. Its initial impulse
+//! is that of the contact with the same id in the previous step.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ use crate::{Isometry, SampleError, TIME_STEP, World};
 const ITERATIONS: usize = 20;
 const GRAVITY: f32 = 10.0;
 const FRICTION: f32 = 0.5;
-/// The penetration depth that is not corrected, so that contacts persist.
+/// The penetration depth up to which penetrations are not corrected, so that contacts persist.
 const SLOP: f32 = 0.005;
 /// The share of the penetration beyond [`SLOP`] that is corrected in a step.
 const RECOVERY: f32 = 0.2;
@@ -27,7 +27,8 @@ const RECOVERY: f32 = 0.2;
 /// value.
 const REST_SPEED: f32 = 0.03;
 
-/// A moving body. It has the moment of inertia of a cube, which is the same about every axis.
+/// A moving body. It has the moment of inertia of a cube (2D: a square), which is equal about every
+/// axis.
 #[derive(Clone, Debug)]
 struct Body<const D: usize> {
     /// The object in the world.
@@ -81,8 +82,8 @@ impl<const D: usize> Bodies<D>
 where
     f32: Recordable<D>,
 {
-    /// Adds an object as a falling body with density 1. Its mass is that of a cube (2D: a square)
-    /// with this half width.
+    /// Adds an object as a falling body. Its mass and moment of inertia are those of a cube (2D: a
+    /// square) of density 1 with this half width.
     pub(crate) fn add(&mut self, object: CollisionObjectHandle, half_width: f32) {
         let mass = (0..D).fold(1.0, |mass, _| mass * 2.0 * half_width);
         let body = Body {
@@ -108,7 +109,7 @@ where
         self.bodies.iter().map(|body| body.velocity.norm()).fold(0.0, max)
     }
 
-    /// Advances the bodies by a step, by gravity and by the contacts of the last update.
+    /// Advances the bodies by a step under gravity, with the contacts of the last update.
     pub(crate) fn advance(&mut self, world: &mut World<D>) -> Result<(), SampleError> {
         for body in &mut self.bodies {
             body.velocity[1] -= GRAVITY * TIME_STEP;
@@ -233,9 +234,10 @@ impl<const D: usize> Body<D>
 where
     f32: Recordable<D>,
 {
-    /// Damps the motion and returns the position after a step; `None` for a body at rest.
+    /// Damps the motion and returns the position after a step; `None` for a body that keeps its
+    /// position because it is slower than [`REST_SPEED`].
     fn moved(&mut self, world: &World<D>) -> Option<(CollisionObjectHandle, Isometry<D>)> {
-        // The damping is small, similar to that by air.
+        // The damping is small, like that of air.
         self.velocity *= 0.998;
         self.spin *= 0.99;
         if self.velocity.norm() < REST_SPEED && self.spin.norm() < REST_SPEED {
@@ -251,7 +253,7 @@ where
     }
 }
 
-/// Orthonormalizes the columns in their order (Gram-Schmidt).
+/// Orthonormalizes the columns of a matrix, the first column first (Gram-Schmidt).
 fn orthonormal<const D: usize>(mut matrix: Matrix<f32, D>) -> Matrix<f32, D> {
     for column in 0..D {
         let mut axis = matrix.column(column).into_owned();

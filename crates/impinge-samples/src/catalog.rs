@@ -16,8 +16,8 @@ use crate::samples::worlds::{
     scenery::Scenery, slide::Slide, waves::Waves,
 };
 
-/// Expands each row to an entry for each of its dimensions. The digit of the dimension is appended
-/// to the name and to the heading.
+/// Expands each row to one [`Entry`] for each of the row's dimensions. The digit of the dimension
+/// is appended to the name and to the heading.
 ///
 /// A row contains the name, the heading, the dimensions, the property that a test checks, the
 /// sample, and a description of two sentences.

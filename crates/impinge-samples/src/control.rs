@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use crate::SampleError;
 
-/// The kind of a control, with its value. It serializes with its name in lower case as the member
-/// `kind`.
+/// The kind of a control, with its value. It serializes with the name of the variant in lower case
+/// as the member `kind`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum ControlKind {
@@ -20,7 +20,8 @@ pub enum ControlKind {
         min: f64,
         /// The largest value.
         max: f64,
-        /// The increment of a slider. Values between the increments are accepted.
+        /// The increment of a slider; 0 for a continuous slider. [`Panel::set`] accepts any value
+        /// within the bounds.
         step: f64,
     },
     /// One of several words.
@@ -220,7 +221,8 @@ impl Panel {
         matches!(self.find(name), Some(ControlKind::Flag { value: true }))
     }
 
-    /// Returns `true` if a button was pressed since the last call, and forgets the press.
+    /// Returns `true` if a button was pressed since the last call for this button. The next call
+    /// returns `false` unless the button is pressed again.
     pub fn take_press(&mut self, name: &str) -> bool {
         self.pressed.remove(name)
     }

@@ -13,7 +13,8 @@ use impinge_scenes::Placement;
 
 use crate::place::{number, point, up, vector};
 
-/// The scalar `f32`, with functions that create shapes and motions in `D` dimensions.
+/// Functions that create shapes and motions in `D` dimensions. `f32`, the scalar of the samples,
+/// implements them for `D` = 2 and `D` = 3.
 pub(crate) trait Dimension<const D: usize>: Recordable<D> {
     /// The names of all solids. The half-space is the last.
     const SOLIDS: &'static [&'static str];
@@ -24,8 +25,8 @@ pub(crate) trait Dimension<const D: usize>: Recordable<D> {
         None => &[],
     };
 
-    /// Returns a solid that exists in this dimension only; `None` for a name of a solid of both
-    /// dimensions.
+    /// Returns a solid that exists in this dimension only; `None` for all other names. Its lengths
+    /// are proportional to `size`.
     fn own_solid(kind: &str, size: f32) -> Option<ShapeHandle<f32, D>>;
 
     /// Returns the convex hull of points, which must span all dimensions.
@@ -66,8 +67,8 @@ pub(crate) enum SurfaceKind {
     Field,
 }
 
-/// Returns the solid with this name; a ball if the name is unknown. All its lengths are
-/// proportional to `size`.
+/// Returns the solid with this name; a ball if the name is unknown. All lengths of a bounded solid
+/// are proportional to `size`.
 pub(crate) fn solid<const D: usize>(kind: &str, size: f32) -> ShapeHandle<f32, D>
 where
     f32: Dimension<D>,
@@ -141,7 +142,8 @@ impl Dimension<2> for f32 {
                 vector([width, 1.0, 0.0]),
             ));
         }
-        // The points go from right to left, since the left side of a polyline is its back.
+        // The points go from right to left. The left side of a polyline is its back, which is then
+        // below the surface.
         let points = xs.rev().map(|x| Point::<Self, 2>::new(x, height(x, 0.0)));
         let line = Polyline::open(points.collect());
         ShapeHandle::new(match kind {
@@ -221,8 +223,8 @@ impl Dimension<3> for f32 {
     ) -> ShapeHandle<Self, 3> {
         let width = number(cells);
         let at = |n: usize| number(n) - 0.5 * width;
-        // The vertices are in rows along x, in the order of the heights of a height field. A mesh
-        // has equal vertices, so that both kinds are the same surface.
+        // The vertices are in rows along x, in the order of the heights of a height field. Mesh and
+        // height field have these vertices, so that both kinds are the same surface.
         let vertices = (0..=cells).flat_map(|row| (0..=cells).map(move |column| [column, row]));
         let vertices = vertices.map(|[column, row]| {
             Point::<Self, 3>::new(at(column), height(at(column), at(row)), at(row))

@@ -12,7 +12,7 @@ use crate::ControlValue;
 pub enum SampleError {
     /// The sample has no control with this name.
     UnknownControl(String),
-    /// The kind of the value differs from that of the control.
+    /// The kind of the value differs from the kind of the control.
     WrongKind {
         /// The name of the control.
         name: &'static str,

@@ -7,7 +7,7 @@ use impinge_record::Recordable;
 
 use crate::{Isometry, World};
 
-/// The circumference of a circle of radius 1, which is a full turn in radians.
+/// A full turn in radians.
 pub(crate) const TAU: f32 = core::f32::consts::TAU;
 
 /// Returns a vector with the first `D` numbers as components.
@@ -36,8 +36,8 @@ where
     f32::isometry(&Pose { rotation: turn([0, 1], angle), translation: vector(xyz) })
 }
 
-/// Returns the rotation from one axis to another by `angle` radians. Its sine and cosine come from
-/// the library, which returns the same bits on every machine.
+/// Returns the rotation from the axis `from` to the axis `to` by `angle` radians. The library
+/// computes sine and cosine with the same bits on every machine.
 pub(crate) fn turn<const D: usize>([from, to]: [usize; 2], angle: f32) -> Matrix<f32, D> {
     let (sine, cosine) = angle.sine_cosine();
     let mut matrix = Matrix::<f32, D>::identity();
@@ -58,7 +58,7 @@ where
     object.map_or_else(Pose::identity, |object| f32::pose(object.position()))
 }
 
-/// Converts a pose to the isometry type of queries about two shapes.
+/// Converts a pose to the isometry type that queries of two shapes accept in either dimension.
 pub(crate) fn isometry<const D: usize>(
     pose: &Pose<f32, D>,
 ) -> na::Isometry<f32, Rotation<f32, D>, D> {
@@ -66,9 +66,9 @@ pub(crate) fn isometry<const D: usize>(
     na::Isometry::from_parts(pose.translation.into(), rotation)
 }
 
-/// Returns a quasirandom number from 0 to 1: the fractional part of a multiple of an irrational
-/// number, which depends on `stream` (Roberts, "The unreasonable effectiveness of quasirandom
-/// sequences", 2018).
+/// Returns the number with this index, from 0 to 1, of a quasirandom sequence. The numbers are
+/// the fractional parts of multiples of an irrational number, which depends on `stream` (Roberts,
+/// "The unreasonable effectiveness of quasirandom sequences", 2018).
 #[expect(clippy::cast_possible_truncation, reason = "a fraction rounded to f32")]
 pub(crate) fn scattered(index: usize, stream: usize) -> f32 {
     const STEPS: [f64; 4] =
@@ -82,7 +82,7 @@ pub(crate) fn to_and_fro(phase: f32) -> f32 {
     1.0 - (2.0 * (phase - phase.floor()) - 1.0).abs()
 }
 
-/// Converts a count to a scalar.
+/// Converts a count to `f32`.
 #[expect(clippy::cast_precision_loss, reason = "counts of samples are small")]
 pub(crate) const fn number(count: usize) -> f32 {
     count as f32

@@ -141,8 +141,8 @@ where
         self.sample.registry()
     }
 
-    /// Returns the bytes of the recording since the last call. The bytes are kept in memory until
-    /// then, so that callers without use for them should discard them after each step.
+    /// Returns the bytes of the recording since the last call. They are kept in memory until then,
+    /// so callers that do not use the recording should discard the bytes after each step.
     #[must_use]
     pub fn take_bytes(&mut self) -> Vec<u8> {
         self.world.take_bytes()

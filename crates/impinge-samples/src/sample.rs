@@ -21,8 +21,9 @@ pub type Isometry<const D: usize> = <f32 as Space<D>>::Isometry;
 
 /// A scene with controls, about one subject of the library.
 ///
-/// [`Running`](crate::Running) calls these methods, and updates the world after each method that may change it.
-/// A step takes [`TIME_STEP`]. The same calls give the same bits on every machine.
+/// [`Running`](crate::Running) calls these methods. It updates the world after each method that may
+/// move, add or remove objects, and then calls [`Self::updated`]. A step takes [`TIME_STEP`]. The
+/// same calls give the same bits on every machine.
 pub trait Sample<const D: usize>: Send
 where
     f32: Recordable<D>,
@@ -32,7 +33,7 @@ where
         Panel::new()
     }
 
-    /// Returns the margin of the boxes in the broad phase.
+    /// Returns the margin of the fat AABBs in the broad phase.
     fn margin(&self) -> f32 {
         0.02
     }
@@ -57,8 +58,8 @@ where
         self.build(world, panel)
     }
 
-    /// Applies changes that need no step. It is called after a control was set, except after a
-    /// press of a button.
+    /// Applies the changed value of a control as far as this needs no step. It is called after a
+    /// control was set, except after a press of a button.
     ///
     /// # Errors
     /// If the world rejects a change.
@@ -96,7 +97,7 @@ where
         Ok(world.set_position(object, *to)?)
     }
 
-    /// Draws additions to the objects, such as rays, paths and distances.
+    /// Draws the elements that the sample adds to its objects, such as rays, paths and distances.
     fn draw(&self, world: &World<D>, panel: &Panel, canvas: &mut Canvas<'_, D>) {
         let _ = (world, panel, canvas);
     }
@@ -179,8 +180,8 @@ impl Readout {
         Self { label, value: value.to_string() }
     }
 
-    /// Creates a readout of a number with four digits after the point. Numbers below 0.001 or from
-    /// 1e5 on are in scientific notation.
+    /// Creates a readout of a number with four digits after the point. Magnitudes below 0.001 or
+    /// from 1e5 on, except 0, have four significant digits and an exponent.
     #[must_use]
     pub fn number(label: &'static str, value: f32) -> Self {
         let is_hidden = value != 0.0 && !(0.001..1.0e5).contains(&value.abs());

@@ -1,8 +1,8 @@
 //! Scenes as data, shared by tests, examples and benchmarks.
 //!
 //! A scene is a list of objects, each with a motion that is a pure function of the step number. So
-//! a test can compute step 57 without the 56 steps before it, and two worlds that are stepped
-//! alternately get the same input.
+//! a test can compute step 57 without any earlier step, and two worlds that are stepped alternately
+//! get the same input.
 //!
 //! Everything is computed in `f64` with `+ − × ÷ √` and rounding alone, so that a scene is the same
 //! on every platform. Positions and sizes are then rounded to `f32`, so that worlds of both scalars

@@ -16,14 +16,15 @@ pub struct Wave {
 }
 
 impl Wave {
-    /// Creates a constant.
+    /// Creates a wave with the constant value `at`, rounded to `f32`.
     #[must_use]
     pub fn rest(at: f64) -> Self {
         let at = rounded(at);
         Self { low: at, high: at, start: at, speed: 0.0 }
     }
 
-    /// Creates a wave between two bounds, from a start within them.
+    /// Creates a wave between two bounds. `start` is clamped to the bounds, and all numbers are
+    /// rounded to `f32`.
     #[must_use]
     pub fn new(bounds: (f64, f64), start: f64, speed: f64) -> Self {
         let (low, high) = (rounded(bounds.0), rounded(bounds.1));

@@ -46,7 +46,7 @@ impl Random {
         loop {
             let v: [f64; D] = std::array::from_fn(|_| self.between(-1.0, 1.0));
             let squared: f64 = v.iter().map(|x| x * x).sum();
-            // At least a sixth of the drawn points are accepted.
+            // In 2D and 3D at least half of the drawn points are accepted.
             if (0.01..=1.0).contains(&squared) {
                 return v.map(|x| x / squared.sqrt());
             }

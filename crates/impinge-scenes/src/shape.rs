@@ -44,7 +44,7 @@ pub enum SceneShape<const D: usize> {
     },
     /// A solid cylinder around the second axis; 3D only.
     Cylinder {
-        /// Half the distance of the caps.
+        /// Half the distance between the caps.
         half_height: f64,
         /// The radius.
         radius: f64,

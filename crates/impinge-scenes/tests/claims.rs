@@ -1,4 +1,4 @@
-//! Checks by counting what the doc comments of the scenes claim.
+//! Checks the numbers in the doc comments of the scenes, by counting overlaps, motions and sizes.
 
 use impinge_scenes::{
     Placement, Scene, SceneQuery, SceneShape, SolidKind, aligned_pile, asteroids, crowd,
@@ -311,7 +311,7 @@ fn vehicles_lie_along_the_ground() {
     assert!((1e-5..1e-3).contains(&moves(&trembling_vehicles_field(60))), "in place");
 }
 
-/// Returns the heights of the vertices of a field.
+/// Returns the vertices of a height field.
 fn vertices<const D: usize>(shape: &SceneShape<D>) -> Vec<[f64; D]> {
     let SceneShape::HeightField { counts: [rows, columns], heights, extents } = shape else {
         panic!("the ground is a field")
@@ -330,8 +330,8 @@ fn vertices<const D: usize>(shape: &SceneShape<D>) -> Vec<[f64; D]> {
     vertices.collect()
 }
 
-/// Checks that plates do not overlap, cover the expected number of vertices, and that half of these
-/// are above their undersides.
+/// Checks that plates do not overlap, that they cover the expected number of vertices, and that a
+/// quarter to three quarters of these vertices are above the undersides.
 fn check_plates<const D: usize>(half: f64) {
     let scene = plates::<D>(20, half);
     let ground = vertices(&scene.objects[0].shape);
@@ -430,7 +430,7 @@ fn the_room_has_walls_and_areas() {
     }
 }
 
-/// Checks that a scene is equal when made again, that its numbers are exact in `f32`, and that
+/// Checks that a scene is equal when made again, that its translations are exact in `f32`, and that
 /// motions stay within their bounds.
 fn check_motion<const D: usize>(make: impl Fn() -> Scene<D>) {
     let (scene, again) = (make(), make());

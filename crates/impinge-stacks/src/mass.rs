@@ -84,7 +84,8 @@ fn of_plane(shape: &SceneShape<2>) -> Mass<2> {
     }
 }
 
-/// Sums the triangles from the origin to each side.
+/// Returns the mass properties of a convex polygon: the sum over the signed triangles from the
+/// origin to each side.
 fn polygon(points: &[[f64; 2]]) -> Mass<2> {
     let hull = plane::convex_hull(&rounded(points)).expect("the points span the plane");
     let corner = |n: usize| Vector::<f64, 2>::from(points[hull[n % hull.len()]]);
@@ -136,9 +137,9 @@ fn of_space(shape: &SceneShape<3>) -> Mass<3> {
     }
 }
 
-/// Sums the signed tetrahedra from the origin to each triangle of each face, with the covariance of
-/// each in closed form: Jonathan Blow and Atman Binstock, "How to find the inertia tensor of a 3D
-/// solid body" (2004).
+/// Returns the mass properties of a convex hull: the sum over the signed tetrahedra from the origin
+/// to each triangle of each face, with the covariance of each in closed form. See Jonathan Blow and
+/// Atman Binstock, "How to find the inertia tensor of a 3D solid body" (2004).
 fn hull(points: &[[f64; 3]]) -> Mass<3> {
     let hull = space::convex_hull(&rounded(points)).expect("the points span space");
     let (mut volume, mut first) = (0.0, Vector::<f64, 3>::zeros());

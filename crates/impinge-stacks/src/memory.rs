@@ -101,8 +101,8 @@ pub(crate) fn way<N: Turn<D>, const D: usize>(
     min((old1 - new1).norm(), (old2 - new2).norm())
 }
 
-/// Returns pairs of a new contact and an old one of the same bodies, as indices. Each occurs at
-/// most once; the nearest are paired first.
+/// Returns the indices of a new and an old contact of the same bodies, for each pair found. An
+/// index occurs at most once; the nearest contacts are paired first.
 fn nearest_pairs<N: Turn<D>, const D: usize, K>(
     bodies: &[Body<N, D>],
     contacts: &[Contact<N, D, K>],

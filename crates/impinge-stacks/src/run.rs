@@ -14,8 +14,8 @@ pub const LAST: usize = 120;
 /// The measures of a run.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Outcome {
-    /// The largest total kinetic energy in the last steps, relative to the initial velocities of
-    /// the solids.
+    /// The largest total kinetic energy in the last [`LAST`] steps. It is computed from the
+    /// velocities of the solids relative to their initial velocities.
     pub energy: f64,
     /// The largest horizontal distance, at the end, of a centre from the position that it would
     /// have with its initial velocity.
@@ -27,7 +27,7 @@ pub struct Outcome {
     /// The counts of contacts in the second half of the run; for solids that slide, in all steps
     /// but the first.
     pub counts: Counts,
-    /// The number of pairs that stopped touching in the last steps.
+    /// The number of pairs that stopped touching in the last [`LAST`] steps.
     pub parted: usize,
     /// The mean time of computing contacts, in milliseconds per step.
     pub time: f64,
@@ -123,7 +123,8 @@ impl Outcome {
 }
 
 /// Shakes the upper solid of a pair: in each step it is displaced from its position at rest by up
-/// to `shake` along each axis, and rotated by up to `shake` radians about each axis.
+/// to `shake` along each axis, and rotated by up to `shake` radians about each axis. Returns the
+/// counts of contacts over `steps` steps after the first.
 pub fn shake<N: Stage<D>, const D: usize, S: ContactSource<N, D>>(
     pair: &Stack<D>,
     source: &mut S,

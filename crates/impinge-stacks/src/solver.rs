@@ -91,7 +91,8 @@ impl<N: Turn<D>, const D: usize, K: Copy + Eq + Hash> Solver<N, D, K> {
         Self { step, gravity, friction, iterations: 10, alternates: true, baumgarte, slop, memory }
     }
 
-    /// Advances the bodies by a step; `contacts` are those at their current poses.
+    /// Advances the bodies by a step. `contacts` are the contacts at the current poses of the
+    /// bodies.
     pub fn step(&mut self, bodies: &mut [Body<N, D>], contacts: &[Contact<N, D, K>]) {
         for body in bodies.iter_mut().filter(|body| body.inverse_mass != N::ZERO) {
             body.velocity += self.gravity * self.step;
@@ -262,8 +263,8 @@ mod tests {
     use impinge::math::Real;
     use impinge_scenes::{Placement, SceneShape};
 
-    /// Returns contacts computed without a library: the lowest corners of boxes (in 2D squares)
-    /// above the half-space `y <= 0`, which is the first body.
+    /// A source of contacts that needs no library: the corners of boxes (in 2D squares) that are at
+    /// most 0.02 above the half-space `y <= 0`, which is the first body.
     struct Corners;
 
     impl<N: Stage<D>, const D: usize> ContactSource<N, D> for Corners {
@@ -344,7 +345,8 @@ mod tests {
         assert!(off < 1e-4, "{before:?} {after:?}");
     }
 
-    /// Returns the total momentum, and the total angular momentum about some axes.
+    /// Returns the total momentum, and the total angular momentum about three axes through the
+    /// origin.
     fn momenta<N: Stage<D>, const D: usize>(bodies: &[Body<N, D>]) -> Vec<f64> {
         let axes = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]].map(|axis| axis.map(N::lit));
         let mut sums = vec![0.0; D + axes.len()];

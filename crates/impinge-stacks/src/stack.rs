@@ -17,7 +17,7 @@ pub struct Stack<const D: usize> {
     pub kind: Kind,
 }
 
-/// The behaviour that a scene shows; its measures depend on it.
+/// The expected behaviour of the solids of a scene, by which its measures are chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Solids that stand at their initial positions.

@@ -15,7 +15,8 @@ use crate::{Body, Item, Mass, Solid, Stack, Turn};
 pub trait Stage<const D: usize>: Turn<D> {
     /// Converts a placement to a pose.
     fn pose_of(placement: &Placement<D>) -> Self::Isometry;
-    /// Converts a shape that exists in one dimension only; `None` for shapes of both dimensions.
+    /// Converts a shape whose type in the library differs between 2D and 3D, or exists in one
+    /// dimension only; `None` for all other shapes.
     fn own_shape(shape: &SceneShape<D>) -> Option<ShapeHandle<Self, D>>;
     /// Returns the mass properties of a shape; see [`Weighed`].
     fn mass_of(solid: &Solid<D>) -> Mass<D>;

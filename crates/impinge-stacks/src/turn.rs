@@ -33,7 +33,7 @@ pub trait Turn<const D: usize>: Space<D> {
     /// Transforms a point from the world to the local frame.
     fn local_point(pose: &Self::Isometry, world: &Vector<Self, D>) -> Vector<Self, D>;
     /// Returns the pose after a translation of the local point `center` by `shift` and a rotation
-    /// about it by `angle`, accurate to the third power of the angle.
+    /// about this point by `angle`. The error of the angle grows with its third power.
     fn moved(
         pose: &Self::Isometry,
         center: &Vector<Self, D>,

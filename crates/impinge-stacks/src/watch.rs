@@ -21,11 +21,12 @@ pub struct Counts {
     pub new: usize,
     /// The number of contacts of the previous step whose ids no longer exist.
     pub lost: usize,
-    /// The number of contacts that have moved by more than [`JUMP`] since the previous step, on
-    /// both solids. A contact with a new id is compared with the nearest old contact of its pair.
+    /// The number of contacts that have moved by more than the fraction [`JUMP`] of the extent
+    /// since the previous step, on both solids. A contact with a new id is compared with the
+    /// nearest old contact of its pair.
     pub jumps: usize,
     /// The largest distance by which a contact has moved since the previous step, as a fraction of
-    /// the extent.
+    /// the extent of the smaller solid.
     pub farthest: f64,
     /// The number of pairs of solids with contacts.
     pub pairs: usize,

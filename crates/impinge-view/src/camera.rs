@@ -3,7 +3,8 @@
 use impinge::dim3::math::{Point, Real, Vector};
 use impinge::math::unit;
 
-/// A direction of view and a projection. The position follows from the framed content.
+/// A direction of view and a projection. The position of the camera follows from the framed
+/// content.
 ///
 /// All vectors are in the world frame. A 2D scene has `z = 0`; [`Camera::plane`] shows it with x to
 /// the right and y upwards.
@@ -56,7 +57,8 @@ impl Camera {
     }
 
     /// Returns a perspective camera with the same direction. `view_angle` is the angle, in radians,
-    /// that covers the whole scene. It is clamped to 0.01 to 2.5; NaN counts as the minimum.
+    /// under which the framed content appears. It is clamped to the range from 0.01 to 2.5; NaN
+    /// counts as 0.01.
     #[must_use]
     pub fn perspective(self, view_angle: f64) -> Self {
         let [least, largest] = ANGLES;
@@ -109,13 +111,14 @@ impl Camera {
     }
 }
 
-/// Normalizes a vector; `None` if it is zero, infinite or NaN. Very short and very long vectors are
-/// scaled first.
+/// Normalizes a vector; `None` if it is zero, infinite or NaN. Lengths whose squares overflow or
+/// underflow are allowed.
 fn unit_of(v: &Vector<f64>) -> Option<Vector<f64>> {
     unit(v).map(|(direction, _)| direction)
 }
 
-/// Normalizes the cross product of two unit vectors; `None` if they are parallel up to rounding.
+/// Normalizes `v`, the cross product of two unit vectors; `None` if these are parallel up to
+/// rounding.
 fn unit_of_sine(v: &Vector<f64>) -> Option<Vector<f64>> {
     (v.norm_squared() > 1e-20).then(|| v / v.norm())
 }

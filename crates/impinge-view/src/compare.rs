@@ -12,7 +12,8 @@ pub struct Difference {
     pub pixels: u64,
     /// The largest difference of a channel, among the pixels that both images have.
     pub largest: u8,
-    /// The first image, faded, with the differing pixels in magenta.
+    /// The first image, faded, with the differing pixels in magenta. It is large enough for both
+    /// images.
     pub picture: Image,
 }
 
@@ -24,8 +25,8 @@ impl Difference {
     }
 }
 
-/// Compares two images pixel by pixel. Pixels whose channels all differ by at most `tolerance` count as
-/// equal; with a tolerance of 0 the pixels must be equal.
+/// Compares two images pixel by pixel. Two pixels count as equal if each of their four channels
+/// differs by at most `tolerance`.
 ///
 /// ```
 /// use impinge_view::{Image, compare};

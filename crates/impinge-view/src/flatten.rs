@@ -22,13 +22,13 @@ pub(crate) struct Face {
     pub(crate) normals: [Vector<f64>; 3],
     pub(crate) color: Color,
     pub(crate) what: Drawn,
-    /// Whether the face is a single triangle, not a part of a mesh, so that it has no edges of its
-    /// own.
+    /// Whether the face is a single triangle and not a part of a mesh. The sides of single
+    /// triangles are not in [`Flat::strokes`].
     pub(crate) is_alone: bool,
 }
 
-/// Returns the lines and faces of a recording. They include the edges of meshes in a darker tone,
-/// and the silhouettes of their surfaces as seen through the lens.
+/// Returns the lines and faces of a recording. The lines include the edges of meshes in a darker
+/// tone, and the silhouettes of their surfaces as seen through `lens`.
 pub(crate) fn flatten(recording: &Recording, lens: &Lens) -> Flat {
     let mut flat = Flat::default();
     for placed in &recording.placed {
@@ -77,7 +77,8 @@ fn face_of(triangle: &ColoredTriangle, lens: &Lens) -> Face {
     Face { corners, normals, color, what, is_alone: true }
 }
 
-/// Returns the colour of the edges of faces: a darker tone of the face, and more opaque.
+/// Returns the colour of the edges of a face of this colour: a darker tone, and more opaque unless
+/// the face is invisible.
 pub(crate) fn edge_color(color: Color) -> Color {
     let alpha = if color.alpha == 0 { 0 } else { color.alpha / 2 + 128 };
     Color { rgb: edge_tone(color.rgb), alpha }

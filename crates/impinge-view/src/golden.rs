@@ -6,10 +6,10 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::{env, fmt, fs, io};
 
-/// A folder of golden images, and a folder for the results of failed tests: the image and its
-/// difference.
+/// A folder of golden files, and a folder for the results of failed checks: the image and its
+/// difference from the golden image, or the text.
 ///
-/// With the environment variable `IMPINGE_BLESS=1` a check writes the golden image instead of
+/// With the environment variable `IMPINGE_BLESS=1` a check writes the golden file instead of
 /// reading it.
 ///
 /// ```
@@ -30,7 +30,7 @@ pub struct Golden {
 }
 
 impl Golden {
-    /// Uses the golden images in a folder. Results of failed checks are written to the folder
+    /// Uses the golden files in a folder. Results of failed checks are written to the folder
     /// `impinge-view` in `CARGO_TARGET_DIR`, or in the folder `target` of the workspace that
     /// contains the current folder.
     #[must_use]
@@ -46,14 +46,15 @@ impl Golden {
         Self { failures: failures.into(), ..self }
     }
 
-    /// Sets whether golden images are written, regardless of the environment.
+    /// Sets whether checks write the golden files instead of reading them, regardless of the
+    /// environment.
     #[must_use]
     pub fn with_bless(self, bless: bool) -> Self {
         Self { bless, ..self }
     }
 
-    /// Allows each channel to differ by `tolerance`, and `allowed` pixels to differ by more. By
-    /// default the images must be equal.
+    /// Allows the channels of all pixels to differ by up to `tolerance`, and those of `allowed`
+    /// pixels to differ by more. By default both are 0: the images must be equal.
     #[must_use]
     pub fn with_bound(self, tolerance: u8, allowed: u64) -> Self {
         Self { tolerance, allowed, ..self }
@@ -63,9 +64,9 @@ impl Golden {
     ///
     /// # Errors
     ///
-    /// If there is no golden image, it cannot be read, or the image differs by more than the bound.
-    /// Then `NAME.png` and, after a comparison, `NAME.difference.png` are written to the folder of
-    /// failures.
+    /// If there is no golden image or it is not a valid PNG, if the image differs by more than the
+    /// bound, or if a file cannot be written. Unless the golden image is invalid, `NAME.png` and,
+    /// after a comparison, `NAME.difference.png` are written to the folder of failures.
     pub fn check(&self, name: &str, image: &Image) -> Result<(), GoldenError> {
         let path = self.folder.join(format!("{name}.png"));
         if self.bless {
@@ -93,8 +94,8 @@ impl Golden {
     ///
     /// # Errors
     ///
-    /// If there is no golden text, or it differs. The text is then written to the folder of
-    /// failures.
+    /// If there is no golden text, or the text differs from it. The text is then written to the
+    /// folder of failures.
     pub fn check_text(&self, name: &str, text: &str) -> Result<(), GoldenError> {
         let path = self.folder.join(name);
         if self.bless {
@@ -134,11 +135,11 @@ fn target_folder() -> PathBuf {
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum GoldenError {
-    /// There is no golden image, or it cannot be read.
+    /// There is no golden file, or it cannot be read.
     Missing {
-        /// The path of the golden image.
+        /// The path of the golden file.
         golden: PathBuf,
-        /// The path of the written image.
+        /// The path to which the checked image or text was written.
         image: PathBuf,
     },
     /// More pixels differ than allowed, or the sizes differ.
@@ -147,14 +148,15 @@ pub enum GoldenError {
         pixels: u64,
         /// The largest difference of a channel.
         largest: u8,
-        /// The path of the written image. The difference is in the same folder.
+        /// The path to which the checked image was written. The picture of the difference is in the
+        /// same folder.
         image: PathBuf,
     },
     /// A text differs.
     TextDiffers {
         /// The first line that differs, counted from 1.
         line: usize,
-        /// The path of the written text.
+        /// The path to which the checked text was written.
         text: PathBuf,
     },
     /// The golden image is not a valid PNG.

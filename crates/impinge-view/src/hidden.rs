@@ -13,7 +13,8 @@ pub(crate) struct Run {
 
 /// The maximum number of samples along a line.
 const MAX_SAMPLES: usize = 4096;
-/// The minimum number of samples of a run. Shorter runs are merged with the previous run.
+/// The minimum number of samples of all runs but the first. Shorter runs are merged with the
+/// previous run.
 const MIN_RUN: usize = 3;
 /// The number of samples along a line per pixel of length.
 const FINENESS: f64 = 2.0;
@@ -35,8 +36,8 @@ pub(crate) fn depths(flat: &Flat, view: &View, size: [usize; 2]) -> Raster {
     raster
 }
 
-/// Returns the runs of a line, from its start to its end. Costs nine depth look-ups for each half
-/// pixel of length.
+/// Returns the runs of a line, from its start to its end. Costs at most nine depth look-ups for
+/// each sample; there are [`FINENESS`] samples per pixel, up to [`MAX_SAMPLES`].
 pub(crate) fn runs(ends: &[OnScreen; 2], depths: &Raster) -> Vec<Run> {
     let [start, end] = *ends;
     let (dx, dy) = (end.x - start.x, end.y - start.y);
@@ -58,8 +59,9 @@ pub(crate) fn runs(ends: &[OnScreen; 2], depths: &Raster) -> Vec<Run> {
 }
 
 /// Returns `true` if the surfaces at the pixel of a point and at its eight neighbours are all
-/// nearer than the point. Near a silhouette the surface is steep, so that the pixel itself is often
-/// nearer, but a neighbour beyond the silhouette is not.
+/// nearer than the point. A visible line may lie on a surface that is steep near a silhouette. Then
+/// the surface at the pixel is often nearer than the line, but not at a neighbour beyond the
+/// silhouette.
 fn is_hidden(at: &OnScreen, depths: &Raster) -> bool {
     const STEPS: [f64; 3] = [-1.0, 0.0, 1.0];
     let hides = |dx: f64, dy: f64| {

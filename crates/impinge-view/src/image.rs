@@ -17,7 +17,7 @@ pub struct Image {
 pub(crate) const MAX_SIDE: u32 = 8192;
 
 impl Image {
-    /// Returns an image of one colour. Width and height are clamped to 1 to 8192.
+    /// Returns an image of one colour. Width and height are clamped to the range from 1 to 8192.
     ///
     /// ```
     /// let image = impinge_view::Image::filled([3, 0], [255, 0, 0, 255]);
@@ -80,8 +80,8 @@ impl Image {
         }
     }
 
-    /// Returns the image reduced to at most `count` colours, which makes its file smaller; `count`
-    /// is clamped to 2 to 256.
+    /// Returns the image reduced to at most `count` colours, which makes its file smaller. `count`
+    /// is clamped to the range from 2 to 256.
     ///
     /// The colours are the means of boxes in colour space, which are split into halves repeatedly
     /// (P. Heckbert, *Color Image Quantization for Frame Buffer Display*, 1982). Opaque images stay
@@ -108,8 +108,8 @@ impl Image {
         Self { size: self.size, pixels }
     }
 
-    /// Returns the bytes of a PNG file. It has a palette if the image has at most 256 colours, all
-    /// opaque.
+    /// Returns the bytes of a PNG file. The file has a palette if the image has at most 256
+    /// colours, and all of them are opaque.
     ///
     /// # Panics
     ///
@@ -146,8 +146,8 @@ impl Image {
     ///
     /// # Errors
     ///
-    /// If the bytes are not a PNG, or are truncated. If the image is grayscale, or wider or higher
-    /// than 8192 pixels.
+    /// If the bytes are not a PNG or are truncated, or if the image is grayscale, or wider or
+    /// higher than 8192 pixels.
     pub fn from_png(bytes: &[u8]) -> Result<Self, ImageError> {
         let mut decoder = png::Decoder::new(Cursor::new(bytes));
         decoder.set_transformations(

@@ -12,8 +12,8 @@ pub(crate) struct KeptMesh {
     pub(crate) vertices: Vec<Point<f64>>,
     pub(crate) lines: Vec<[usize; 2]>,
     pub(crate) triangles: Vec<[usize; 3]>,
-    /// The normal of each corner of each triangle. At smooth edges the normals of both triangles
-    /// are equal. A degenerate triangle has zero normals.
+    /// The unit normal at each corner of each triangle, for shading. Triangles that meet at a small
+    /// angle have a common normal at their common corners. A degenerate triangle has zero normals.
     pub(crate) normals: Vec<[Vector<f64>; 3]>,
     pub(crate) hinges: Vec<Hinge>,
     /// The number of lines and triangles with an invalid index or vertex.
@@ -31,8 +31,8 @@ pub(crate) struct Hinge {
 const SMOOTH: f64 = 0.75;
 
 impl KeptMesh {
-    /// Converts a mesh. Lines and triangles whose vertices are not finite or do not exist are
-    /// omitted and counted. Costs `O(n log n)`.
+    /// Converts a mesh. Lines and triangles with an index without a vertex, or with a vertex that
+    /// [`embed`] rejects, are omitted and counted. Costs `O(n log n)`.
     pub(crate) fn new<N: Real, const D: usize>(mesh: &ShapeMesh<N, D>) -> Self {
         let found: Vec<_> = mesh.vertices.iter().map(embed).collect();
         let is_good = |index: &u32| matches!(found.get(*index as usize), Some(Some(_)));
@@ -50,7 +50,7 @@ impl KeptMesh {
         kept
     }
 
-    /// Returns the triangles, with the index of each vertex replaced by that of the first vertex at
+    /// Returns the triangles with each vertex index replaced by the index of the first vertex at
     /// the same position.
     fn welded(&self) -> Vec<[usize; 3]> {
         let mut first = BTreeMap::new();
@@ -63,8 +63,8 @@ impl KeptMesh {
         self.triangles.iter().map(|corners| corners.map(|index| index_of[index])).collect()
     }
 
-    /// Returns a unit normal for each corner: that of the area-weighted sum over the faces at this
-    /// corner whose normals differ little from that of its triangle.
+    /// Returns a unit normal for each corner of each triangle: the normalized sum of the normals,
+    /// weighted by area, of those faces at the corner whose angle to the triangle is small.
     fn corner_normals(&self, welded: &[[usize; 3]]) -> Vec<[Vector<f64>; 3]> {
         let normals: Vec<_> = (0..self.triangles.len()).map(|index| self.normal(index)).collect();
         let units: Vec<_> = normals.iter().map(unit).collect();
@@ -114,8 +114,8 @@ mod tests {
     use super::*;
     use impinge::dim3::math::Point as Point3;
 
-    /// Returns two triangles that share an edge along z, and a third one with an invalid index. The
-    /// second triangle is tilted up by `slope`.
+    /// Returns two triangles that share an edge along z, a third triangle and a line with an
+    /// invalid index each, and a valid line. The second triangle is tilted up by `slope`.
     fn roof(slope: f32) -> ShapeMesh<f32, 3> {
         let vertices = [[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [1.0, slope, 0.0]];
         ShapeMesh {

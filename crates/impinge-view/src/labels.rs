@@ -20,7 +20,7 @@ pub(crate) struct PlacedLabel<'a> {
     pub(crate) at: [f64; 2],
 }
 
-/// A rectangle, by its upper left and its lower right corner. Pixels, y downwards.
+/// A rectangle, given by its upper left and its lower right corner in pixels, with y downwards.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
     low: [f64; 2],
@@ -35,8 +35,8 @@ const GAP: f64 = 5.0;
 ///
 /// A text is placed to the upper right of its point. If it would leave the page or overlap an
 /// earlier text there, it is placed to the lower right, upper left or lower left. If none of these
-/// is free, it is placed at the upper right, shifted onto the page. Costs O(n^2) comparisons for n
-/// texts.
+/// four places is free, it is placed to the upper right, shifted onto the page. Costs O(n^2)
+/// comparisons for n texts.
 pub(crate) fn placed_labels<'a>(
     recording: &'a Recording,
     view: &View,

@@ -5,7 +5,7 @@ use impinge::debug_render::Drawn;
 /// The name and style of a layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Layer {
-    /// The class of the group of the layer in SVG.
+    /// The class of the SVG group that contains the layer.
     pub(crate) class: &'static str,
     /// The name of the layer in legends.
     pub(crate) name: &'static str,

@@ -23,8 +23,9 @@ const MARGIN: f64 = 16.0;
 /// The distance from the end of a name to the next entry, in pixels.
 const GAP: f64 = 14.0;
 
-/// Returns an entry for each layer, and the height of all rows in pixels. The number of rows
-/// depends on `width`, in pixels. `letter` is the width of a character.
+/// Returns an entry for each layer, and the height of all rows. Entries that exceed `width`, the
+/// width of the picture, begin a new row. `letter` is the width of a character. Lengths are in
+/// pixels.
 pub(crate) fn legend(
     layers: &[(Layer, Color)],
     width: f64,

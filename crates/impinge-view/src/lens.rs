@@ -16,7 +16,7 @@ pub(crate) struct Lens {
     high: [f64; 2],
 }
 
-/// A [`Lens`] and the part of the picture that the framed content fills.
+/// A [`Lens`], and the scale and the centre of the framed content in the picture.
 #[derive(Clone, Debug)]
 pub(crate) struct View {
     lens: Lens,
@@ -25,8 +25,8 @@ pub(crate) struct View {
     center: [f64; 2],
 }
 
-/// A point of the picture in pixels, y downwards. The depth grows away from the viewer. Along a
-/// line it is linear in x and y, also in perspective.
+/// A point of the picture in pixels, with y downwards. The depth grows away from the viewer. Along
+/// the image of a line, the depth is linear in x and y, even in perspective.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct OnScreen {
     pub(crate) x: f64,
@@ -126,8 +126,8 @@ impl Lens {
         Vector::new(self.axes[0].dot(v), self.axes[1].dot(v), self.axes[2].dot(v))
     }
 
-    /// Returns the distance of a point from the viewer along the direction of view. For an
-    /// orthographic camera it is measured from the origin of the camera's frame.
+    /// Returns the distance of a point from the viewer along the direction of view. An orthographic
+    /// camera has no viewer; then the distance from the origin of the camera's frame.
     fn distance(&self, local: &Vector<f64>) -> f64 {
         self.eye.z - local.z
     }
@@ -172,8 +172,8 @@ impl View {
         (self.lens.distance(&local) >= self.lens.near).then(|| self.project(&local, bias))
     }
 
-    /// Projects the part of a line segment beyond the near plane; `None` if no part remains. `bias`
-    /// is that of [`Self::point`].
+    /// Projects the part of a line segment beyond the near plane; `None` if no part remains. For
+    /// `bias` see [`Self::point`].
     pub(crate) fn line(&self, ends: &[Point<f64>; 2], bias: f64) -> Option<[OnScreen; 2]> {
         let cut = self.cut(ends);
         let [start, end] = cut[..] else { return None };
@@ -181,13 +181,13 @@ impl View {
     }
 
     /// Projects the part of a triangle beyond the near plane. Returns the 3 or 4 corners in order
-    /// around the clipped polygon; none if nothing remains.
+    /// around the clipped polygon; an empty list if nothing remains.
     pub(crate) fn triangle(&self, corners: &[Point<f64>; 3], bias: f64) -> Vec<OnScreen> {
         self.cut(corners).iter().map(|local| self.project(local, bias)).collect()
     }
 
     /// Clips a polygon, or a line segment, by the near plane (Sutherland and Hodgman, 1974).
-    /// Returns the corners in the camera's frame; none if nothing remains.
+    /// Returns the corners in the camera's frame; an empty list if nothing remains.
     fn cut(&self, corners: &[Point<f64>]) -> Vec<Vector<f64>> {
         let local: Vec<_> = corners.iter().map(|corner| self.lens.local(corner)).collect();
         let beyond = |p: &Vector<f64>| self.lens.distance(p) - self.lens.near;

@@ -6,7 +6,7 @@ use crate::shade::mixed;
 use impinge::debug_render::Color;
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 
-/// The size of the font, in pixels; other sizes are not compiled in.
+/// The height of the font, in pixels; other heights are not compiled in.
 const HEIGHT: RasterHeight = RasterHeight::Size16;
 const WEIGHT: FontWeight = FontWeight::Regular;
 /// The number of rows of a character above its base line.
@@ -21,8 +21,8 @@ pub(crate) fn letter() -> Letter {
     Letter { width, ascent, descent: HEIGHT.val() as f64 - ascent }
 }
 
-/// The coverage of each pixel by a text, from 0 to 255. The text has an empty border of one pixel
-/// on each side.
+/// A rasterized text: the coverage of each pixel by the characters, from 0 to 255. There is an
+/// empty border of one pixel on each side.
 struct Coverage {
     size: [usize; 2],
     pixels: Vec<u8>,

@@ -3,15 +3,15 @@
 //! Two back ends of [`impinge::debug_render::DebugRender`], each for 2D and 3D, `f32` and `f64`:
 //!
 //! * [`SvgPicture`] draws lines: 2D scenes to scale, 3D scenes with hidden lines fainter. It has
-//!   layers, a legend, and a title and description for screen readers, and is legible in light and
-//!   dark.
-//! * [`PngPicture`] draws surfaces with a depth buffer, soft light from the upper left, darker edges
-//!   and transparency, texts, and a legend if it is asked for.
+//!   layers, a legend, and a title and description for screen readers, and is legible on light and
+//!   on dark pages.
+//! * [`PngPicture`] draws surfaces with a depth buffer, soft light from the upper left, darker
+//!   edges and transparency, texts, and optionally a legend.
 //!
-//! A picture collects the drawing and computes nothing until its bytes are requested. Its [`Camera`]
-//! frames all content, with a margin. NaN, infinite and huge coordinates are omitted and
-//! [counted](Picture::left_out). The same drawing gives the same bytes on every run and machine:
-//! there are only `+ - * /` and roots, and the software sine of the library.
+//! A picture collects the drawing and computes nothing until its bytes are requested. Its
+//! [`Camera`] frames all content, with a margin. Elements with NaN, infinite or huge coordinates
+//! are omitted and [counted](Picture::left_out). The same drawing gives the same bytes on every run
+//! and machine: pictures are computed only by `+ - * /`, square roots and the library's own sine.
 //!
 //! ```
 //! use impinge::debug_render::{Color, DebugRender, Drawn};

@@ -37,8 +37,8 @@ impl Palette {
     /// colours are split at the median until there are enough. The next box to split is the one
     /// with the largest product of its longest side and the square root of its number of pixels.
     pub(crate) fn of(pixels: &[Pixel], count: usize) -> Self {
-        // Counted in an ordered map, so that the colours do not depend on the positions of the
-        // pixels.
+        // The pixels are counted in an ordered map, so that the colours do not depend on the
+        // positions of the pixels.
         let mut counts = BTreeMap::new();
         for pixel in pixels {
             *counts.entry(*pixel).or_insert(0_u32) += 1;
@@ -102,8 +102,8 @@ fn extent(pixels: &[(Pixel, u32)]) -> (usize, f64) {
 /// Neither part is empty.
 fn cut(pixels: &mut Vec<(Pixel, u32)>, channel: usize) -> Vec<(Pixel, u32)> {
     pixels.sort_by_key(|(pixel, _)| (pixel[channel], *pixel));
-    // The median is that of the pixels, not of the colours: large areas get more colours of the
-    // palette.
+    // This is the median of the pixels, not of the different colours: large areas get more colours
+    // of the palette.
     let half = pixels.iter().map(|(_, count)| count).sum::<u32>() / 2;
     let mut below = 0;
     let median = pixels.iter().position(|(_, count)| {

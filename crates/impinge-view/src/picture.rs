@@ -9,9 +9,10 @@ use impinge::math::{Point, Space};
 
 /// A picture: a back end that collects a drawing until its bytes are requested.
 ///
-/// [`SvgPicture`](crate::SvgPicture) and [`PngPicture`](crate::PngPicture) are its two formats. A
-/// mesh is stored by its id at the first call. Later meshes with the same id are drawn with the
-/// stored content. A point is a disc with its size as diameter, at least 5 pixels wide.
+/// [`SvgPicture`](crate::SvgPicture) and [`PngPicture`](crate::PngPicture) are pictures in the two
+/// formats. A mesh is stored by its id at the first call. Later meshes with the same id are drawn
+/// with the stored content. A point is a disc whose diameter is the size of the point, but at least
+/// 5 pixels.
 ///
 /// ```
 /// use impinge::debug_render::{Color, DebugRender, Drawn};
@@ -36,14 +37,16 @@ impl<F> Picture<F> {
     }
 
     /// Returns the number of omitted lines, triangles, points, texts and meshes. An element is
-    /// omitted if a coordinate is NaN, infinite or above 1e13 in magnitude, if a size is negative,
-    /// or if a mesh has an index without a vertex.
+    /// omitted if a coordinate is NaN, infinite or above 1e13 in magnitude, or if a size is
+    /// negative, NaN or above 1e13. A line or triangle of a mesh is also omitted if one of its
+    /// indices has no vertex.
     #[must_use]
     pub fn left_out(&self) -> u64 {
         self.recording.left_out
     }
 
-    /// Removes all drawn elements, so that the next picture can be drawn. Stored meshes are kept.
+    /// Removes all drawn elements and resets the number of omitted ones, so that the next picture
+    /// can be drawn. Stored meshes are kept.
     pub fn clear(&mut self) {
         self.recording.clear();
     }
@@ -53,7 +56,7 @@ impl<F> Picture<F> {
         self.camera = camera;
     }
 
-    /// Returns the layers of the drawing, with the first colour of each.
+    /// Returns the layers of the drawing, each with the colour that represents it in the legend.
     pub(crate) fn layers(&self) -> Vec<(Layer, Color)> {
         let layers = self.recording.layers().into_iter();
         let colors = |layer| Some((Layer::of(layer), self.recording.color_of(layer)?));

@@ -1,4 +1,4 @@
-//! Converts a drawing to triangles on the screen, and draws these.
+//! Converts a drawing to triangles on the screen, and draws the triangles.
 
 use crate::flatten::{Face, Flat};
 use crate::layer::Layer;
@@ -45,8 +45,8 @@ pub(crate) fn pieces(flat: &Flat, dots: &[Dot], view: &View, samples: f64) -> Ve
     faces.chain(strokes).chain(dots).collect()
 }
 
-/// Draws opaque pieces in their order, then transparent pieces from far to near, and at last,
-/// fainter, the hidden parts of pieces that show through.
+/// Draws the opaque pieces in their order, then the transparent pieces from far to near. At last,
+/// draws the hidden parts of pieces that show through, with a third of their alpha.
 pub(crate) fn draw(pieces: &[Piece], raster: &mut Raster) {
     let (opaque, mut transparent): (Vec<_>, Vec<_>) =
         pieces.iter().partition(|piece| piece.color.alpha == u8::MAX);
@@ -97,8 +97,8 @@ fn face_piece(face: &Face, view: &View, samples: f64) -> Option<Piece> {
     Some(Piece { triangles, normals: Some(normals), color: face.color, shows_through, depth })
 }
 
-/// Returns `true` if the near plane does not clip a face, so that its projected corners are those
-/// of the triangle.
+/// Returns `true` if the near plane does not clip a face, so that the projected polygon has the
+/// corners of the face.
 fn is_whole(face: &Face, view: &View) -> bool {
     face.corners.iter().all(|corner| view.point(corner, 0.0).is_some())
 }

@@ -59,7 +59,8 @@ const INK: Color = Color::rgb(48, 54, 63);
 const BACKGROUND: Color = Color::rgb(250, 249, 246);
 
 impl Picture<Png> {
-    /// Creates a picture of `size`, its width and height in pixels. Both are clamped to 1 to 8192.
+    /// Creates a picture with this width and height in pixels. Both are clamped to the range from 1
+    /// to 8192.
     #[must_use]
     pub fn new(camera: Camera, size: [u32; 2]) -> Self {
         let size = size.map(|side| side.clamp(1, MAX_SIDE));
@@ -84,8 +85,8 @@ impl Picture<Png> {
     }
 
     /// Adds a legend with the names and colours of the layers of the drawing, in rows at the lower
-    /// side. The drawing gets the space above it. If the legend would need more than half of the
-    /// height, it is omitted.
+    /// side. The drawing gets the space above the legend. If the legend would need more than half
+    /// of the height, it is omitted.
     #[must_use]
     pub fn with_legend(mut self) -> Self {
         self.format.has_legend = true;
@@ -101,8 +102,8 @@ impl Picture<Png> {
 
     /// Renders the drawing.
     ///
-    /// Costs 44 bytes of memory for each pixel while it runs, and time in proportion to the pixels that
-    /// triangles and lines cover.
+    /// Costs 44 bytes of memory for each pixel while it runs, and time in proportion to the pixels
+    /// that triangles and lines cover.
     #[must_use]
     pub fn to_image(&self) -> Image {
         let lens = self.lens();

@@ -2,7 +2,7 @@
 
 use crate::lens::{OnScreen, larger};
 
-/// Pixels with depths, row by row from the top. An infinite depth is that of the background.
+/// Pixels with depths, row by row from the top. The background has an infinite depth.
 #[derive(Clone, Debug)]
 pub(crate) struct Raster {
     size: [usize; 2],
@@ -69,7 +69,7 @@ impl Raster {
     }
 
     /// Fills a triangle. `color_at` gets the barycentric coordinates of a pixel centre and returns
-    /// its colour.
+    /// the colour of the pixel.
     ///
     /// Corners are rounded to 1/256 pixel. So the tests of pixel centres are exact up to 65536
     /// pixels from the corner of the picture, and a pixel on a common edge of two triangles is
@@ -177,7 +177,8 @@ impl Oriented {
         Some(areas.map(|area| area / self.area))
     }
 
-    /// Interpolates the depth. If the corners have equal depths, it is exactly this depth.
+    /// Interpolates the depth between the corners. If the corners have equal depths, returns
+    /// exactly this depth.
     fn depth(&self, weights: &[f64; 3]) -> f64 {
         let [a, b, c] = self.corners.map(|corner| corner.depth);
         a + weights[1] * (b - a) + weights[2] * (c - a)
@@ -202,7 +203,7 @@ pub(crate) fn ribbon(ends: &[OnScreen; 2], width: f64) -> [[OnScreen; 3]; 2] {
     [[a, b, c], [a, c, d]]
 }
 
-/// Returns the integer part of `x`, clamped to 0 and `limit`; 0 for NaN.
+/// Returns the integer part of `x`, clamped to the range from 0 to `limit`; 0 for NaN.
 #[expect(clippy::cast_possible_truncation, reason = "clamped to the limit")]
 #[expect(clippy::cast_sign_loss, reason = "clamped to zero")]
 pub(crate) fn whole(x: f64, limit: usize) -> usize {

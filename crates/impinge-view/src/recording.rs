@@ -94,7 +94,7 @@ fn embed_all<N: Real, const D: usize, const K: usize>(
 }
 
 impl Recording {
-    /// Removes all elements, but keeps the meshes.
+    /// Removes all elements and resets the counter, but keeps the meshes.
     pub(crate) fn clear(&mut self) {
         *self = Self { meshes: std::mem::take(&mut self.meshes), ..Self::default() };
     }
@@ -127,7 +127,8 @@ impl Recording {
         unique.into_iter().collect()
     }
 
-    /// Returns the colour of the first element of a layer; `None` if the layer is empty.
+    /// Returns the colour of a layer's first mesh; if it has none, of its first point, triangle,
+    /// line or text, in this order. `None` if the layer is empty.
     pub(crate) fn color_of(&self, layer: Drawn) -> Option<Color> {
         let placed = self.placed.iter().map(|placed| (placed.what, placed.color));
         let dots = self.dots.iter().map(|dot| (dot.what, dot.color));

@@ -5,9 +5,9 @@ use impinge::dim3::math::Vector;
 /// The direction to the light in the camera's frame: from the upper left, in front. Its length is 1
 /// to within 1e-3.
 const LIGHT: [f64; 3] = [-0.465, 0.675, 0.573];
-/// The factors of red, green and blue on the side away from the light, which is slightly blue.
+/// The factors of red, green and blue on a surface that faces away from the light; slightly blue.
 const SHADE: [f64; 3] = [0.48, 0.52, 0.60];
-/// The factors of red, green and blue under perpendicular light, which is slightly warm.
+/// The factors of red, green and blue on a surface that faces the light; slightly warm.
 const LIT: [f64; 3] = [1.10, 1.08, 1.05];
 /// The colour with which the colour of a face is mixed for its edges.
 const INK: [u8; 3] = [26, 32, 44];
@@ -38,7 +38,7 @@ pub(crate) fn mixed(from: [u8; 3], to: [u8; 3], part: f64) -> [u8; 3] {
     [channel(0), channel(1), channel(2)]
 }
 
-/// Rounds to an integer and clamps it to 0 to 255; 0 for NaN.
+/// Rounds to an integer and clamps it to the range from 0 to 255; 0 for NaN.
 #[expect(clippy::cast_possible_truncation, reason = "clamped")]
 #[expect(clippy::cast_sign_loss, reason = "clamped")]
 fn byte(x: f64) -> u8 {

@@ -26,10 +26,11 @@ pub struct Svg {
 /// A picture of lines.
 ///
 /// Each layer is a group with a class: `object`, `contact-point`, `query-hit` and so on, in the
-/// order of [`Drawn`]. In a group, nearer elements come later. Lengths on the page are in pixels
-/// with two decimals. Colours that are too dark for a dark page are lighter there. Texts avoid the
-/// sides of the page and each other where possible; texts of points outside the page are omitted.
-/// The description mentions the number of [omitted](Picture::left_out) elements.
+/// order of [`Drawn`]. A group has filled surfaces first, then hidden lines, visible lines and
+/// points, each of them from far to near, then texts. Lengths on the page are in pixels with two
+/// decimals. Colours that are too dark for a dark page are lighter there. Texts avoid the sides of
+/// the page and each other where possible; texts of points outside the page are omitted. The
+/// description mentions the number of [omitted](Picture::left_out) elements.
 ///
 /// ```
 /// use impinge::debug_render::{Color, DebugRender, Drawn};
@@ -53,8 +54,8 @@ const TALLEST: f64 = 1.5;
 
 impl Picture<Svg> {
     /// Creates a picture of a 2D scene, to scale, with y upwards. Shapes and triangles are filled
-    /// with a tint. The width in pixels is clamped to 64 to 8192; the height follows from the
-    /// content.
+    /// with a tint. The width in pixels is clamped to the range from 64 to 8192; the height follows
+    /// from the content.
     #[must_use]
     pub fn plane(width: u32) -> Self {
         Self::of(Camera::plane(), width, true)
@@ -62,7 +63,8 @@ impl Picture<Svg> {
 
     /// Creates a picture of a 3D scene that consists of lines, including the silhouettes of
     /// surfaces. Lines are fainter and dotted where opaque meshes and triangles hide them. The
-    /// width in pixels is clamped to 64 to 8192; the height follows from the content.
+    /// width in pixels is clamped to the range from 64 to 8192; the height follows from the
+    /// content.
     #[must_use]
     pub fn space(camera: Camera, width: u32) -> Self {
         Self::of(camera, width, false)
@@ -75,8 +77,8 @@ impl Picture<Svg> {
         Self::with_format(camera, format)
     }
 
-    /// Sets a title and a description, for screen readers and tooltips. Characters that XML does not
-    /// allow become U+FFFD.
+    /// Sets a title and a description, for screen readers and tooltips. Characters that XML does
+    /// not allow become U+FFFD.
     #[must_use]
     pub fn with_title(mut self, title: &str, description: &str) -> Self {
         self.format.title = title.to_owned();
@@ -91,8 +93,8 @@ impl Picture<Svg> {
         self
     }
 
-    /// Returns the text of an SVG file. For 3D scenes it samples each line at every half pixel to
-    /// find the hidden parts.
+    /// Returns the text of an SVG file. For a 3D scene, each line is sampled twice per pixel to
+    /// find its hidden parts.
     #[must_use]
     pub fn to_svg(&self) -> String {
         let lens = self.lens();
@@ -168,8 +170,8 @@ impl Picture<Svg> {
 }
 
 impl Svg {
-    /// Returns the window for a drawing with this width and height: the page without its margins
-    /// and legend.
+    /// Returns the window for content with this width and height in the image plane: the page
+    /// without its margins and legend. The window is at most [`TALLEST`] times as high as wide.
     fn window(&self, [width, height]: [f64; 2]) -> Window {
         let inner = f64::from(self.width) - 2.0 * MARGIN;
         let tallest = inner * TALLEST;
@@ -188,7 +190,8 @@ struct Page {
 }
 
 impl Page {
-    /// Splits a line into parts, each with the flag whether it is hidden.
+    /// Splits a line into parts that are completely hidden (`true`) or completely visible. If
+    /// surfaces are filled, the whole line is visible.
     fn runs(&self, ends: &[OnScreen; 2]) -> Vec<(bool, [OnScreen; 2])> {
         match &self.depths {
             Some(depths) => {
@@ -205,8 +208,8 @@ fn label_layer(layer: Drawn, labels: &[PlacedLabel<'_>], body: &mut Body) {
     }
 }
 
-/// Draws the lines of a layer and the sides of its single triangles. Hidden lines come first, each
-/// group from far to near.
+/// Draws the lines of a layer and the sides of its single triangles: first the hidden parts, then
+/// the visible parts, both from far to near.
 fn stroke_layer(layer: Drawn, page: &Page, body: &mut Body) {
     let strokes = page.flat.strokes.iter().filter(|stroke| stroke.what == layer);
     let mut lines: Vec<_> = strokes.map(|stroke| (stroke.ends, stroke.color)).collect();

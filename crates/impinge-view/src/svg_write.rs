@@ -22,15 +22,15 @@ pub(crate) struct Body {
     legend_height: f64,
 }
 
-/// The style of a line, except its width.
+/// The colour of an element, and whether surfaces hide the element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Key {
     pub(crate) color: Color,
     pub(crate) is_hidden: bool,
 }
 
-/// A path that is not closed yet: a following line with the same key extends it. `last` is the text
-/// of its end point.
+/// A path element that is still being written: a following line with the same key extends the path.
+/// `last` is the text of the path's end point.
 #[derive(Clone, Debug)]
 struct Open {
     key: Key,
@@ -125,7 +125,7 @@ impl Body {
         self.text.push_str(text);
     }
 
-    /// Returns the attributes of an element with this key, stroked (`s`) or filled (`f`).
+    /// Returns the attributes of an element with this key, stroked (`kind` is `s`) or filled (`f`).
     fn class(&mut self, kind: char, key: Key) -> String {
         let found = self.colors.iter().position(|color| *color == key.color.rgb);
         let index = found.unwrap_or_else(|| {
@@ -171,7 +171,7 @@ fn rule(id: &str, index: usize, [red, green, blue]: [u8; 3]) -> String {
     format!("#{id} .s{index}{{stroke:{color}}}#{id} .f{index}{{fill:{color}}}\n")
 }
 
-/// Returns the colour to use on a dark page: a lighter one, if the colour is dark.
+/// Returns the colour to use on a dark page: a lighter colour if `rgb` is dark, else `rgb`.
 fn on_dark(rgb: [u8; 3]) -> [u8; 3] {
     let [red, green, blue] = rgb.map(u32::from);
     // The integer weights are those of the luminance of sRGB, in percent.
@@ -209,8 +209,8 @@ pub(crate) fn document(body: Body, title: &str, description: &str) -> String {
     svg
 }
 
-/// Returns the hash FNV-1a (Fowler, Noll, Vo) of some texts. It is the id of a document, which
-/// keeps the styles of several documents on one page apart.
+/// Returns the hash FNV-1a (Fowler, Noll, Vo) of some texts. The hash becomes the id of a document,
+/// which keeps the styles of several documents on one page apart.
 fn hash(texts: &[&str]) -> u64 {
     let bytes = texts.iter().flat_map(|text| text.bytes().chain([0]));
     bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {

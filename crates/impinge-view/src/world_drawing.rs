@@ -1,4 +1,5 @@
-//! Drawings of worlds: sizes follow from the objects, and the colours suit a light background.
+//! Drawings of worlds: sizes follow from the objects of the world, and the colours suit a light
+//! background.
 
 use impinge::bounding_volume::Aabb;
 use impinge::debug_render::{Color, DebugDrawing, DebugOptions};
@@ -6,11 +7,11 @@ use impinge::math::{Point, Space, Vector};
 use impinge::narrow_phase::CollisionObjectHandle;
 use impinge::world::CollisionWorld;
 
-/// Returns a drawing for a world, with options whose sizes are for objects of length 1.
+/// Returns a drawing for a world. `options` has sizes that suit objects of length 1.
 ///
-/// The sizes are scaled by the median of the objects' longest sides. Half-spaces are drawn up to
-/// the extent of the bounded objects. Objects get six muted colours in turn. Costs O(n log n) for n
-/// objects.
+/// The sizes are scaled by the median of the longest sides of the objects' AABBs. Half-spaces are
+/// drawn up to the largest coordinate of the bounded objects. Objects get six muted colours in
+/// turn, and contact normals, if they are drawn, a brown colour. Costs O(n log n) for n objects.
 ///
 /// ```
 /// use impinge::debug_render::DebugOptions;
@@ -41,14 +42,14 @@ pub fn world_drawing<N: Space<D>, const D: usize, T>(
     DebugDrawing::new(options).with_object_color(object_color)
 }
 
-/// The lengths by which the drawing of a world is scaled; each is 1 if the world has no bounded
-/// object.
+/// The lengths by which the drawing of a world is scaled. A length that would be zero is 1 instead,
+/// for instance if the world has no bounded object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Extent {
-    /// The lower median of the longest sides of the objects. For a box on a floor it is that of the
-    /// box, not of the floor.
+    /// The lower median of the longest sides of the AABBs of all bounded objects. For a box on a
+    /// larger floor, it is the side of the box.
     typical: f64,
-    /// The largest magnitude of a coordinate of the boxes of all bounded objects.
+    /// The largest magnitude of a coordinate of the AABBs of all bounded objects.
     whole: f64,
 }
 
@@ -76,7 +77,7 @@ fn object_color(handle: CollisionObjectHandle) -> Option<Color> {
     Some(COLORS[handle.uid() % COLORS.len()])
 }
 
-/// The colours of objects. Objects get them in turn, by their id.
+/// The colours of objects, which get them in turn by the indices of their handles.
 const COLORS: [Color; 6] = [
     Color::rgb(124, 146, 176),
     Color::rgb(204, 128, 104),

@@ -1,5 +1,5 @@
-//! Hashes of the results of all queries for all pairs of shape kinds, and of a world with two
-//! objects of each kind.
+//! Hashes of the results of queries for each shape and for all pairs of shapes, and of a world with
+//! two objects of each shape.
 
 use std::array::from_fn;
 use std::fmt::Debug;
@@ -109,7 +109,7 @@ fn two<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     note(&time_of_impact(m1, &rest, g1, m2, &velocity, g2), digest);
 }
 
-/// Runs a world with two objects of each kind, at four positions in turn, for a few steps.
+/// Runs a world with two objects of each shape, at four positions in turn, for three steps.
 fn together<N, R, const D: usize>(
     shapes: &[ShapeHandle<N, D>],
     poses: &[Isometry<N, R, D>; 4],

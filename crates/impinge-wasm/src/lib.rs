@@ -1,5 +1,5 @@
-//! Hashes that must be the same on every target: the golden hashes of the test `determinism`, those
-//! of the query results for all pairs of shape kinds, and those of the recordings in the
+//! Hashes that must be the same on every target: the golden hashes of the test `determinism`, the
+//! hashes of query results for all pairs of shapes, and the hashes of the recordings in the
 //! repository.
 //!
 //! The native program of this package prints them. The WebAssembly module exports functions with
@@ -24,7 +24,7 @@ use scene_stage::Play;
 
 /// A named computation of a hash.
 pub struct Check {
-    /// The name; for scenes it is the one in the golden file.
+    /// The name; for scenes, the name in the golden file.
     pub name: String,
     /// Computes the hash.
     pub hash: Box<dyn Fn() -> u64 + Send + Sync>,

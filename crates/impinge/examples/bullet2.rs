@@ -1,8 +1,8 @@
 //! A bullet that does not tunnel. In one step it flies more than eight times the thickness of a
 //! wall. If it is only moved and tested for contacts, it passes the wall between two steps; if it
 //! is cast along its path, it bounces off. The number of bounces and the end point are checked by
-//! unfolding the room: mirror images of it are laid side by side, and the path becomes a straight
-//! line.
+//! unfolding the room: mirror images of the room are laid side by side, and the path becomes a
+//! straight line.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -23,7 +23,7 @@ fn build() -> World {
     let mut world = World::new(0.02);
     let thin = 1.0 / 16.0;
     for outward in [Vector::x(), -Vector::x(), Vector::y(), -Vector::y()] {
-        // The wall is thin along `outward`, and across it long enough to close the corners.
+        // The wall is thin along `outward`, and across `outward` long enough to close the corners.
         let half =
             outward.abs() * thin + (Vector::repeat(1.0) - outward.abs()) * (ROOM + 2.0 * thin);
         let position = Isometry::new(outward * (ROOM + thin), 0.0);

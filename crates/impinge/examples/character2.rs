@@ -1,6 +1,7 @@
 //! A kinematic character walks to the right: up a flight of steps, down from a ledge, and against a
 //! wall. In each frame its box is cast up, across and down, and stops at a small distance from any
-//! obstacle. Contacts tell whether it stands on something. The output is the path of its feet.
+//! obstacle. Contacts show whether the character stands on something. The output is the path of its
+//! feet.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -50,8 +51,8 @@ fn sweep(world: &World, character: CollisionObjectHandle, motion: Vector<f64>) -
 }
 
 /// Moves the character by one frame: up by a step, across, and down by a step and by the fall. On a
-/// flat floor it returns to the height of the floor, before a low step it ends on top of the step,
-/// and beside a wall its position does not change.
+/// flat floor the character returns to the height of the floor. Before a low step it ends on top of
+/// the step. A wall before it blocks the motion across.
 fn walk(world: &mut World, character: CollisionObjectHandle, across: f64) {
     let before = world.collision_object(character).expect("never removed").position().translation.y;
     for motion in [Vector::new(0.0, STEP), Vector::new(across, 0.0)] {

@@ -39,8 +39,8 @@ fn build() -> World {
     world
 }
 
-/// Moves the capsule until it is `SKIN` away from an obstacle, then along this obstacle. It makes
-/// at most four casts.
+/// Moves the capsule until it is `SKIN` away from an obstacle, then along this obstacle. Makes at
+/// most four casts.
 fn slide(world: &World, position: &mut Isometry<f64>, mut motion: Vector<f64>) {
     let (capsule, all) = (Capsule::new(HALF_HEIGHT, RADIUS), QueryFilter::new());
     let options = ImpactOptions::new().with_max_time(1.0).with_target_distance(SKIN);

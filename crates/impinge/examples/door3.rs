@@ -1,7 +1,7 @@
 //! A door swings open: at which angle does it hit a post in its way, fixed or moving? Rotating
-//! bodies have a time of impact too. It is found by conservative advancement, not by stepping
-//! through the motion, so thin or fast bodies are not missed. The output is the angle at which the
-//! door stops, for several positions of the post.
+//! bodies have a time of impact too. This time is found by conservative advancement, not by
+//! stepping through the motion, so thin or fast bodies are not missed. The output is the angle at
+//! which the door stops, for several positions of the post.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -60,7 +60,7 @@ fn main() {
     // The edge of the door comes no nearer than √2 − 1 to the axis of the second post, which is
     // more than the radius.
     assert_eq!(angles[1..], [None, None, None], "nothing is in the way");
-    // A post that moves towards the swing is hit the earlier the faster it is.
+    // A post that moves faster towards the swing is hit earlier.
     let comes =
         [0.0, 0.25, 0.5].map(|speed| stops_at(Point::new(0.0, 0.0, 0.5), Vector::x() * speed));
     let [slow, medium, fast] = comes.map(|angle| angle.expect("it comes closer"));

@@ -1,7 +1,7 @@
 //! Ten thousand grasps of a mug by a gripper with two fingers, checked in a few calls. For which
-//! grasps are both fingers clear of the mug and of the table, and in which of these is a finger
-//! nearest to the mug? The output is the number of clear grasps, and the nearest one with its
-//! clearance.
+//! grasps are both fingers clear of the mug and of the table, and in which of these is the first
+//! finger nearest to the mug? The output is the number of clear grasps, and the nearest one with
+//! its clearance.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -10,11 +10,12 @@ use impinge::dim3::batch::{
 };
 use impinge::dim3::prelude::*;
 
-/// The number of rotations about the axis of the mug, and the number of heights, of the grasps.
+/// The grasps differ by rotation about the axis of the mug and by height: the number of rotations,
+/// and the number of heights.
 const TURNS: u32 = 500;
 const HEIGHTS: u32 = 20;
 
-/// The radius of the mug, half its height, and the distance of a finger from its axis.
+/// The radius of the mug, half its height, and the distance of a finger from the axis of the mug.
 const RADIUS: f64 = 0.04;
 const HALF_HEIGHT: f64 = 0.05;
 const OPENING: f64 = 0.06;

@@ -1,7 +1,7 @@
 //! A user-defined convex shape, given by its support map: the Reuleaux triangle. It is bounded by
 //! three arcs around the corners of an equilateral triangle. Like a ball it has the same width in
-//! every direction. So the sum of its distances from two parallel walls is the same at every angle.
-//! Distances, point queries and worlds need only the support map.
+//! every direction. So the sum of the distances of the triangle from two parallel walls is the same
+//! at every angle. Distances, point queries and worlds need only the support map.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -104,8 +104,8 @@ fn main() {
         assert!((below + above - 2.0).abs() < 1e-12, "{below} and {above} at {degrees}°");
     }
 
-    // A world handles it like any other shape. Here the lower corner, 2/√3 below the middle,
-    // penetrates the floor by 0.1.
+    // A world handles the roller like any other shape. Here the lower corner, 2/√3 below the
+    // middle, penetrates the floor by 0.1.
     let mut world = CollisionWorld::new(0.02);
     let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
     world.add(here, ShapeHandle::new(floor), groups, query, "floor");

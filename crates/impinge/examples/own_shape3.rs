@@ -26,8 +26,8 @@ struct Stairs {
     visited: AtomicU32,
 }
 
-/// Returns the gap along x between tread n and an interval, which is a lower bound of its distance
-/// from a box over this interval. Infinite if there is no tread n.
+/// Returns the gap along x between tread n and an interval, which is a lower bound of the distance
+/// of the tread from a box that covers this interval. Infinite if there is no tread n.
 fn gap(n: i64, [mins, maxs]: [f64; 2]) -> f64 {
     let start = n as f64 * RUN;
     let is_there = (0..i64::from(COUNT)).contains(&n);
@@ -35,7 +35,7 @@ fn gap(n: i64, [mins, maxs]: [f64; 2]) -> f64 {
 }
 
 /// Visits treads from the middle of an interval towards both ends of the stairs, in the order of
-/// their gaps. It ends when the gap exceeds the limit that `visit` returns.
+/// their gaps. Ends when the gap exceeds the limit, which each call of `visit` replaces.
 #[allow(clippy::cast_possible_truncation, reason = "casts of floats saturate")]
 fn outward(x: [f64; 2], mut limit: f64, visit: &mut dyn FnMut(u32, f64) -> f64) {
     let middle = ((x[0] / 2.0 + x[1] / 2.0) / RUN) as i64;
@@ -65,7 +65,7 @@ impl PartSearch<f64, 3> for Stairs {
     fn overlapping(&self, aabb: &Aabb<f64>, visit: &mut dyn FnMut(u32)) {
         outward(along(aabb), 0.0, &mut |n, nearer| {
             visit(n);
-            nearer // only the treads with a gap of zero, all of them
+            nearer // zero: the search goes on as long as the gap is zero
         });
     }
 

@@ -1,7 +1,7 @@
 //! A one-way platform: the player jumps through it from below, lands on it from above, and drops
 //! through it on demand. A pair filter rejects the pair while the player passes. The world does not
-//! notice when the result of a filter changes. So the program registers the filter again whenever
-//! it does. The output is the height of the feet over time.
+//! notice when the result of a filter changes. So the program registers the filter again after each
+//! change. The output is the height of the feet over time.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -49,8 +49,8 @@ fn build() -> (World, CollisionObjectHandle) {
     (world, player)
 }
 
-/// Returns the depth of the player in the object that supports it: that of the deepest contact
-/// whose normal, which points away from the player, points down.
+/// Returns the depth of the player in the object that supports the player: the depth of the deepest
+/// contact whose normal, which points away from the player, points down.
 fn sunk(world: &World, player: CollisionObjectHandle) -> Option<f64> {
     let below = world.contacts_with(player).filter(|(_, point)| point.contact.normal.y < -0.5);
     below.map(|(_, point)| point.contact.depth).reduce(f64::max)

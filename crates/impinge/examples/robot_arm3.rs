@@ -1,5 +1,5 @@
-//! A robot arm with four links is checked in several configurations: does it hit itself, does it
-//! hit the pillar beside it, and if not, what is its distance? Links that share a joint always
+//! A robot arm with four links is checked in several configurations: does it hit itself or the
+//! pillar beside it, and if not, what is the smallest distance? Links that share a joint always
 //! touch there, so these pairs are not checked. The output is one line for each configuration.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
@@ -22,8 +22,8 @@ fn at(x: f64, y: f64) -> Pose<f64, 3> {
     Pose::from_translation(Vector::new(x, y, 0.0))
 }
 
-/// Builds the arm, and a pillar of 0.5 × 4 × 0.5 whose axis is at a distance of 1 from that of the
-/// base.
+/// Builds the arm, and a pillar of 0.5 × 4 × 0.5 whose axis is at a distance of 1 from the axis of
+/// the base.
 ///
 /// The base rotates the arm about the vertical axis. Each joint bends the rest of the arm about the
 /// z axis of the base, to the left for positive angles.

@@ -11,7 +11,8 @@ use std::collections::{BTreeMap, VecDeque};
 use impinge::dim2::prelude::*;
 use impinge::dim2::world::WorldMark;
 
-/// The data is the number of times that an object was touched. It is rewound with the world.
+/// The data is the number of times that an object was touched. Rewinding the world also rewinds the
+/// data.
 type World = CollisionWorld<f32, u32>;
 
 const FRAMES: usize = 240;
@@ -124,8 +125,9 @@ impl Side {
         self.now += 1;
     }
 
-    /// Stores the input of the first frame without one, which was played some frames ago. If the
-    /// prediction for it was wrong, the frames from there on are played again.
+    /// Stores an input of the other player: it is for the first frame without a received input,
+    /// which was played some frames ago. If the prediction of this input was wrong, plays this
+    /// frame and all later frames again.
     fn receive(&mut self, input: Vector<f32>) {
         let frame = self.arrived.len();
         self.arrived.push(input);

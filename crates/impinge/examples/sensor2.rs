@@ -1,7 +1,7 @@
 //! Two automatic doors, each with a sensor: an area with a proximity query. A door is open while
 //! somebody is in its area, by a count that is updated from proximity events only. The last visitor
 //! is removed inside an area; this causes an event too, so the count returns to zero. The output
-//! tells when the doors move.
+//! lists when the doors open and close.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 

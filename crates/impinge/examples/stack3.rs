@@ -24,7 +24,7 @@ const FRICTION: f32 = 0.5;
 /// A depth that is not corrected, so that contacts last.
 const SLOP: f32 = 0.005;
 
-/// A box, or the floor, whose inverse mass and inertia are zero.
+/// A box, or the floor. The inverse mass and the inverse inertia of the floor are zero.
 struct Body {
     handle: CollisionObjectHandle,
     pose: Isometry<f32>,
@@ -53,7 +53,7 @@ struct Joint {
     id: ContactId,
     bodies: [usize; 2],
     rows: [Row; 3],
-    /// The minimum speed at which the two must separate; negative while there is a gap to close.
+    /// The minimum speed at which the bodies must separate; negative while there is a gap to close.
     parting: f32,
 }
 
@@ -110,14 +110,14 @@ fn joints(world: &World, bodies: &[Body], stored: &Impulses) -> Vec<Joint> {
             let sides = [*normal, tangent, normal.cross(&tangent)];
             let old = [push, friction.dot(&sides[1]), friction.dot(&sides[2])];
             let rows = [0, 1, 2].map(|n| Row::new(sides[n], old[n], arms, pair));
-            // A gap may close within the step. Of a depth beyond `SLOP` a fifth is corrected in the
-            // step.
+            // A gap may close within the step. A fifth of the depth beyond `SLOP` is corrected in
+            // each step.
             let parting = if depth < 0.0 { depth } else { 0.2 * (depth - SLOP).max(0.0) } / STEP;
             joints.push(Joint { id: point.id, bodies: numbers, rows, parting });
         }
     }
-    // The order of views is unspecified. Sorted by body they go from the floor upwards; the sort is
-    // stable, so the contacts of a pair keep their order.
+    // The order of views is unspecified. Sorted by body, the contacts go from the floor upwards;
+    // the sort is stable, so the contacts of a pair keep their order.
     joints.sort_by_key(|joint| joint.bodies);
     joints
 }
@@ -155,8 +155,8 @@ fn step(world: &mut World, bodies: &mut [Body], stored: &Impulses) -> Impulses {
     for joint in &joints {
         joint.rows.iter().for_each(|row| row.push(row.impulse, joint.bodies, bodies));
     }
-    // Alternately up and down the stack, since the contacts that are solved last have the smallest
-    // error.
+    // Solves alternately up and down the stack, since the contacts that are solved last have the
+    // smallest error.
     for turn in 0..ITERATIONS {
         if turn % 2 == 0 {
             joints.iter_mut().for_each(|joint| solve(joint, bodies));
@@ -197,8 +197,8 @@ fn build() -> (World, Vec<Body>) {
     (world, bodies)
 }
 
-/// Returns the distance that the top box has moved after five seconds, and the number of contacts
-/// that got a new id in a later step.
+/// Returns the distance that the top box has moved after five seconds, and the number of new
+/// contact ids in all steps after the first.
 fn run(is_warm: bool) -> (f32, usize) {
     let (mut world, mut bodies) = build();
     let begin = bodies[BOXES].pose.translation.vector;

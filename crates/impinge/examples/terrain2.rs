@@ -51,7 +51,7 @@ fn ids(world: &World, object: CollisionObjectHandle) -> Vec<impinge::dim2::query
 }
 
 /// Prints the solid cells of the world, half a unit wide and high. Cells below the height of the
-/// terrain are solid.
+/// terrain are `#`, and cells in the tank are `T`.
 fn print(world: &World, terrain: CollisionObjectHandle) {
     let field = world.collision_object(terrain).expect("the terrain is never removed");
     let field = field.shape().as_shape::<HeightField<f64>>().expect("the terrain is a field");

@@ -25,7 +25,7 @@ fn place(index: usize) -> [f64; 2] {
 }
 
 /// Returns the height of the underside of the ball at a position; `None` if the ball does not cover
-/// it.
+/// the position.
 fn underside(center: &Vector<f64>, [x, z]: [f64; 2]) -> Option<f64> {
     let across_squared = (x - center.x).powi(2) + (z - center.z).powi(2);
     (across_squared < RADIUS * RADIUS).then(|| center.y - (RADIUS * RADIUS - across_squared).sqrt())
@@ -63,9 +63,9 @@ fn main() {
     let ball = ShapeHandle::new(Ball::new(RADIUS));
     let ball = world.add(Isometry::translation(0.0, 10.0, 0.0), ball, groups, query, "ball");
 
-    // The edges of the snow's triangles are chords of the ball. Their depth in it is at most the
-    // sagitta e² / 8r of the longest edge e, and a little more where the surface is steep. If the
-    // lowest point of the ball is over a grid point, it touches the snow there.
+    // The edges of the snow's triangles are chords of the ball. The depth of an edge in the ball is
+    // at most the sagitta e² / 8r of the longest edge e, and a little more where the surface is
+    // steep. If the lowest point of the ball is over a grid point, the ball touches the snow there.
     let sagitta = 2.0 * CELL * CELL / (8.0 * RADIUS);
     let (mut fresh, mut settled) = (0.0_f64, 0.0_f64);
     for step in 0..=48_u8 {

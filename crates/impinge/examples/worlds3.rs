@@ -1,7 +1,7 @@
 //! Many worlds at once: a game server runs each match in a world of its own, on its own thread.
 //! Worlds share only their shapes. A match has the same bits whether it runs alone or beside
-//! others, so it can be replayed from its seed. Each line of the output is one match: the number of
-//! its contacts, and a hash of their depths.
+//! others, so it can be replayed from its seed. Each line of the output is one match: the numbers
+//! of contacts that began, ended and are left, and a hash of depths.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -62,7 +62,8 @@ fn play(ball: &ShapeHandle<f32>, seed: u64) -> Summary {
             velocity,
         );
     }
-    // The hash FNV-1a over the bits of all depths, in the order in which the world returns them.
+    // The hash FNV-1a over the bits of the deepest depth of each manifold, in the order in which
+    // the world returns the manifolds.
     let mut summary = Summary { started: 0, stopped: 0, touching: 0, hash: 0xcbf2_9ce4_8422_2325 };
     for _ in 0..STEPS {
         advance(&mut world);

@@ -2,7 +2,8 @@
 //! for Bevy: Avian moves the bodies, impinge provides shapes and contacts.
 //!
 //! [`d2`] is for `avian2d`, [`d3`] for `avian3d`. An app adds one plugin after Avian's plugins, and
-//! uses the `Collider` of this crate. The constructors have the names and arguments of Avian's.
+//! uses the `Collider` of this crate. The constructors have the names and arguments of those of
+//! Avian's `Collider`.
 //!
 //! ```
 //! use avian3d::prelude::*;
@@ -65,7 +66,7 @@ pub use collider::Collider;
 pub use pairs::PairContacts;
 pub use scaling::Dimension;
 
-/// The collision library itself: shapes, queries.
+/// The collision library itself: shapes and queries.
 pub use impinge;
 
 /// The README and the guide's chapter, run as tests; their apps have no parry.

@@ -38,8 +38,8 @@ where
     pub(crate) anchors: [Vec_<D>; 2],
     /// The penetration depth, positive if the shapes overlap.
     pub(crate) penetration: f32,
-    /// Avian's two feature ids, by which it matches a point with those of the last step; neither is
-    /// zero.
+    /// Avian's two feature ids, by which it matches a point with the points of the last step;
+    /// neither is zero.
     pub(crate) name: [u32; 2],
 }
 

@@ -12,7 +12,8 @@ use crate::scaling::Dimension;
 /// The number of locks. Pairs are distributed over them, so that threads seldom wait for each
 /// other.
 const SHARDS: usize = 256;
-/// The number of ended pairs that may remain before a sweep.
+/// The number of ended pairs that may remain before a sweep, in addition to the number of living
+/// pairs.
 const SPARE: usize = 64;
 
 /// The two entities of a pair, in the order of Avian's contact graph.
@@ -83,7 +84,8 @@ impl<const D: usize> PairContacts<D>
 where
     f32: Dimension<D>,
 {
-    /// The default tolerance: a tenth of Avian's own for contacts, in Avian's unit of length.
+    /// The default tolerance: a tenth of Avian's default `contact_tolerance`, in Avian's unit of
+    /// length.
     pub const TOLERANCE: f32 = 5e-4;
 
     /// Creates the resource without pairs. Contacts are reused, with new depths, while no point of

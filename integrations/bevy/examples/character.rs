@@ -28,7 +28,8 @@ fn build(mut commands: Commands) {
     commands.spawn((character, Collider::capsule(0.3, 1.2), Transform::from_xyz(0.0, 0.92, 0.0)));
 }
 
-/// Moves up by the step height, then horizontally, then down again; each motion ends at obstacles.
+/// Moves up by the step height, then horizontally, then down again. Vertical motions end at the
+/// first obstacle, the horizontal motion slides along obstacles.
 fn walk(
     mut characters: Query<(Entity, &Character, &Collider, &mut Transform)>,
     collisions: Res<Collisions>,

@@ -26,8 +26,8 @@ impl PairFilter for Teams<'_, '_> {
     }
 }
 
-/// Filters the pairs of players that changed their team again, because a filter is called only once
-/// per pair.
+/// Calls the filter again for the pairs of players that changed their team: a filter is called only
+/// once per pair.
 fn ask_again(changed: Query<Entity, Changed<Team>>, mut collisions: ResMut<Collisions>) {
     for entity in &changed {
         collisions.refilter(entity);

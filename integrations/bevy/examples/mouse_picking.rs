@@ -10,7 +10,8 @@ use bevy_transform::prelude::*;
 const COLUMNS: u16 = 60;
 const ROWS: u16 = 20;
 
-/// Returns the ray through a cursor, from 0 to 1 along both axes, as `Camera::viewport_to_world` does with a window.
+/// Returns the ray through a cursor position, with coordinates from 0 to 1, as
+/// `Camera::viewport_to_world` does with a window.
 fn through(cursor: Vec2) -> Ray3d {
     let eye = Vec3::new(0.0, 2.0, 10.0);
     let on_screen = Vec3::new(4.0 * (cursor.x - 0.5), 2.5 * (0.5 - cursor.y), -4.0);

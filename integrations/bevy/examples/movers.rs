@@ -1,5 +1,5 @@
-//! Ten thousand moving entities, half of them in a hierarchy. Checks that the pairs that started
-//! and have not ended are the touching pairs of the world.
+//! Ten thousand moving entities, half of them in a hierarchy. Checks that the number of pairs that
+//! started and have not ended is the number of touching pairs of the world.
 
 use std::collections::BTreeSet;
 

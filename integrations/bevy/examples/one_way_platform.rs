@@ -1,5 +1,5 @@
 //! A one-way platform: a jumping character passes it from below and lands on it. The character's
-//! filter excludes all platforms whose top is not below its feet.
+//! filter excludes all platforms whose top is not below the feet of the character.
 
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;

@@ -91,7 +91,7 @@ where
     }
 
     /// Updates the object from all components of an entity. On an error the object is unchanged, or
-    /// there is none.
+    /// there is still no object.
     pub(crate) fn refresh(
         &mut self,
         entity: &EverythingItem<'_, '_, D, W>,

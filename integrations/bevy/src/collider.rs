@@ -30,9 +30,9 @@ pub struct DefaultWorld;
 
 /// The shape of an entity, in the entity's local frame: makes it an object of a collision world.
 ///
-/// Cloning is cheap and shares the shape. The component may be replaced or assigned at any time. The entity follows its
-/// transform, parents included. A scale of the transform is applied if the library can represent the scaled shape
-/// exactly.
+/// Cloning is cheap and shares the shape. The component may be replaced or assigned at any time.
+/// The object follows the transform of the entity, parents included. A scale of the transform is
+/// applied if the library can represent the scaled shape exactly.
 ///
 /// Constructors take full lengths. A size that is negative or NaN makes a collider with an [error](Self::error), which
 /// the plugin reports on the entity; the constructor does not panic. Every solid of `bevy_math` that the library can
@@ -58,8 +58,8 @@ where
     world: PhantomData<W>,
 }
 
-/// Removes the object from the world with the component: queries no longer find it, its pairs end
-/// at the next step.
+/// When the component is removed, removes the object from the world: queries no longer find it, and
+/// its pairs end at the next step.
 fn forget<const D: usize, W: WorldKey>(mut world: DeferredWorld<'_>, context: HookContext)
 where
     f32: Glam<D>,

@@ -92,8 +92,8 @@ where
         self.world.is_empty()
     }
 
-    /// Whether an entity is in the world. It is added by the first step after its insertion, and
-    /// removed while disabled.
+    /// Whether an entity is in the world. An entity is added by the first step after the insertion
+    /// of its collider, and is not in the world while it is disabled.
     #[must_use]
     pub fn contains(&self, entity: Entity) -> bool {
         self.bodies.contains_key(&entity)

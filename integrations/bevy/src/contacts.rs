@@ -18,13 +18,13 @@ where
     pub point: Vec_<D>,
     /// The point on the surface of the other entity.
     pub other_point: Vec_<D>,
-    /// The penetration depth: zero if they touch, minus the distance if they are apart, which happens only within the
-    /// prediction.
+    /// The penetration depth: zero if the entities touch, minus the distance if they are apart,
+    /// which happens only with a prediction.
     pub depth: f32,
 }
 
 /// Two entities in contact along one normal. A pair with a composite shape, such as a mesh, may
-/// have several of these.
+/// have several such pairs, one for each normal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactPair<const D: usize>
 where

@@ -7,7 +7,8 @@ use bevy_ecs::prelude::{Component, Entity, EntityEvent, Message};
 
 use crate::{DefaultWorld, WorldKey};
 
-/// Two entities started touching: their distance became zero.
+/// Two entities started touching: their distance became zero, or with a
+/// [prediction](crate::ImpingePlugin::with_prediction) at most twice the prediction.
 ///
 /// As a message it is written once per pair. As an event it is triggered twice, each time with one
 /// of the two entities as target, so that observers of both get it. In a step, ended pairs come
@@ -26,8 +27,8 @@ pub struct CollisionStarted<const D: usize, W: WorldKey = DefaultWorld> {
 }
 
 /// Two entities stopped touching: they separated, or one of them was removed, disabled, or is no
-/// longer allowed to collide with the other. Each [`CollisionStarted`] is followed by exactly one.
-/// The entities may be despawned already.
+/// longer allowed to collide with the other. Each [`CollisionStarted`] is followed by exactly one
+/// [`CollisionEnded`]. The entities may be despawned already.
 ///
 /// Messages and events have the same order as those of [`CollisionStarted`].
 #[derive(Message, EntityEvent, Clone, Copy, Debug, PartialEq)]

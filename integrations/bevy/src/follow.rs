@@ -69,7 +69,7 @@ impl<const D: usize, W: WorldKey> Failures<'_, '_, D, W>
 where
     f32: Glam<D>,
 {
-    /// Reports a problem that begins or ends.
+    /// Reports a problem that begins, ends, or changes to another kind of error.
     fn note(
         &mut self,
         collisions: &mut Collisions<D, W>,

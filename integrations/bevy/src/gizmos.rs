@@ -51,7 +51,8 @@ where
         self.is_enabled = is_enabled;
     }
 
-    /// Draws a world into gizmos of a system or into a buffer of yours.
+    /// Draws a world into the gizmos of a system or into a buffer of yours. Does nothing while
+    /// drawing is disabled.
     pub fn draw<C: GizmoConfigGroup, E: Send + Sync + 'static>(
         &mut self,
         collisions: &Collisions<D, W>,

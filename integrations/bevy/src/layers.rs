@@ -31,7 +31,8 @@ impl CollisionLayers {
     /// Layers of a collider that is a member of no layer and interacts with no layer.
     pub const NONE: Self = Self { memberships: 0, filters: 0 };
 
-    /// Creates layers: a member of the first mask that interacts with members of the second.
+    /// Creates the layers of a collider that is a member of the layers in `memberships`, and
+    /// interacts with members of the layers in `filters`.
     ///
     /// # Panics
     /// If bit 30 or 31 of a mask is set; [`Self::try_new`] returns an error instead.
@@ -44,7 +45,8 @@ impl CollisionLayers {
         }
     }
 
-    /// Creates layers: a member of the first mask that interacts with members of the second.
+    /// Creates the layers of a collider that is a member of the layers in `memberships`, and
+    /// interacts with members of the layers in `filters`.
     ///
     /// # Errors
     /// If bit 30 or 31 of a mask is set.

@@ -33,7 +33,7 @@ pub struct SpatialFilter<'a> {
 }
 
 impl<'a> SpatialFilter<'a> {
-    /// Considers all entities.
+    /// Creates a filter that considers all entities.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
@@ -142,9 +142,9 @@ where
 {
     /// The entity.
     pub entity: Entity,
-    /// Its nearest point.
+    /// The point of the entity that is nearest to the query point.
     pub point: Vec_<D>,
-    /// The distance; zero inside.
+    /// The distance between the query point and `point`; zero if the query point is inside.
     pub distance: f32,
     /// `true` if the query point lies in the collider or on its surface.
     pub is_inside: bool,
@@ -158,9 +158,10 @@ where
 {
     /// The entity.
     pub entity: Entity,
-    /// The distance; zero if they touch or overlap.
+    /// The distance between the entity and the shape; zero if they touch or overlap.
     pub distance: f32,
-    /// The closest points, first on the query shape, then on the entity; `None` if they overlap.
+    /// The closest points, first on the query shape, then on the entity; `None` if the entity and
+    /// the shape overlap.
     pub points: Option<[Vec_<D>; 2]>,
 }
 
@@ -169,9 +170,9 @@ impl<const D: usize, W: WorldKey> Collisions<D, W>
 where
     f32: Glam<D>,
 {
-    /// Returns the first hit of a ray within `max_distance`; among hits at one distance that of the
-    /// entity added first. Colliders are solid: a ray that starts inside a collider hits it at
-    /// distance 0. Costs a search of a tree.
+    /// Returns the first hit of a ray within `max_distance`; among hits at the same distance that
+    /// of the entity added first. Colliders are solid: a ray that starts inside a collider hits it
+    /// at distance 0. Costs a search of a tree.
     #[must_use]
     pub fn cast_ray(
         &self,
@@ -198,8 +199,8 @@ where
         hits.into_iter().map(|(object, hit)| ray_hit(*object.data(), &ray, &hit)).collect()
     }
 
-    /// Returns the first hit of a shape that moves straight by `motion` without rotating. A contact at the start
-    /// counts only if the motion leads into it.
+    /// Returns the first hit of a shape that moves straight by `motion` without rotating. A contact
+    /// at the start counts only if the motion leads deeper into the entity.
     #[must_use]
     pub fn cast_shape<V: WorldKey>(
         &self,

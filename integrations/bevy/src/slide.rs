@@ -10,8 +10,8 @@ use crate::{Collider, Collisions, ShapeHit, SpatialFilter, WorldKey};
 pub struct SlideSettings {
     /// The distance kept from all obstacles: about a hundredth of the size of the character. 0.01 by default.
     pub skin: f32,
-    /// The largest number of obstacles that the motion may hit. With 1 it is straight and ends at
-    /// the first; 6 by default.
+    /// The largest number of obstacles that the motion may hit. With 1 the motion is straight and
+    /// ends at the first obstacle; 6 by default.
     pub max_hits: usize,
 }
 
@@ -47,12 +47,14 @@ where
 }
 
 /// A motion counts as along a wall if its component into the wall is at most this fraction of its
-/// length. That is the rounding error of a distance of the size of the skin.
+/// length. The normal of a wall at the distance of the skin has a rounding error of about this
+/// size.
 const GRAZE: f32 = 1e-3;
 /// A motion along a wall gets a component away from the wall of this fraction of its length.
 /// Otherwise rounding could lead it into the wall, and the next cast would end at its start.
 const LIFT: f32 = 1e-5;
-/// The largest number of hits at which the motion is almost along the wall.
+/// The number of casts in addition to `max_hits`: hits at which the motion is almost along the wall
+/// do not count as hits.
 const MAX_GRAZES: usize = 4;
 
 impl<const D: usize, W: WorldKey> Collisions<D, W>
@@ -136,15 +138,16 @@ where
     f32::pose_of(&isometry)
 }
 
-/// Adds to a motion along walls the component [`LIFT`] away from each of them.
+/// Adds to a motion along walls a component away from each wall, of [`LIFT`] times the length of
+/// the motion.
 fn off<const D: usize>(motion: Vector<f32, D>, walls: &[Vector<f32, D>]) -> Vector<f32, D> {
     let lift = LIFT * motion.norm();
     walls.iter().fold(motion, |motion, wall| motion + wall * lift)
 }
 
-/// Returns the largest part of a motion that leads into none of the walls, whose normals point at
-/// the character. It is the projection on the last wall, else on the edge between the last wall and
-/// another one, else zero.
+/// Returns the part of a motion that leads into none of the walls, whose normals point towards the
+/// character. It is the first of these that leads into no wall: the projection on the last wall,
+/// the projection on the edge between the last wall and an earlier one, zero.
 fn along<const D: usize>(motion: &Vector<f32, D>, walls: &[Vector<f32, D>]) -> Vector<f32, D> {
     let zero = Vector::zeros();
     let Some((last, others)) = walls.split_last() else { return *motion };
@@ -157,7 +160,7 @@ fn along<const D: usize>(motion: &Vector<f32, D>, walls: &[Vector<f32, D>]) -> V
         return flat;
     }
     let edge = |other: &Vector<f32, D>| {
-        // The direction of the other wall, projected on the last one.
+        // The normal of the other wall, projected on the last wall.
         let across = without(other, last).try_normalize(1e-6)?;
         Some(without(&flat, &across)).filter(is_free)
     };

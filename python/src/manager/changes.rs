@@ -2,7 +2,8 @@
 
 use std::collections::{BTreeSet, VecDeque};
 
-/// The largest number of stored changes: beyond that, recomputing everything is faster than change by change.
+/// The largest number of stored changes: beyond this number, recomputing everything is faster than
+/// change by change.
 const KEPT: usize = 256;
 
 /// The changes of a crowd, numbered from its beginning.
@@ -28,8 +29,8 @@ impl Changes {
         self.count
     }
 
-    /// Returns the objects that changed after the first `then` changes, each once; `None` if that is too long
-    /// ago.
+    /// Returns the objects that changed after the first `then` changes, each once; `None` if more
+    /// changes happened since than are stored.
     pub(super) fn since(&self, then: u64) -> Option<BTreeSet<u32>> {
         let count = usize::try_from(self.count - then).ok()?;
         let begin = self.recent.len().checked_sub(count)?;

@@ -211,7 +211,8 @@ impl Crowd {
         &self.touching
     }
 
-    /// Returns a touching pair, if there is one: the same pair as long as it touches.
+    /// Returns a touching pair; `None` if there is none. The first pair of the last update is
+    /// returned without another update if it still touches.
     pub(super) fn touching_pair(&mut self) -> Option<Pair> {
         self.asked = self.changes.now();
         let first = self.touching.first().copied();

@@ -48,7 +48,7 @@ impl Meeting {
         }
     }
 
-    /// Returns a cached touching pair that still touches.
+    /// Returns the first cached touching pair, if it still touches.
     pub(super) fn touching_pair(&self, Crowds(own, others): Crowds<'_>) -> Option<Pair> {
         let pair = *self.touching.first()?;
         let (one, other) = (own.get(pair.0)?, others.get(pair.1)?);
@@ -97,7 +97,8 @@ impl Crowds<'_> {
         Some([self.0.changes.since(then[0])?, self.1.changes.since(then[1])?])
     }
 
-    /// Searches the larger crowd for each object of the smaller crowd that is near the box around the larger crowd.
+    /// Returns all touching pairs. Searches the larger crowd for each object of the smaller crowd
+    /// that is near the box around the larger crowd.
     fn all_touching(self) -> BTreeSet<Pair> {
         let Crowds(own, others) = self;
         let is_smaller = own.len() <= others.len();
@@ -180,7 +181,8 @@ fn touching_of<'a>(
     met.into_iter().flatten().map(|other| (object.handle(), other.handle()))
 }
 
-/// Returns the object with the nearest of `others`, if their distance is smaller than that of `best`.
+/// Returns the pair of `object` and the nearest object of `others`, if its distance is smaller than
+/// that of `best`, or if `best` is `None`.
 fn nearer(object: &Object, others: &Crowd, best: Option<Nearest>) -> Option<Nearest> {
     let limit = best.map_or(f64::INFINITY, |best| best.distance);
     let (other, distance) = others.nearest_to(object.position(), &**object.shape(), limit)?;

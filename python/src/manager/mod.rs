@@ -68,7 +68,7 @@ impl Manager {
         into_array::<f64, 3>(py, objects.map(|object| <f64 as Space<3>>::pose(object.position())))
     }
 
-    /// Whether two objects touch.
+    /// Returns `true` if any two objects touch.
     fn is_touching(&mut self) -> PyResult<bool> {
         settle()?;
         Ok(self.crowd.touching_pair().is_some())
@@ -86,7 +86,8 @@ impl Manager {
         Ok(self.crowd.nearest_pair().map(found))
     }
 
-    /// Returns the object with this index, the object nearest to it, and their distance.
+    /// Returns the nearest pair that contains the object with this index, in the order of the
+    /// handles.
     fn nearest_beside(&mut self, index: u32) -> PyResult<Option<Found>> {
         settle()?;
         Ok(self.crowd.nearest_beside(index).map(found))
@@ -166,8 +167,8 @@ impl Manager {
         }
     }
 
-    /// Returns a touching pair of an object and an object of another manager: the same pair as long as it
-    /// touches. If there is none, the cached results are up to date.
+    /// Returns a touching pair of an object and an object of another manager: the first cached pair
+    /// if it still touches. If there is no touching pair, the cached results are up to date.
     fn touching_pair_with(&mut self, other: &Self) -> Option<Pair> {
         let crowds = Crowds(&self.crowd, &other.crowd);
         let known = self.meeting.as_ref().filter(|meeting| meeting.other == other.number);

@@ -20,8 +20,8 @@ pub(super) struct Reach {
     balls: Vec<Option<Ball>>,
     count: usize,
     around: Option<Aabb<f64, 3>>,
-    /// The number of times that the box was enlarged since it was computed. The box is recomputed when this
-    /// exceeds the number of objects.
+    /// The number of moves since the box was computed; each may have enlarged it. The box is
+    /// recomputed when this number exceeds the number of objects.
     grown: usize,
 }
 
@@ -58,7 +58,8 @@ impl Reach {
         }
     }
 
-    /// Returns a box around all objects; `None` if there is none.
+    /// Returns a box that contains all objects, not always the smallest one; `None` before the
+    /// first object.
     pub(super) const fn around(&self) -> Option<&Aabb<f64, 3>> {
         self.around.as_ref()
     }

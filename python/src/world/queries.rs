@@ -409,7 +409,7 @@ impl Asking {
     }
 }
 
-/// Returns the entry of an element; a list of one entry has the same for all elements.
+/// Returns the entry of an element. The only entry of a list of one belongs to all elements.
 fn entry<T: Copy>(list: &[T], element: usize) -> T {
     list[if list.len() == 1 { 0 } else { element }]
 }

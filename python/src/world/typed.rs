@@ -41,7 +41,7 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         Self { world, margin, slots: Vec::new(), surfaces: BTreeMap::new() }
     }
 
-    /// Converts handles to those of the library.
+    /// Converts handles of Python to handles of the library.
     pub(crate) fn fresh(
         &self,
         handles: &[u64],

@@ -123,8 +123,8 @@ pub(crate) struct RayArgs {
     pub(crate) format: Format,
 }
 
-/// The shape of an argument: `ball:0.5`, `box:1,2,3`, `capsule:1,0.5`, the name of a shape in the
-/// scene, or JSON.
+/// A shape given on the command line: `ball:0.5`, `box:1,2,3`, `capsule:1,0.5`, the name of a shape
+/// in the scene, or a shape in JSON.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ShapeSpec {
     /// A kind of shape with its sizes.
@@ -133,7 +133,7 @@ pub(crate) enum ShapeSpec {
     Scene(String),
 }
 
-/// A kind of shape with its sizes. The number of sizes is not checked yet.
+/// A kind of shape with its sizes. The number of sizes is checked when the shape is created.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ShortShape {
     /// The kind, which is named before the colon.

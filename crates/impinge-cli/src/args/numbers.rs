@@ -7,7 +7,8 @@ use crate::number::significant;
 
 /// Finite numbers separated by commas: a point, a vector or the sizes of a shape.
 ///
-/// How many numbers are needed is checked after the scene is read.
+/// How many numbers an argument needs may depend on the dimension of the scene. The count is
+/// checked after the scene is read.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Numbers(pub(crate) Vec<f64>);
 

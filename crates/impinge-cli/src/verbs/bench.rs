@@ -85,8 +85,8 @@ impl Task for TimeUpdates<'_> {
         let mut progress = Progress::new(args.runs as usize * steps as usize, "measuring");
         for _ in 0..args.runs {
             let mut world = builds.time(|| loaded.world::<N, D>())?;
-            // A second world computes the positions. Its own updates, which are recorded, are not
-            // timed.
+            // A second world computes the positions. The updates of this world, which are recorded,
+            // are not timed.
             let mut mover = loaded.moving::<N, D>(KeyFrames { every: None })?;
             loaded.step(&mut mover, 0.0)?;
             firsts.time(|| world.update());

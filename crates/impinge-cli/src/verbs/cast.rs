@@ -63,8 +63,9 @@ impl Task for CastShape<'_> {
 }
 
 impl CastShape<'_> {
-    /// Returns the path of the named object, which hits the objects with which its groups interact,
-    /// or of a shape, which hits every object.
+    /// Returns the sweep of the object that `--object` names, or of the shape of `--shape`. The
+    /// filter of an object accepts the objects with which its groups interact; the filter of a
+    /// shape accepts all objects.
     fn sweep<N: Stage<D>, const D: usize>(
         &self,
         world: &CollisionWorld<N, D, String>,
@@ -107,7 +108,8 @@ impl CastShape<'_> {
     }
 }
 
-/// Creates a shape from its short form; an error if the number or a value of the sizes is invalid.
+/// Creates a shape from its short form; an error if it has the wrong number of sizes or an invalid
+/// size.
 fn made<N: Stage<D>, const D: usize>(short: &ShortShape) -> Result<ShapeHandle<N, D>, CliError> {
     let refused = |reason: String| CliError::argument("--shape", short, reason);
     let sizes = short.sizes.0.iter().map(|size| scalar::<N>("--shape", *size));

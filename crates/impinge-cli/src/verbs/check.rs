@@ -39,8 +39,8 @@ struct CheckReport<'a, N: Stage<D>, const D: usize> {
     subject: Subject,
     clearance: Number,
     objects: usize,
-    /// The number of touching pairs, including the omitted ones. `near` counts the near pairs
-    /// likewise.
+    /// The number of touching pairs, including the omitted ones. The field `near` is the number of
+    /// near pairs, including the omitted ones.
     touching: usize,
     near: usize,
     /// The number of pairs that are not printed because of the limit.

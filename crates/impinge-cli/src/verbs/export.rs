@@ -28,7 +28,8 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Outcome, CliError> {
             (loaded.name(), bytes)
         }
     };
-    // `export` would also pack the recording, but the report needs the number of its packed bytes.
+    // `impinge_html::export` would also pack the recording, but the report needs the number of its
+    // packed bytes.
     let packed = impinge_record::pack(&bytes).map_err(in_file(&args.scene.scene))?;
     let page = impinge_html::export(&assets, &packed, args.title.as_ref().unwrap_or(&file))?;
     output::write(&args.output.path, page.as_bytes())?;

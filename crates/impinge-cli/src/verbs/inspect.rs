@@ -62,7 +62,7 @@ struct MeshFields {
     closed: bool,
     /// `true` if each edge has two triangles, whose fronts are on the same side.
     solid: bool,
-    /// The volume of a solid, negative if its triangles point inwards; null for an open surface.
+    /// The volume of a solid, negative if its triangles point inwards; null if `solid` is `false`.
     volume: Option<f64>,
     /// The number of edges with one triangle.
     boundary_edges: usize,

@@ -1,4 +1,5 @@
-//! The verbs of the command. Each has a file with its function `run` and its report.
+//! The verbs of the command. Each verb except `schema` and `completions` has a file with its
+//! function `run` and, if it prints one, its report.
 
 mod bench;
 mod cast;

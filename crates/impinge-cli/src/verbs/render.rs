@@ -98,7 +98,7 @@ impl Task for DrawStep<'_> {
 struct PictureStyle<'a> {
     args: &'a RenderArgs,
     format: PictureFormat,
-    /// The upward direction of the picture, unless the arguments contain another.
+    /// The upward direction of the picture, unless `--up` is given.
     up: Vector<f64>,
     title: String,
 }

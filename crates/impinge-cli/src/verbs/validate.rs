@@ -103,7 +103,7 @@ fn described<N: Stage<D>, const D: usize>(
     FirstDifference { step: found.step, byte: found.offset, object, field }
 }
 
-/// Returns the name of the fields of an object that a hash covers.
+/// Returns the names of the fields of an object that a hash covers, as a text for the report.
 const fn field_name(field: ObjectField) -> &'static str {
     match field {
         ObjectField::Description => "position, groups or query type",

@@ -1,5 +1,5 @@
-//! Tests invalid input of each kind: the exit code is 2, standard output is empty, and the error
-//! names the file and the value.
+//! Tests invalid input: the exit code is 2, standard output is empty, and the error contains the
+//! expected words, such as the file or the value.
 
 use crate::support::Desk;
 

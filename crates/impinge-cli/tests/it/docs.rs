@@ -1,4 +1,5 @@
-//! Runs the examples of the help texts and of `README.md`.
+//! Runs the examples of the help texts and of `README.md`, and tests that the help texts document
+//! all fields of `--json`.
 
 use std::fs;
 

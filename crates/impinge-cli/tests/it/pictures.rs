@@ -36,8 +36,8 @@ fn the_direction_of_view_counts() {
         let background = image.pixel(0, 0);
         (0..90).filter(|x| (0..90).any(|y| image.pixel(*x, y) != background)).count()
     };
-    // The balls are side by side along x. They are 4.5 wide and 2 high from the front, 2 by 2 from
-    // the side.
+    // The balls are side by side along x. Together they are 4.5 wide and 2 high from the front, 2
+    // by 2 from the side.
     let (front, side) = (seen("0,0,-1"), seen("-1,0,0"));
     let rows = (0..90).filter(|y| (0..90).any(|x| front.pixel(x, *y) != front.pixel(0, 0))).count();
     assert!(columns(&front) > 2 * rows, "{} by {rows}", columns(&front));

@@ -196,7 +196,7 @@ fn key_frames_are_written_every_so_many_updates() {
     assert_eq!(size("--key-frames 30"), plain, "the first one comes after 30 updates");
     let (one, two) = (size("--key-frames 15"), size("--key-frames 10"));
     assert!(plain < one && one < two, "{plain}, {one}, {two}");
-    // The object and each key frame contain the name of the left ball once.
+    // The record that adds the left ball and each key frame contain its name once.
     let bytes = fs::read(desk.path("frames.implog")).expect("a recording");
     let names = bytes.windows(4).filter(|window| window == b"left").count();
     assert_eq!(names, 3, "added once, and in key frames after 10 and 20 updates");

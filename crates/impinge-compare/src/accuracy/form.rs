@@ -21,7 +21,7 @@ impl Scalar {
         }
     }
 
-    /// Rounds to the nearest number of the scalar.
+    /// Rounds `x` to the nearest number that the scalar can represent.
     pub fn rounded(self, x: f64) -> f64 {
         match self {
             Self::F32 => f64::from(x as f32),

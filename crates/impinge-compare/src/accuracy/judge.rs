@@ -17,7 +17,7 @@ use super::sample::Known;
 const AS_GOOD: f64 = 16.0;
 /// The angle to the best normal, in radians, above which a normal counts as another direction.
 const ELSEWHERE: f64 = 0.05;
-/// A result whose sign is wrong by more than this many units of rounding is counted.
+/// The exact distance or depth, in units of rounding, above which a wrong sign is counted.
 const WRONG_SIDE: f64 = 64.0;
 
 /// The errors of one contender in the samples of one row.
@@ -27,11 +27,12 @@ pub struct Errors {
     pub asked: usize,
     /// The number of samples for which the contender has no algorithm.
     pub unsupported: usize,
-    /// The number of samples without a contact within the prediction, and of those in which the
-    /// contender panicked.
+    /// The number of samples in which the contender found no contact within the prediction, or
+    /// panicked.
     pub missing: usize,
-    /// The number of results with the wrong sign: overlapping solids reported as separated, or the
-    /// reverse, by more than `WRONG_SIDE` units of rounding.
+    /// The number of results with the wrong sign: solids that overlap by more than `WRONG_SIDE`
+    /// units of rounding reported as separated, or solids that are apart by more than this reported
+    /// as overlapping.
     pub wrong_sign: usize,
     /// The number of ties: normals that differ from the best one but separate equally well.
     pub ties: usize,

@@ -5,9 +5,9 @@
 //! `impinge_reference::precise`, which has about 25 digits.
 //!
 //! All numbers of a sample are representable in the scalar, and its rotations have unit length to
-//! within a hundredth of the rounding error. So the errors are those of the contenders alone,
-//! including the conversion of rotations to matrices; the input has none. Samples for which the
-//! reference cannot prove its result accurately enough are counted and omitted.
+//! within a hundredth of the rounding error. So the input has no errors of its own: all errors are
+//! those of the contenders, including their conversion of rotations to matrices. Samples for which
+//! the reference cannot prove its result accurately enough are counted and omitted.
 
 mod form;
 mod judge;

@@ -71,7 +71,8 @@ fn hull<N: Space<D>, const D: usize>(points: &[[f64; D]]) -> Vec<Point<N, D>> {
     points.iter().map(point).collect()
 }
 
-/// Converts the shapes that exist in both dimensions; returns `None` for the others.
+/// Converts the solids whose type in impinge is the same in 2D and 3D; returns `None` for all other
+/// solids.
 fn common<N: Space<D>, const D: usize>(form: &Form<D>) -> Option<ShapeHandle<N, D>> {
     let vector = |v: &[f64; D]| Vector::<N, D>::from(v.map(N::lit));
     Some(match form {

@@ -100,7 +100,7 @@ pub struct Known<const D: usize> {
 const TRIES: usize = 12;
 
 /// Draws a pair of these kinds in a regime. `None` if no draw is in the regime: for instance, two
-/// segments in 3D have no depth.
+/// segments in 3D never overlap by more than rounding.
 pub fn draw<const D: usize>(
     dimension: Dimension<D>,
     kinds: [Kind; 2],
@@ -155,8 +155,8 @@ fn attempt<const D: usize>(
     regime.holds(truth, known.truth.size, reach, scalar.epsilon()).then_some(known)
 }
 
-/// Returns the kinds of the two rotations: mostly free ones, for some pairs parallel axes, exactly
-/// or nearly.
+/// Returns the kinds of the two rotations. For two of ten pairs the axes of both solids are
+/// parallel, exactly or nearly.
 fn turns(random: &mut Random) -> [Turn; 2] {
     match random.below(10) {
         0 => [Turn::Aligned, Turn::Aligned],
@@ -165,7 +165,7 @@ fn turns(random: &mut Random) -> [Turn; 2] {
     }
 }
 
-/// 2D.
+/// The functions for 2D.
 pub const PLANE: Dimension<2> = Dimension {
     particular: |form| unreachable!("{form:?} is of space"),
     pose: |placement| {
@@ -185,7 +185,7 @@ pub const PLANE: Dimension<2> = Dimension {
     },
 };
 
-/// 3D.
+/// The functions for 3D.
 pub const SPACE: Dimension<3> = Dimension {
     particular: |form| match form {
         Form::Cylinder { half_height, radius } => Solid::cylinder(*half_height, *radius),

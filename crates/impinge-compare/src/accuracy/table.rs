@@ -1,5 +1,5 @@
-//! Writes the tables: a line of a CSV file for every row, and a line of `accuracy.md` for every
-//! pair.
+//! Writes the tables: a line of a CSV file for every row and contender, and a line of `accuracy.md`
+//! for every pair of kinds.
 
 use std::fmt::Write;
 use std::fs;

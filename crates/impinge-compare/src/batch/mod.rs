@@ -1,8 +1,8 @@
-//! The suite of batches: one query about many placed pairs, in one call and in one call for each
-//! pair. Both contenders are impinge, in `f64` and 3D, on one thread. Times are nanoseconds for
-//! each pair.
+//! The suite of batches: one query about many placed pairs, run as one call for all pairs and as
+//! one call for each pair. Both contenders are impinge, in `f64` and 3D, on one thread. Times are
+//! nanoseconds for each pair.
 //!
-//! The results must have the same bits. One shape is at the origin, the second one at many
+//! The table counts results whose bits differ. One shape is at the origin, the second shape at many
 //! positions around it: about equally many pairs overlap, are near and are far.
 
 mod question;

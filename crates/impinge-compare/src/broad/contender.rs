@@ -80,9 +80,9 @@ struct Lane {
 /// Steps the contenders alternately, in a rotating order.
 ///
 /// The first step, in which everything is new, is not timed. Neither are the warm-up steps after
-/// it, half as many as the timed ones: at first all boxes are in the middle of their fat AABBs, and
-/// later they leave them at different times. The pairs are compared after the warm-up, after every
-/// tenth step and after the last.
+/// it, half as many as the timed ones: at first all boxes are in the middle of their fat AABBs, so
+/// that many would leave them in the same step. The pairs are compared after the warm-up, after
+/// every tenth step and after the last.
 pub fn race<const D: usize>(
     case: &str,
     swarm: &mut Swarm<D>,

@@ -2,10 +2,9 @@
 //! lists the changes; this is timed, in milliseconds per step. All contenders with fat AABBs use a
 //! margin of 0.05.
 //!
-//! Results are pairs, most of which are near rather than overlapping: their number depends on the
-//! rules by which boxes are enlarged. `compare` defines which results count as different.
-//! Contenders without events do less work than the others, since they do not report which pairs
-//! started and stopped.
+//! Results are pairs of overlapping fat AABBs. Their number depends on the rules by which a
+//! contender enlarges boxes. `compare` defines which results count as different. Contenders without
+//! events do less work than the others, since they do not report which pairs started and stopped.
 
 mod contender;
 mod obvhs_tree;
@@ -100,7 +99,8 @@ fn run_case<const D: usize>(
     table.add(race(case, &mut swarm, &mut contenders, steps));
 }
 
-/// Large cases run few steps, unless there is only one contender.
+/// Returns the largest number of timed steps of a case. Large cases run few steps, unless impinge
+/// runs alone.
 fn steps(count: usize, is_alone: bool) -> u32 {
     match count {
         _ if is_alone => u32::MAX,

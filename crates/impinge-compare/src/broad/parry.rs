@@ -1,6 +1,6 @@
 //! The tree of parry alone, used as in rapier. Leaves are enlarged, the tree is optimized
 //! incrementally at each step and refitted, and pairs are listed if one of their boxes left its fat
-//! AABB. It does not derive which pairs started and stopped.
+//! AABB. This contender does not derive which pairs started and stopped.
 
 use super::parry::bounding_volume::Aabb;
 use super::parry::math::Vector;

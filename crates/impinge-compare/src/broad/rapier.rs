@@ -72,7 +72,8 @@ impl Rapier {
         self.colliders[handle] = collider;
         self.colliders.take_modified();
         // A new collider is always reported as modified. If its box were passed directly, the
-        // update would assign it to the removed collider whose index it reuses, and remove it.
+        // update would attribute the box to the removed collider whose index is reused, and remove
+        // the box.
         self.modified.push(handle);
         handle
     }

@@ -30,9 +30,9 @@ impl<const D: usize> Cell<D> {
     }
 }
 
-/// Returns `true` if two boxes are so near the given distance that rounding decides on which side
-/// they are. Contenders compute in `f32`, each in its own order. So their results may differ for
-/// such boxes.
+/// Returns `true` if the distance between two boxes is so close to `distance` that rounding decides
+/// which of the two is larger. Contenders compute in `f32`, each in its own order. So their results
+/// may differ for such boxes.
 pub fn is_borderline<const D: usize>(a: &Cell<D>, b: &Cell<D>, distance: f64) -> bool {
     let apart = (0..D).map(|axis| {
         let between = f64::from(a.center[axis]) - f64::from(b.center[axis]);
@@ -77,7 +77,7 @@ pub struct Plan {
 pub struct Change<const D: usize> {
     /// The boxes that moved, with their indices.
     pub moved: Vec<(u32, Cell<D>)>,
-    /// The new boxes that replace removed ones, with the indices of both.
+    /// The new boxes, each with the index of the removed box that it replaces.
     pub replaced: Vec<(u32, Cell<D>)>,
 }
 

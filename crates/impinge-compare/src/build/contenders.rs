@@ -25,8 +25,8 @@ pub fn questions(cells: &[Cell<3>]) -> Vec<Cell<3>> {
     any.map(|cell| Cell { half: cell.half.map(|x| x * 1.5), ..cell }).collect()
 }
 
-/// Runs all box queries with the candidates of `propose`. Trees may return candidates that do not
-/// overlap; those are removed before the comparison.
+/// Returns a function that runs all box queries with the candidates of `propose`. Trees may return
+/// candidates that do not overlap the query box; the function removes them.
 pub fn ask<'a>(
     cells: &'a [Cell<3>],
     mut propose: impl FnMut(&Cell<3>, &mut Vec<u32>) + 'a,
@@ -48,8 +48,8 @@ pub fn parry_aabb(cell: &Cell<3>) -> parry3d::bounding_volume::Aabb {
     parry3d::bounding_volume::Aabb::new(cell.mins().into(), cell.maxs().into())
 }
 
-/// Returns the contenders that build trees of boxes, some with a fast and with a good build. With
-/// more than 200,000 boxes `bvh` and `rstar` are omitted.
+/// Returns the contenders that build trees of boxes, some of them in several variants, from the
+/// fastest to the best build. With more than 200,000 boxes `bvh` and `rstar` are omitted.
 pub fn boxes(cells: &[Cell<3>]) -> Vec<Maker<'_>> {
     let mut makers = vec![
         Maker::new("impinge BoxTree", || ours(cells)),

@@ -3,8 +3,8 @@
 //! milliseconds. Then all run the same queries, and the results are compared.
 //!
 //! With the feature `bytes` the suite counts memory instead: the bytes that stay allocated after
-//! construction, per object. They include the events of the first step, which a caller that wants
-//! pairs keeps: 12 to 24 bytes per pair. Memory that a contender borrows is not counted.
+//! construction, per object. These bytes include the events of the first step, which a caller that
+//! wants pairs keeps: 12 to 24 bytes per pair. Memory that a contender borrows is not counted.
 
 mod contenders;
 mod hulls;

@@ -20,7 +20,7 @@ pub trait World: Send {
     /// Moves some boxes and updates.
     fn step(&mut self, moved: &[(u32, Cell<3>)]);
 
-    /// Reads every contact point. Returns their number and the sum of their depths.
+    /// Reads every contact point. Returns the number of points and the sum of their depths.
     fn read(&self) -> (usize, f32);
 
     /// Returns the pairs with contact points, as [`key`]s.

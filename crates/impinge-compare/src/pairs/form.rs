@@ -222,7 +222,7 @@ fn normal_of<const D: usize>(a: &[f64; D], b: &[f64; D], c: &[f64; D]) -> [f64; 
     scale(&normal, 1.0 / norm(&normal))
 }
 
-/// Returns `normal`, its opposite, or nothing: the directions in which no point lies beyond `on`.
+/// Returns those of the directions `normal` and `-normal` in which no point lies beyond `on`.
 fn outward<const D: usize>(points: &[[f64; D]], on: &[f64; D], normal: &[f64; D]) -> Vec<[f64; D]> {
     let is_behind = |side: &[f64; D]| points.iter().all(|p| dot(&sub(p, on), side) < 1e-9);
     [*normal, scale(normal, -1.0)].into_iter().filter(is_behind).collect()

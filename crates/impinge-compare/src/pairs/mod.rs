@@ -33,7 +33,7 @@
 //!   builds all data of a contact in the world frame, is not timed.
 //! - "impinge world" is a world that contains all 256 pairs, far from each other. It gets the
 //!   placements of the second solids and is updated; the time is that of the update divided by 256.
-//!   It includes the broad phase, whose boxes are so large that all pairs stay pairs in all
+//!   This time includes the broad phase, whose boxes are so large that all pairs stay pairs in all
 //!   regimes. It does not include reading the manifolds.
 //! - "impinge narrow phase" is the share of the narrow phase in these updates.
 //! - "impinge reusing" is a world in which a pair keeps its contacts until it has moved by a

@@ -1,6 +1,6 @@
 //! The contender ncollide. Its crates for 2D and 3D differ only in their names, so both modules
-//! include the same source. It has no intersection test; its proximity query with a margin of zero
-//! is used instead.
+//! include the same source. ncollide has no intersection test; its proximity query with a margin of
+//! zero is used instead.
 
 /// ncollide in 2D.
 pub mod plane {

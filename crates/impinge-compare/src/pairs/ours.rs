@@ -320,8 +320,9 @@ where
     }
 }
 
-/// Creates a world with all objects of the first set. By their groups, first solids collide with
-/// second solids only. Returns the world and the handles of the second solids.
+/// Creates a world with the first solids, and with the second solids at the first set of their
+/// placements. By their groups, first solids collide with second solids only. Returns the world and
+/// the handles of the second solids.
 fn filled<R: Dimension<D>, const D: usize>(
     data: &Data<R, D>,
     clock: &Clock,

@@ -20,7 +20,7 @@ const MOVE: f64 = 1e-3;
 /// overlap of two segments.
 const DRAWS: usize = 20;
 
-/// The distance of the two solids of a pair.
+/// A class of placements of two solids, by their distance (see [`Regime::distance`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Regime {
     Far,
@@ -189,7 +189,7 @@ impl<const D: usize> Search<'_, D> {
     }
 
     /// Returns a random placement of the second solid in the regime, and the direction in which it
-    /// was moved.
+    /// was moved; `None` after [`DRAWS`] failures.
     fn second(&mut self, first: &Placement<D>) -> Option<(Placement<D>, [f64; D])> {
         (0..DRAWS).find_map(|_| self.draw(first))
     }

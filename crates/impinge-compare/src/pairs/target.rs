@@ -14,7 +14,7 @@ const PARRY_THERE: f64 = 41.0;
 /// The name of the row for the narrow phase of a world of impinge; the rivals have no such part.
 pub const PART: &str = "impinge narrow phase";
 
-/// The name of the same row for a world in which pairs keep their contacts.
+/// The name of the row for the narrow phase of a world in which pairs keep their contacts.
 pub const REUSING_PART: &str = "impinge reusing narrow phase";
 
 /// The name of the contender with single calls.
@@ -43,8 +43,9 @@ const TARGETS: &[(&str, Question, f64)] = &[
 /// The comparison with the rivals over all cases of the suite.
 #[derive(Debug, Default)]
 pub struct Verdicts {
-    /// For each query, and for variants of impinge by the name of query and variant: the time of
-    /// the best rival divided by that of impinge, for each case.
+    /// The speeds of impinge relative to its rivals: the time of the best rival divided by that of
+    /// impinge, for each case. The key is the name of the query, for a variant of impinge with the
+    /// name of the variant.
     speeds: BTreeMap<String, Vec<f64>>,
     /// The cases in which impinge took more than half of the time of its best rival: the ratio,
     /// both times, and the row of the rival.

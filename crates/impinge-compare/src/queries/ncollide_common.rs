@@ -14,8 +14,8 @@ pub struct Ncollide {
 }
 
 impl Ncollide {
-    /// Builds the tree over the boxes of a scene. It has no bulk build; the boxes are inserted one
-    /// by one.
+    /// Builds the tree over the boxes of a scene. The tree of ncollide has no bulk build, so that
+    /// the boxes are inserted one by one.
     pub fn new(scene: &Scene<DIM>) -> Self {
         let mut tree = DBVT::new();
         for (n, corners) in (0..).zip(&scene.boxes) {
@@ -29,7 +29,8 @@ fn aabb((low, high): &Corners<DIM>) -> AABB<f32> {
     AABB::new(Point::from(*low), Point::from(*high))
 }
 
-/// A best-first visitor that orders boxes by a time or a distance. `None` excludes a box.
+/// A best-first visitor that orders boxes by the time or distance that the function returns. A box
+/// for which it returns `None` is excluded.
 struct Cheapest<F>(F);
 
 impl<F: Fn(&AABB<f32>) -> Option<f32>> BestFirstVisitor<f32, u32, AABB<f32>> for Cheapest<F> {

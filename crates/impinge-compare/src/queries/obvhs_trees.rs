@@ -46,7 +46,7 @@ fn aabb((low, high): &Corners<3>) -> Aabb {
     Aabb::new(Vec3A::from(*low), Vec3A::from(*high))
 }
 
-/// Converts a ray of length `reach` to that of `obvhs`.
+/// Converts a ray to a ray of `obvhs` with the length `reach`.
 pub fn ray((from, to): &([f32; 3], [f32; 3]), reach: f32) -> Ray {
     Ray::new(Vec3A::from(*from), Vec3A::from(*to), 0.0, reach)
 }

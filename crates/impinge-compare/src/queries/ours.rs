@@ -60,8 +60,8 @@ impl<const D: usize> Impinge<D>
 where
     f32: Space<D>,
 {
-    /// Creates the contender. The objects interact with none, so that the world has queries but no
-    /// pairs. The first `moved` objects were half a unit away at the last update.
+    /// Creates the contender. No object interacts with another, so that the world has queries but
+    /// no pairs. The first `moved` objects were half a unit away at the last update.
     fn new(name: &'static str, scene: &Scene<D>, moved: usize, isometry: Turn<D>) -> Self {
         let mut world = CollisionWorld::new(0.02);
         let mut nobody = CollisionGroups::new();
@@ -103,7 +103,7 @@ fn aabb<const D: usize>((low, high): &Corners<D>) -> Aabb<f32, D> {
     Aabb::new(Point::from(*low), Point::from(*high))
 }
 
-/// Converts a ray to that of impinge.
+/// Converts a ray to a ray of impinge.
 pub fn ray<const D: usize>((from, to): &super::scene::Ray<D>) -> Ray<f32, D> {
     Ray::new(Point::from(*from), Vector::<f32, D>::from(*to))
 }

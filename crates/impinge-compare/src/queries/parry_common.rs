@@ -75,7 +75,7 @@ fn vector(v: &[f32; DIM]) -> Vector {
     Vector::from(*v)
 }
 
-/// Converts a ray to that of parry.
+/// Converts a ray to a ray of parry.
 pub fn ray((from, to): &crate::queries::scene::Ray<DIM>) -> Ray {
     Ray::new(vector(from), vector(to))
 }
@@ -99,7 +99,8 @@ impl Library<DIM> for Rapier {
             Questions::Rays(rays, reach) => {
                 let (rays, reach) = (rays.iter().map(ray).collect(), *reach);
                 Contender::best(name, rays, move |ray| {
-                    // The variant with a normal is called, since the others compute the normal too.
+                    // The variant with a normal is called, since the other contenders compute the
+                    // normal too.
                     let (handle, hit) = pipeline.cast_ray_and_get_normal(ray, reach, true)?;
                     Some((self.index(handle), hit.time_of_impact))
                 })

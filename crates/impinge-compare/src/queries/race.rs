@@ -75,16 +75,17 @@ impl<'a> Contender<'a> {
 /// The rule for comparing results of one case.
 #[derive(Clone, Copy, Debug)]
 pub enum Rule {
-    /// At most one result per query. The keys must agree within this tolerance, relative to the key
-    /// of the first contender but at least absolute. Another object with an equal key is accepted.
+    /// At most one result per query. The keys must agree within this tolerance times the key of the
+    /// first contender, or times 1 if that key is less. Another object with an equal key is
+    /// accepted.
     Best(f32),
     /// Sets of objects, which must be equal. The results of a query are in ascending order of
     /// objects.
     All,
 }
 
-/// Runs each contender once and compares its results with those of the first one, then times them
-/// in turn. Times are in nanoseconds per query.
+/// Runs each contender once and compares its results with those of the first contender. Then times
+/// all contenders in turn, in nanoseconds per query.
 pub fn race(
     case: &str,
     rule: Rule,

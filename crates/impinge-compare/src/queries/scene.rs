@@ -64,8 +64,8 @@ pub trait Library<const D: usize> {
 }
 
 impl<const D: usize> Scene<D> {
-    /// Creates a scene of `objects` objects. The cube is so large that `share` is about the
-    /// fraction of it that they fill.
+    /// Creates a scene of `objects` objects. The cube is so large that they fill about the fraction
+    /// `share` of it.
     pub fn new(name: &'static str, objects: usize, share: f64, reach: f32) -> Self {
         let mut random = Random(0x5eed + D as u64);
         let edge = (objects as f64 / share).powf(1.0 / D as f64) * 2.0 * HALF;
@@ -168,8 +168,8 @@ impl Random {
         std::iter::repeat_with(|| draw(self)).filter(is_wanted).take(count).collect()
     }
 
-    /// Returns a ball or a rotated box at a random position in the cube. Its half extents are 0.3
-    /// to 0.7 times `scale`.
+    /// Returns a ball or a rotated box at a random position in the cube. Its radius or half extents
+    /// are 0.3 to 0.7 times `scale`.
     fn solid<const D: usize>(&mut self, edge: f64, scale: f64) -> Solid<D> {
         let mut half = || scale * self.between(0.6 * HALF, 1.4 * HALF);
         let (radius, half_extents) = (half(), std::array::from_fn(|_| half()));

@@ -102,7 +102,7 @@ impl<const D: usize> Library<D> for BvhTree<D> {
     }
 }
 
-/// The tree of `rstar`. It has no ray queries.
+/// The tree of `rstar`, a crate without ray queries.
 pub struct RstarTree<const D: usize> {
     tree: RTree<GeomWithData<Rectangle<[f32; D]>, u32>>,
 }

@@ -52,8 +52,8 @@ fn growth(subject: &str, boxes: usize, row: &Row) -> Measured {
     Measured { subject, contender, boxes, median, minimum }
 }
 
-/// Returns the number of steps: the fewer the more boxes there are, at least six unless fewer are
-/// requested.
+/// Returns the number of steps: a million divided by the number of boxes, at least 6, but at most
+/// the requested number.
 fn steps(count: usize, arguments: &Arguments) -> u32 {
     let most = u32::try_from(1_000_000 / count).expect("it is less than a million");
     arguments.steps.min(most.max(6))
@@ -121,7 +121,7 @@ impl Lane {
     }
 }
 
-/// Steps worlds alternately, as [`race`] does for broad phases.
+/// Steps worlds alternately, as [`race`] does for broad phases, but without warm-up steps.
 fn race_worlds(case: &str, count: usize, mut lanes: Vec<Lane>, steps: u32) -> Vec<Row> {
     let mut swarm = Swarm::<3>::new(Plan { count, ..FAST });
     for lane in &mut lanes {

@@ -9,8 +9,8 @@
 //! # Scenes
 //! The scenes in 2D and in 3D, with sizes that follow `--objects`:
 //!
-//! - a pile in which all boxes overlap their neighbours and move; boxes drifting apart, ten times
-//!   as many; boxes of which one in a hundred moves; all kinds of shapes above a half-space;
+//! - a pile in which all boxes overlap their neighbours and move; boxes that drift freely, ten
+//!   times as many; boxes of which one in a hundred moves; all kinds of shapes above a half-space;
 //! - solids on a terrain, with 100 triangles (in 2D 10 segments) for each solid, as a mesh and as a
 //!   height field; the pile and the mesh also with all motions slowed down to a hundredth
 //!   ("trembling");
@@ -29,8 +29,9 @@
 //! `--angular` adds an angular prediction to all contacts. The rivals have none and compute their
 //! usual results.
 //!
-//! "impinge" recomputes everything. In "impinge reusing" each pair keeps its contacts until it has
-//! moved by half of the prediction.
+//! "impinge" recomputes everything. "impinge stream" does, too, but its contacts are read through a
+//! `ContactStream`. In "impinge reusing" each pair keeps its contacts until it has moved by half of
+//! the prediction.
 //!
 //! # Rivals
 //! rapier's `CollisionPipeline`, which has the same purpose as the world of impinge, runs in all

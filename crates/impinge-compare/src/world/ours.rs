@@ -1,7 +1,7 @@
 //! The contender impinge, in 2D and 3D.
 //!
 //! The library is imported as `super::impinge`, so that another package can compile this file once
-//! for each of two versions of it.
+//! for each of two versions of the library.
 
 use std::hint::black_box;
 
@@ -95,7 +95,8 @@ impl<const D: usize> Impinge<D>
 where
     f32: Space<D>,
 {
-    /// Creates a world. `particular` converts the shapes that exist in one dimension only.
+    /// Creates a world. `particular` converts the shapes whose type in impinge differs between 2D
+    /// and 3D, or exists in one dimension only.
     fn new(
         scene: &Scene<D>,
         particular: fn(&SceneShape<D>) -> ShapeHandle<f32, D>,
@@ -162,7 +163,8 @@ fn points_of<const D: usize>(points: &[[f64; D]]) -> Vec<Point<f32, D>> {
     points.iter().map(point).collect()
 }
 
-/// Converts the shapes that exist in both dimensions; returns `None` for the others.
+/// Converts the shapes whose type in impinge is the same in 2D and 3D; returns `None` for all other
+/// shapes.
 fn common<const D: usize>(shape: &SceneShape<D>) -> Option<ShapeHandle<f32, D>> {
     Some(match shape {
         SceneShape::Ball { radius } => ShapeHandle::new(Ball::new(*radius as f32)),

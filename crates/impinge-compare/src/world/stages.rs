@@ -65,8 +65,8 @@ impl<const D: usize> Stage<D> {
     }
 }
 
-/// Returns the scenes that exist in both dimensions. All have the same prediction, since rapier has
-/// one for all objects.
+/// Returns the scenes that exist in both dimensions. All scenes have the same prediction, since
+/// rapier has a single prediction for all objects.
 pub fn stages<const D: usize>() -> Vec<Stage<D>> {
     let mut stages = vec![
         Stage::new("pile", pile),

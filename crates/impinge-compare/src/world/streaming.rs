@@ -6,7 +6,8 @@ use impinge::narrow_phase::ContactStream;
 use super::contender::{Change, Contender, Reading};
 use super::ours::Impinge;
 
-/// A world of impinge whose contacts are read through a stream, with their former indices.
+/// A world of impinge whose contacts are read through a [`ContactStream`], which also contains the
+/// index of each contact at the previous reading.
 pub struct Streaming<const D: usize>
 where
     f32: Space<D>,

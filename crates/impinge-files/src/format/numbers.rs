@@ -4,7 +4,7 @@ use core::fmt;
 
 use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
 
-/// A number, or a list of three. It is deserialized by hand, since an untagged enum loses the
+/// A number, or a list of three numbers. Deserialized by hand, since an untagged enum loses the
 /// position of an error.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum OneOrThree {

@@ -64,7 +64,8 @@ pub struct MeshesFile {
 }
 
 impl MeshesFile {
-    /// Returns the parts of a file unchanged: at the origin, at rest, and in all groups.
+    /// Creates the entry for all parts of the file at `path`: unscaled, at the origin, at rest, and
+    /// in all groups.
     #[must_use]
     pub fn new(path: &Path) -> Self {
         Self {

@@ -1,7 +1,7 @@
 //! Checks accessors of glTF files: their types, and that their data lie within the buffers.
 //!
 //! The crate `gltf` checks neither the types, nor the ranges, nor the indices of sparse accessors.
-//! It reads only accessors that were checked here.
+//! This module checks each accessor before the crate reads it.
 
 use gltf::accessor::sparse::Sparse;
 use gltf::accessor::{DataType, Dimensions};
@@ -9,7 +9,8 @@ use gltf::{Accessor, buffer};
 
 use super::raw::FormatError;
 
-/// The type and component type that an accessor must have.
+/// The required form of an accessor: the component types that it may have, and its dimensions
+/// (scalar or vector).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Layout<'a> {
     pub(super) types: &'a [DataType],
@@ -47,8 +48,8 @@ fn check_numbers(
         return Err("numbers of another type are needed");
     }
     let (count, size) = (accessor.count(), accessor.size());
-    // Without a view all elements are 0 except the sparse ones. The caller limits the number of
-    // elements.
+    // Without a view, all elements are 0 except the sparse elements. The caller limits the number
+    // of elements.
     if let Some(view) = accessor.view() {
         Block { view, offset: accessor.offset(), count, size }.bytes(buffers)?;
     }
@@ -85,8 +86,8 @@ impl Block<'_> {
         self.view.stride().unwrap_or(self.size)
     }
 
-    /// Returns the bytes from the first element to the end of the last; an error if the view or its buffer is
-    /// shorter.
+    /// Returns the bytes from the first element to the end of the last. An error if there are no
+    /// elements, if they overlap, or if the view or its buffer is too short.
     fn bytes<'b>(&self, buffers: &[&'b [u8]]) -> Result<&'b [u8], &'static str> {
         let steps = self.count.checked_sub(1).ok_or("it is empty")?;
         if self.stride() < self.size {

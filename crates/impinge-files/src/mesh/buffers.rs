@@ -18,10 +18,10 @@ use crate::text::Quoted;
 /// The bytes of all buffers. Buffers from one file share their bytes.
 #[derive(Debug, Default)]
 pub(super) struct Buffers {
-    /// The bytes of buffers that are not part of the document.
+    /// The decoded bytes of data URIs, and the bytes of other files.
     read: Vec<Vec<u8>>,
-    /// For each buffer of the document, its index in `read`; `None` for the binary chunk of the
-    /// document.
+    /// For each buffer of the document, the index of its bytes in `read`; `None` for the binary
+    /// chunk of the document.
     places: Vec<Option<usize>>,
     /// The index in `read` for each file that was read, by its path without symbolic links.
     files: BTreeMap<PathBuf, usize>,
@@ -64,7 +64,8 @@ impl Buffers {
         }
     }
 
-    /// Returns the index in `read` of the bytes of a URI, which are read at the first use.
+    /// Returns the index in `read` of the bytes of a URI. Each file is read once; each data URI is
+    /// decoded.
     fn resource(
         &mut self,
         uri: &str,

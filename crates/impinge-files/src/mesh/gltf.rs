@@ -1,9 +1,9 @@
 //! Reads glTF, text and binary, with the crate `gltf`. Each mesh of a node becomes a part, in the
 //! frame of the scene.
 //!
-//! The crate checks the JSON. It does not check the tree of nodes, the lengths of buffers and the
-//! accessors of positions, which are checked here first, nor the ranges of accessors, which
-//! `accessor.rs` checks.
+//! The crate `gltf` checks the JSON document. This file checks the tree of nodes and the indices of
+//! accessors, `buffers.rs` the lengths of buffers, and `accessor.rs` the types and ranges of
+//! accessors.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -22,7 +22,8 @@ use crate::files::Files;
 /// The size of the header of a binary file, in bytes.
 const HEADER: u32 = 12;
 
-/// Reads the meshes of the nodes of the default scene, else of the first scene, else of all nodes.
+/// Reads the meshes of the nodes of the default scene; without one, of the first scene; without any
+/// scene, of all nodes.
 pub(super) fn read(
     path: &Path,
     bytes: &[u8],
@@ -41,7 +42,8 @@ pub(super) fn read(
     parts(&document, &mut Loader { buffers, files, checked: BTreeSet::new() })
 }
 
-/// Returns the parts of all nodes.
+/// Returns a part for each node with a mesh, among the nodes that [`roots`] returns and their
+/// descendants.
 fn parts(document: &Gltf, loader: &mut Loader<'_>) -> Result<Vec<RawPart>, FormatError> {
     let mut parts = Vec::new();
     let mut seen = BTreeSet::new();
@@ -133,7 +135,7 @@ struct NodePart {
     first: BTreeMap<usize, [u32; 2]>,
 }
 
-/// Reads primitives, and checks each accessor once.
+/// Reads primitives. Checks each accessor at most once as positions and once as indices.
 struct Loader<'a> {
     buffers: &'a [&'a [u8]],
     files: &'a mut Files,
@@ -222,8 +224,8 @@ impl Loader<'_> {
     }
 }
 
-/// Returns the corners of each triangle of a primitive. Every second triangle of a strip is
-/// reversed.
+/// Returns the corners of each triangle of a primitive. Two corners of every second triangle of a
+/// strip are exchanged, so that all triangles have the same orientation.
 fn triangles(corners: &[u32], mode: Mode) -> Vec<[u32; 3]> {
     let windows = corners.windows(3).enumerate();
     match mode {

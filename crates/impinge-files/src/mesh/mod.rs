@@ -58,14 +58,14 @@ pub struct MeshPart {
 }
 
 impl MeshFile {
-    /// Reads a file by its extension: .obj, .stl, .ply, .gltf or .glb. Buffers of a glTF file are read from its
-    /// folder.
+    /// Reads a file by its extension: .obj, .stl, .ply, .gltf or .glb. Buffers of a glTF file are
+    /// read from the folder of the file.
     ///
     /// Vertices at equal positions are welded, and polygons are triangulated. Triangles that are
-    /// degenerate, duplicate or without vertices are dropped. [`MeshPart::report`] counts these
-    /// changes. Coordinates are unchanged: usually meters, with y or z upwards. Time is O(n log n)
-    /// and memory O(n) in the bytes of the file, and in the vertices and corners that the nodes of
-    /// a glTF file create.
+    /// degenerate or duplicate, and faces with a vertex that does not exist or is not finite, are
+    /// dropped. [`MeshPart::report`] counts these changes. Coordinates are unchanged: usually
+    /// meters, with y or z upwards. Time is O(n log n) and memory O(n) in the bytes of the file,
+    /// and in the vertices and corners that the nodes of a glTF file create.
     ///
     /// # Errors
     /// If the file cannot be read, is not of its format, names a file outside of its folder,
@@ -85,8 +85,8 @@ impl MeshFile {
         Self::of_bytes(path, &bytes, &mut files)
     }
 
-    /// Parses the bytes of a file. The extension of `path` selects the format, and its folder
-    /// contains the buffers of a glTF file.
+    /// Parses the bytes of a file. The extension of `path` selects the format, and the folder of
+    /// `path` contains the buffers of a glTF file.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -141,8 +141,8 @@ impl MeshFile {
     }
 }
 
-/// A function that reads the faces of a file from its path and bytes, and from the files that it
-/// names.
+/// A function that reads the parts of a mesh file from its path and bytes, and from the files that
+/// it names.
 type Reader = fn(&Path, &[u8], &mut Files) -> Result<Vec<RawPart>, FormatError>;
 
 /// Returns the reader for a file extension; `None` if the format is not supported.

@@ -29,8 +29,8 @@ fn vertices(text: &str) -> Result<Vec<[f64; 3]>, FormatError> {
     lines.map(|(line, (_, rest))| vertex(rest, line)).collect()
 }
 
-/// Parses three coordinates. A single fourth number is a weight, which divides them. If two or more
-/// numbers follow the coordinates, such as a colour, all of them are ignored.
+/// Parses three coordinates. If exactly one number follows, it is a weight, by which the
+/// coordinates are divided. If two or more numbers follow, such as a colour, they are ignored.
 fn vertex(text: &str, line: usize) -> Result<[f64; 3], FormatError> {
     let mut words = text.split_whitespace();
     let mut position = [0.0; 3];
@@ -47,8 +47,8 @@ fn vertex(text: &str, line: usize) -> Result<[f64; 3], FormatError> {
     }))
 }
 
-/// The parts read so far. The corners of a part are indices into its own vertices, in the order of
-/// their first use.
+/// The parts that were read so far. Each part has a list of the vertices that its faces use, in the
+/// order of their first use. Corners are indices in this list.
 struct Reader {
     vertices: Vec<[f64; 3]>,
     /// For each vertex of the file, its index in the current part; [`NONE`] if the part does not
@@ -91,8 +91,8 @@ impl Reader {
         self.parts.push(core::mem::take(&mut self.part));
     }
 
-    /// Adds a face, or records its line if it names a vertex that does not exist. A face with fewer than three
-    /// corners is ignored.
+    /// Adds a face, or stores its line in `out_of_range` if it names a vertex that does not exist.
+    /// A face with fewer than three corners is ignored.
     fn face(&mut self, text: &str, line: usize) -> Result<(), FormatError> {
         let mut corners = Vec::new();
         for word in text.split_whitespace() {

@@ -37,7 +37,7 @@ impl PropertyAccess for Element {
     }
 }
 
-/// Converts a scalar of any type; `None` for a list.
+/// Converts a scalar of any type to `f64`; `None` for a list.
 fn number_of(value: &Property) -> Option<f64> {
     Some(match value {
         Property::Char(x) => f64::from(*x),

@@ -18,7 +18,8 @@ pub(super) struct Piece {
     pub(super) face: usize,
 }
 
-/// Welds vertices, triangulates polygons, drops degenerate and duplicate triangles, and reports the defects.
+/// Welds vertices at equal positions, triangulates polygons, drops degenerate and duplicate
+/// triangles, and reports the defects.
 pub(super) fn repaired(raw: RawPart) -> MeshPart {
     let mut report = MeshReport::default();
     let welded = weld(&raw, &mut report);
@@ -58,7 +59,8 @@ fn weld(raw: &RawPart, report: &mut MeshReport) -> Vec<u32> {
     welded
 }
 
-/// Returns the triangles of all faces that have positive area.
+/// Triangulates the faces, and returns the triangles that have an area up to rounding. Reports the
+/// dropped faces, except faces with a vertex that is not finite, which [`weld`] reports.
 fn pieces(raw: &RawPart, welded: &[u32], report: &mut MeshReport) -> Vec<Piece> {
     let mut triangulator = Triangulator::new();
     let mut pieces = Vec::new();
@@ -135,8 +137,8 @@ fn rotated([a, b, c]: [u32; 3]) -> [u32; 3] {
     }
 }
 
-/// Returns the vertices that triangles use, in their order, and the triangles with indices of these
-/// vertices.
+/// Returns the vertices that triangles use, in the order of the file, and the triangles with
+/// indices of these vertices.
 fn compact(raw: &RawPart, pieces: &[Piece]) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     let mut number = vec![NONE; raw.vertices.len()];
     pieces.iter().flat_map(|piece| piece.corners).for_each(|corner| number[corner as usize] = 0);

@@ -17,25 +17,25 @@ pub struct MeshReport {
     pub triangles: usize,
     /// The number of faces with more than three corners that were triangulated.
     pub polygons: usize,
-    /// Vertices with a coordinate that is NaN or infinite. Their faces were dropped.
+    /// Vertices with a coordinate that is NaN or infinite. Faces with such a vertex were dropped.
     pub non_finite_vertices: Defects,
-    /// Faces that name a vertex that does not exist. They were dropped.
+    /// Dropped faces: they name a vertex that does not exist.
     pub out_of_range: Defects,
-    /// Faces with zero area or with fewer than three corners. They were dropped. A polygon counts
-    /// if none of its triangles has positive area.
+    /// Dropped faces with zero area or with fewer than three corners. A polygon counts if none of
+    /// its triangles has positive area.
     pub degenerate: Defects,
-    /// Vertices at the position of an earlier vertex. They were welded. Formats without indices
-    /// count none, as each triangle has its own vertices.
+    /// Vertices at the position of an earlier vertex, with which they were welded. Formats without
+    /// indices count none, as each triangle has its own vertices.
     pub duplicate_vertices: Defects,
-    /// Triangles with the corners and the orientation of an earlier triangle. They were dropped.
+    /// Dropped triangles, which have the corners and the orientation of an earlier triangle.
     pub duplicate_triangles: Defects,
-    /// Edges of one triangle only, at which the surface is open. The index of the defect is that of
-    /// the triangle's face.
+    /// Edges of one triangle only, at which the surface is open. The index of the defect is the
+    /// index of the triangle's face.
     pub boundary_edges: Defects,
-    /// Edges of more than two triangles. The index of the defect is that of the first face.
+    /// Edges of more than two triangles. The index of the defect is the index of the first face.
     pub non_manifold_edges: Defects,
     /// Edges whose two triangles have their fronts on different sides. The index of the defect is
-    /// that of the first face.
+    /// the index of the first face.
     pub inconsistent_edges: Defects,
     /// The number of components of triangles that are connected by edges.
     pub components: usize,
@@ -85,22 +85,23 @@ impl MeshReport {
         self.is_closed() && self.non_manifold_edges.count == 0 && self.inconsistent_edges.count == 0
     }
 
-    /// Returns `true` if all faces of the file were kept, none of their vertices was welded, and no
-    /// edge is non-manifold or inconsistent. The surface may be open or closed.
+    /// Returns `true` if the report has no defects other than boundary edges: no face was dropped,
+    /// no vertex is duplicate or not finite, and no edge is non-manifold or inconsistent. The
+    /// surface may be open or closed.
     #[must_use]
     pub fn is_clean(&self) -> bool {
         self.defects().all(|(_, defects)| defects.count == 0)
     }
 
-    /// Returns a line for each kind of defect, such as `2 degenerate faces, dropped: 1 (line 9), 4 (line 12)`. An open
-    /// boundary does not count.
+    /// Returns a line for each kind of defect that occurs, such as `2 degenerate faces, dropped: 1
+    /// (line 9), 4 (line 12)`. An open boundary does not count.
     #[must_use]
     pub fn problems(&self) -> Vec<String> {
         let found = self.defects().filter(|(_, defects)| defects.count > 0);
         found.map(|(what, defects)| format!("{} {what}: {defects}", defects.count)).collect()
     }
 
-    /// Returns the defects of each kind, with the name of the kind.
+    /// Returns the defects of each kind except boundary edges, with the name of the kind.
     fn defects(&self) -> impl Iterator<Item = (&'static str, &Defects)> {
         [
             ("vertices that are not finite", &self.non_finite_vertices),

@@ -14,8 +14,8 @@ struct Side {
     is_forward: bool,
 }
 
-/// Counts the edges of each kind and the components, and computes the volume if the mesh is solid.
-/// `origin` returns the face of a triangle, and its line. O(n log n).
+/// Counts the edges of each defective kind and the components, and computes the volume if the mesh
+/// is solid. `origin` returns the face of a triangle, and its line. O(n log n).
 pub(super) fn examine(
     vertices: &[[f64; 3]],
     triangles: &[[u32; 3]],

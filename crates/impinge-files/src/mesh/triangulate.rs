@@ -16,8 +16,9 @@ impl Triangulator {
         Self { earcut: Earcut::new(), outline: Vec::new(), cut: Vec::new() }
     }
 
-    /// Returns the triangles of a polygon in the orientation of its corners; none if its area is
-    /// zero or not finite. Corners must be valid indices of `vertices`.
+    /// Returns the triangles of a polygon, in the orientation of its corners. A triangle is
+    /// returned unchanged. For a polygon with more corners, returns no triangles if its area is not
+    /// finite. Corners must be valid indices of `vertices`.
     pub(super) fn cut(&mut self, corners: &[u32], vertices: &[[f64; 3]]) -> Vec<[u32; 3]> {
         if let &[a, b, c] = corners {
             return vec![[a, b, c]];

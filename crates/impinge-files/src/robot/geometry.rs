@@ -12,7 +12,7 @@ use crate::format::{
 };
 use crate::scene::about;
 
-/// Returns the collision elements of a link as one shape; `None` if there is none.
+/// Returns the collision elements of a link as one shape; `None` if the link has none.
 ///
 /// A single element becomes a shape around its own origin, at the origin of the element in the
 /// frame of the link, so that a box stays a cuboid. Several elements become a compound in the frame
@@ -75,8 +75,8 @@ fn element_solid(
     })
 }
 
-/// Returns a size; an error if it is negative or not finite. It is checked here, since the line of
-/// the link is known.
+/// Returns a size; an error if it is negative or not finite. Sizes are checked here and not when
+/// the shape is built, since the line of the link is known here.
 fn checked(what: &'static str, value: f64) -> Result<f64, Problem> {
     if !value.is_finite() {
         return Err(ShapeError::NotFinite { what, value }.into());

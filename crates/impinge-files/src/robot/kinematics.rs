@@ -56,7 +56,7 @@ pub struct JointBeyondLimits {
     pub limits: [f64; 2],
 }
 
-/// A joint, stored by its name.
+/// A joint; `Tree::joints` stores it by its name.
 #[derive(Debug)]
 struct TreeJoint {
     /// The index of the parent link.
@@ -64,7 +64,7 @@ struct TreeJoint {
     /// The frame of the joint in the frame of the parent link.
     origin: Isometry3<f64>,
     motion: JointMotion,
-    /// The lower and the upper limit; `None` if the file gives none.
+    /// The lower and the upper limit; `None` if the file gives none, or the kind of joint has none.
     limits: Option<[f64; 2]>,
     mimic: Option<Mimic>,
 }
@@ -233,12 +233,13 @@ impl Tree {
         self.joints.len()
     }
 
-    /// Returns the index of the link with this name.
+    /// Returns the index of the link with this name; `None` if the robot has no such link.
     pub(super) fn link(&self, name: &str) -> Option<usize> {
         self.index.get(name).copied()
     }
 
-    /// Returns, for each link, its nearest ancestor for which `holds` returns `true`.
+    /// Returns, for each link, its nearest ancestor for which `holds` returns `true`; `None` if
+    /// there is none.
     pub(super) fn nearest_above(&self, holds: impl Fn(usize) -> bool) -> Vec<Option<usize>> {
         let mut nearest = vec![None; self.links.len()];
         // Parents come first, so that the result of the parent is known.
@@ -253,7 +254,8 @@ impl Tree {
 }
 
 impl Follows {
-    /// Returns the relation of a joint that mimics the joint of this relation.
+    /// Returns the relation of a joint that mimics, by `mimic`, the joint to which `self` belongs.
+    /// Both follow the same joint.
     fn followed_by(&self, mimic: &Mimic) -> Self {
         let multiplier = mimic.multiplier.unwrap_or(1.0);
         Self {

@@ -104,7 +104,7 @@ impl Robot {
     /// Returns the pairs of links whose contacts are disabled, as indices among the links with
     /// collision elements. These are the pairs connected by a joint, directly or through links
     /// without collision elements, and the pairs of the SRDF file. A pair may occur several times.
-    /// O(n log n) for n links and pairs of the file.
+    /// O(n log n), where n is the number of links plus the number of pairs of the SRDF file.
     pub(crate) fn disabled_pairs(&self) -> Vec<[usize; 2]> {
         let has_solid = |link: usize| self.solids[link].is_some();
         let numbers = (0..self.solids.len()).scan(0, |next, link| {

@@ -15,9 +15,9 @@ pub(super) struct Packages {
 }
 
 impl Packages {
-    /// Collects the searched folders: those of the options, those of the scene, and the ancestors
-    /// of the URDF file. Folders of the last two kinds are kept only if files may be read from
-    /// them.
+    /// Collects the searched folders: the package folders of the options, the package folders of
+    /// the scene, and the ancestors of the URDF file. Folders of the last two kinds are kept only
+    /// if files may be read from them.
     pub(super) fn new(file: &RobotFile, folder: &Path, urdf: &Path, files: &Files) -> Self {
         let absolute = std::path::absolute(urdf).unwrap_or_else(|_| urdf.to_owned());
         let own = absolute.parent().unwrap_or_else(|| Path::new("")).to_owned();
@@ -43,8 +43,8 @@ impl Packages {
         if !matches!((parts.next(), parts.next()), (Some(Component::Normal(_)), None)) {
             return Err(unknown());
         }
-        // If a searched folder has the name of the package, it is the package. Otherwise the
-        // package is a subfolder.
+        // A searched folder with the name of the package is the package itself. In any other
+        // searched folder, the package is the subfolder with this name, if there is one.
         let found = self.folders.iter().find_map(|folder| {
             let inner = folder.join(package);
             if folder.file_name().is_some_and(|name| name == package) {

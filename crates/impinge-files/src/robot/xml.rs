@@ -12,7 +12,7 @@ use crate::{FileError, Problem};
 const MAX_DEPTH: usize = 32;
 
 /// The maximum number of attributes of an element. Parsers compare each attribute with all earlier
-/// ones.
+/// attributes.
 const MAX_ATTRIBUTES: usize = 256;
 
 /// The text of an XML file that is well-formed, with bounded depth and bounded numbers of
@@ -77,7 +77,8 @@ impl XmlFile {
         FileError::whole(&self.path, problem)
     }
 
-    /// Returns an error at the element with this tag and name.
+    /// Returns an error at the first element with this tag and name; without a line if there is
+    /// none.
     pub(super) fn error(&self, tag: &str, name: &str, problem: Problem) -> FileError {
         let path = format!("{tag} {}", Quoted(name));
         let Ok(document) = self.parse() else { return self.whole(problem) };

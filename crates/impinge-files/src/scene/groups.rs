@@ -1,4 +1,5 @@
-//! Assigns collision groups: those of the document, and those that disable pairs of links.
+//! Assigns collision groups to objects: the groups that the document names, and further groups that
+//! disable pairs of links.
 
 use std::collections::BTreeSet;
 
@@ -11,11 +12,13 @@ use crate::format::{GroupsFile, SceneFile};
 /// The number of groups that the library has.
 const GROUPS: usize = 30;
 
-/// The groups of a scene: those that the document names, and those that disable pairs of links.
+/// The groups of a scene: the groups that the document names, and further groups that disable pairs
+/// of links.
 ///
 /// Groups disable the pairs, so that a recording needs no pair filter. For each pair, one link is
 /// the only member of a group that the other link blacklists. Only groups that the document does
-/// not name are used. Objects whose membership is not given are members of all groups except these.
+/// not name are used for this. An object without a `membership` in the document is a member of all
+/// groups except those that disable pairs.
 #[derive(Debug)]
 pub(super) struct GroupPlan {
     /// The groups that the document does not name and that are not taken, in ascending order. The
@@ -35,14 +38,16 @@ impl DisabledPair {
         Self([a.min(b), a.max(b)])
     }
 
-    /// Returns the other index of the pair; `None` if the pair does not contain `object`.
+    /// Returns the index that the pair contains besides `object`; `None` if the pair does not
+    /// contain `object`.
     fn partner(self, object: usize) -> Option<usize> {
         let [a, b] = self.0;
         if a == object { Some(b) } else { (b == object).then_some(a) }
     }
 }
 
-/// The groups that an object gets from its disabled pairs.
+/// The groups that an object gets from its disabled pairs: the group of which it is the only
+/// member, if any, and the groups that it blacklists.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OwnGroups {
     member: Option<usize>,
@@ -62,8 +67,8 @@ impl GroupPlan {
     }
 
     /// Assigns groups to objects until each pair is disabled. The object with the most remaining
-    /// pairs gets the next group, which its partners blacklist. This is a greedy vertex cover,
-    /// since there are few groups. It is an error if the groups do not suffice.
+    /// pairs gets the next group, which its partners blacklist. This greedy vertex cover uses few
+    /// groups. An error if the groups do not suffice.
     pub(super) fn separate(
         &mut self,
         objects: usize,
@@ -89,7 +94,8 @@ impl GroupPlan {
         Ok(own)
     }
 
-    /// Returns the groups of an object: those of the file, and those of its disabled pairs.
+    /// Returns the groups of an object: the groups in the document, and the groups from its
+    /// disabled pairs.
     pub(super) fn groups(
         &self,
         file: &GroupsFile,

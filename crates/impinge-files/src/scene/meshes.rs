@@ -40,7 +40,7 @@ impl MeshTable {
         Self { folder: folder.to_owned(), files, meshes, real }
     }
 
-    /// Returns the mesh file at a path, which is read at the first call.
+    /// Returns the mesh file at a path. The file is read at the first call.
     pub(crate) fn read(&mut self, path: &Path) -> Result<&MeshFile, FileError> {
         let path = self.folder.join(path);
         if !self.real.contains_key(&path) {
@@ -132,7 +132,8 @@ impl MeshTable {
         }
     }
 
-    /// Returns the number of vertices plus the number of triangle corners of a shape.
+    /// Returns the number of vertices plus the number of triangle corners of the parts that
+    /// `source` selects.
     pub(crate) fn elements(&self, source: &MeshSource) -> Result<usize, Fault> {
         let parts = self.parts(source)?.into_iter();
         Ok(parts.map(|part| part.vertices.len() + 3 * part.triangles.len()).sum())

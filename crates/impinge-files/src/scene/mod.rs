@@ -55,7 +55,8 @@ use crate::{
 pub struct Scene {
     source: Source,
     file: SceneFile,
-    /// The shapes of objects, each with its path in the document. The objects of a grid share one.
+    /// The shapes of objects, each with its path in the document. The objects of a grid share one
+    /// entry.
     forms: Vec<Form>,
     objects: Vec<SceneObject>,
     meshes: MeshTable,
@@ -83,8 +84,9 @@ struct SceneObject {
     query: QueryTypeFile,
 }
 
-/// Reads a file as a scene: a scene file (.json), a mesh file (.obj, .stl, .ply, .gltf, .glb), each of whose parts
-/// becomes an object, or a robot (.urdf) with all joints at 0, each of whose links becomes an object.
+/// Reads a file as a scene: a scene file (.json), a mesh file (.obj, .stl, .ply, .gltf, .glb), each
+/// of whose parts becomes an object, or a robot (.urdf) with all joints at 0, each of whose links
+/// with collision elements becomes an object.
 ///
 /// ```
 /// let error = impinge_files::load("pile.scene".as_ref()).expect_err("no such format");
@@ -100,7 +102,7 @@ pub fn load(path: &Path) -> Result<Scene, FileError> {
 /// Reads a file like [`load`], with options for the root folder, packages and limits.
 ///
 /// If the URDF file of a robot is in a ROS package, the default root is the folder of the package.
-/// Otherwise it is the folder of the file.
+/// Otherwise the default root is the folder of `path`.
 ///
 /// # Errors
 /// As [`load`].
@@ -121,7 +123,7 @@ impl SceneFile {
     /// Resolves the scene: reads the files that it names. Paths are relative to `folder`.
     ///
     /// # Errors
-    /// As [`Scene::read`], without lines.
+    /// As [`Scene::read`], but errors in the document have no line and no column.
     pub fn resolve(self, folder: &Path) -> Result<Scene, FileError> {
         self.resolve_with(folder, &ReadOptions::new())
     }
@@ -143,7 +145,7 @@ impl Scene {
     /// # Errors
     /// If a file cannot be read, is not of its format, or is outside of the folder of the scene; if
     /// the scene has unknown members, exceeds the default [`Limits`](crate::Limits), or gives two
-    /// objects the same name. The error has the line, the column and the path in the document.
+    /// objects the same name. An error in the document has the line, the column and the path.
     pub fn read(path: &Path) -> Result<Self, FileError> {
         Self::read_with(path, &ReadOptions::new())
     }
@@ -160,8 +162,8 @@ impl Scene {
         Self::of_text(Source::new(path.to_owned(), text), files)
     }
 
-    /// Parses a document. Errors contain `path`, and the files that the document names are relative
-    /// to its folder.
+    /// Parses a document. Errors contain `path`. The files that the document names are relative to
+    /// the folder of `path`.
     ///
     /// # Errors
     /// As [`Self::read`].

@@ -23,7 +23,7 @@ impl Scene {
     /// Creates a collision world with the objects in their order. The world is not updated yet. The
     /// data of an object is its name.
     ///
-    /// Objects that share a shape in the document share its handle. The cost is that of building
+    /// Objects that share a shape in the document share a handle. The cost is the cost of building
     /// the shapes, plus O(log n) for each object.
     ///
     /// # Errors
@@ -56,8 +56,9 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// If there is no such shape, the JSON is not that of a shape, the library rejects its values,
-    /// or a mesh file that the JSON names cannot be read.
+    /// If the dimension differs from that of the scene, there is no such shape, the JSON is not
+    /// that of a shape, the library rejects its values, or a mesh file that the JSON names cannot
+    /// be read.
     pub fn shape<N: SceneSpace<D>, const D: usize>(
         &self,
         shape: &str,
@@ -72,8 +73,8 @@ impl Scene {
                 ShapeRef::Inline(Box::new(parsed.map_err(wrong)?))
             }
         };
-        // The copy of the table shares the files of the scene, and reads those that only this shape
-        // names.
+        // The copy of the table shares the files of the scene, and also reads files that only this
+        // shape names.
         let mut meshes = self.meshes.clone();
         meshes.read_all(&file)?;
         self.builder(&meshes).make(&file).map_err(|fault| match fault.is_absolute {

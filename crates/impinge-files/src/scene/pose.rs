@@ -47,8 +47,9 @@ impl Placement {
         }
     }
 
-    /// Converts the position to the scalar of a world, which has the dimension of the scene. Values beyond the range of
-    /// `N` become infinite, which the world rejects.
+    /// Converts the position to the scalar of a world, which has the dimension of the scene. Values
+    /// beyond the range of `N` become infinite, which the world rejects. An error if `D` is not the
+    /// dimension of the scene.
     pub(crate) fn isometry<N: Recordable<D>, const D: usize>(
         &self,
     ) -> Result<N::Isometry, Problem> {
@@ -69,8 +70,8 @@ impl Placement {
         self
     }
 
-    /// Returns the position after `seconds` of a motion. It is computed from the start, so that no
-    /// error accumulates.
+    /// Returns the position after `seconds` of a motion that starts at this position. No rounding
+    /// errors accumulate, since callers pass the time from the start.
     pub(crate) fn after(self, motion: &Motion, seconds: f64) -> Self {
         let mut moved = self.translated(motion.velocity * seconds);
         let angle = motion.angular * seconds;
@@ -104,7 +105,8 @@ impl Motion {
     }
 }
 
-/// Converts coordinates to a vector. In 2D its z is 0.
+/// Converts coordinates to a vector, whose z is 0 in 2D. An error if their number differs from the
+/// dimension.
 pub(crate) fn vector(numbers: &[f64], dimension: Dimension) -> Result<Vector3<f64>, Problem> {
     match (numbers, dimension) {
         (&[x, y], Dimension::Two) => Ok(Vector3::new(x, y, 0.0)),

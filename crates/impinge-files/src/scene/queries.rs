@@ -40,8 +40,8 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// If the dimension differs from that of the scene, a direction is zero, or the library rejects
-    /// a shape.
+    /// If the dimension differs from that of the scene, a direction is zero, coordinates or a
+    /// position are invalid, or a shape is unknown or invalid.
     pub fn queries<N: SceneSpace<D>, const D: usize>(
         &self,
     ) -> Result<Vec<NamedQuery<N, D>>, FileError> {

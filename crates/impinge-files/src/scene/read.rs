@@ -268,13 +268,14 @@ impl Grid {
         self.count.iter().fold(1, |product: usize, count| product.saturating_mul(*count))
     }
 
-    /// Returns the maximum number of bytes of the indices in a name, with their brackets.
+    /// Returns an upper bound of the number of bytes of the indices in a name, with their brackets.
     fn text_len(&self) -> usize {
         let digits = |count: &usize| count.to_string().len() + 1;
         self.count.iter().map(digits).sum::<usize>() + 1
     }
 
-    /// Returns the indices of an object along each axis. The last axis varies fastest.
+    /// Converts the index of an object in the grid to its indices along the axes. The last axis
+    /// varies fastest.
     fn indices(&self, index: usize) -> Vec<usize> {
         let mut rest = index;
         let mut indices = vec![0; self.count.len()];

@@ -1,4 +1,4 @@
-//! Converts the shapes of a document to those of the library.
+//! Converts the shapes of a document to shapes of the library.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -57,7 +57,8 @@ impl<'a, N: SceneSpace<D>, const D: usize> Builder<'a, N, D> {
         }
     }
 
-    /// Returns the shape of a reference, which is built at its first use.
+    /// Returns the shape of a reference. A named shape is built at its first use, an inline shape
+    /// at each use.
     pub(super) fn make(&mut self, shape: &ShapeRef) -> Result<ShapeHandle<N, D>, Fault> {
         let limit = MAX_DEPTH as usize;
         if self.depth > MAX_DEPTH {
@@ -246,8 +247,8 @@ fn handle<N: SceneSpace<D>, const D: usize>(
     made.map(ShapeHandle::new).map_err(Into::into)
 }
 
-/// Adds to an error of a size the member of the file that contains the size, since the library uses
-/// other names.
+/// Converts an error of the library. If it concerns a size, its path becomes the member of the
+/// document that contains this size, since the library and the document name sizes differently.
 fn sized(error: impl Into<LibraryError>) -> Fault {
     let error = error.into();
     let member = match &error {

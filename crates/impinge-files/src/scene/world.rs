@@ -1,4 +1,4 @@
-//! The world of a scene, whose objects have names and move, with a recorder.
+//! The recorded world of a scene. Its objects have names, and move by the motions of the scene.
 
 use core::num::NonZeroU64;
 use core::ops::Deref;
@@ -14,8 +14,8 @@ use super::{Placement, Scene, SceneSpace};
 use crate::error::Within;
 use crate::{FileError, Problem};
 
-/// The world of a scene, which is recorded and moves its objects. It dereferences to the world, for
-/// reading only ([`Deref`]).
+/// The world of a scene, with a recorder, and with the motions of its objects. It dereferences to
+/// the [`CollisionWorld`], for reading only ([`Deref`]).
 ///
 /// ```
 /// use impinge_files::Scene;
@@ -57,8 +57,8 @@ impl Scene {
     /// Creates a recorded world with the objects in their order. The world is not updated yet. The
     /// data of an object is its name.
     ///
-    /// The recorder stores every shape, which [`Self::collision_world`] avoids. The recording needs
-    /// no registered shapes or filters.
+    /// The recorder stores every shape; [`Self::collision_world`] creates a world without this
+    /// cost. The recording needs no registered shapes or filters.
     ///
     /// # Errors
     /// If [`Self::collision_world`] would return an error, or a shape has more parts than
@@ -88,11 +88,13 @@ impl<N: SceneSpace<D>, const D: usize> SceneWorld<N, D> {
         Self { recorder: self.recorder.with_key_frames(updates), ..self }
     }
 
-    /// Moves the objects by their motions over `seconds`, and updates the world. A step of 0 seconds only updates,
-    /// as the first step usually does. Positions are computed from the start and the elapsed time.
+    /// Moves the objects by their motions over `seconds`, and updates the world. A step of 0
+    /// seconds only updates, as the first step usually does. Positions are computed from the start
+    /// and the elapsed time.
     ///
     /// # Errors
-    /// If a position leaves the range of numbers; the world is then unchanged, apart from the time.
+    /// If a position leaves the range of numbers. The world is then unchanged, but
+    /// [`Self::seconds()`] includes the step.
     pub fn step(&mut self, seconds: f64) -> Result<(), RecordError> {
         self.move_objects(seconds)?;
         self.recorder.update();
@@ -124,7 +126,8 @@ impl<N: SceneSpace<D>, const D: usize> SceneWorld<N, D> {
         self.seconds
     }
 
-    /// Returns the handle of the object with this name. The handle may be stale.
+    /// Returns the handle of the object with this name; `None` if the scene has no such object. The
+    /// handle may be stale.
     #[must_use]
     pub fn handle(&self, name: &str) -> Option<CollisionObjectHandle> {
         self.handles.get(name).copied()

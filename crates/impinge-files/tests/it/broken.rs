@@ -25,8 +25,9 @@ impl Numbers {
     }
 }
 
-/// Checks the result of reading arbitrary bytes: an error that contains the path, or parts no
-/// larger than the file.
+/// Checks the result of reading arbitrary bytes. An error must contain the path. A part must have
+/// at most as many vertices, and as many triangles, as the file has bytes, with finite vertices and
+/// with corners in range.
 fn check(path: &Path, bytes: &[u8]) -> Result<MeshFile, FileError> {
     let read = MeshFile::parse(path, bytes);
     match &read {

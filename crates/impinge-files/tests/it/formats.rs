@@ -1,4 +1,5 @@
-//! Tests that every format gives the same cube.
+//! Tests that every mesh format gives the same cube, and tests the shapes and objects made of mesh
+//! files.
 
 use std::fs;
 

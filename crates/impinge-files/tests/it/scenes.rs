@@ -1,4 +1,5 @@
-//! Tests the example scenes, the schema, and the shape of each kind.
+//! Tests the example scenes, the schema, mesh files of queries, groups, motions, rotations and
+//! grids.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -130,7 +131,7 @@ fn a_car_drives_into_the_zone_and_out_of_it() {
         let events = world.proximity_events().iter();
         changes.extend(events.map(|event| (world.seconds(), event.new_status)));
     }
-    // The front of the object is at -3.25 + t. It is within the margin from 1.75 on, in the zone
+    // The front of the car is at -3.25 + t. The car is within the margin from 1.75 on, in the zone
     // from 2.25 to 5.75, and beyond the margin after 6.25.
     use impinge::query::Proximity::{Disjoint, Intersecting, WithinMargin};
     let expected =

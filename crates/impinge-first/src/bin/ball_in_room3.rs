@@ -61,8 +61,8 @@ fn build() -> World {
     world
 }
 
-/// Returns the line to print for an event; `None` if the event does not involve an area that the
-/// ball enters or leaves.
+/// Returns the line to print for an event of the ball and an area. `None` if the new status is
+/// [`Proximity::WithinMargin`], or if neither object of the event is an area.
 fn describe(world: &World, event: &ProximityEvent) -> Option<String> {
     let area = [event.collider1, event.collider2]
         .into_iter()
@@ -103,7 +103,8 @@ fn advance(world: &mut World) {
     world.set_position(ball, position);
 }
 
-/// Runs the program until it has printed at least `lines` lines, and returns all lines.
+/// Runs the world until the ball has entered or left an area at least `lines` times. Returns a line
+/// for each of these events.
 pub(crate) fn run(lines: usize) -> Vec<String> {
     let mut world = build();
     let mut log = Vec::new();
@@ -118,7 +119,7 @@ pub(crate) fn run(lines: usize) -> Vec<String> {
     log
 }
 
-/// The expected first lines.
+/// The first lines that [`run`] must return.
 pub(crate) const EXPECTED: [&str; 13] = [
     "The ball enters the blue area.",
     "The ball enters the purple area.",

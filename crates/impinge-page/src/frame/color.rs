@@ -5,15 +5,18 @@ use impinge::debug_render::{Color, DebugOptions, Drawn, MeshOptions, Style};
 use impinge::math::Real;
 use impinge::shape::ShapeKind;
 
-/// The bits of the flags of an instance.
+/// The flag of an instance whose object has a contact or intersects another object.
 pub(crate) const TOUCHES: u32 = 1;
+/// The flag of an instance whose object has a proximity query.
 pub(crate) const SENSOR: u32 = 2;
+/// The flag of an instance whose object is selected.
 pub(crate) const SELECTED: u32 = 4;
+/// The flag of an instance that shows the shape of a query, not an object.
 pub(crate) const ASKED: u32 = 8;
 
-/// The colour of the selection.
+/// The colour of selected objects.
 const SELECTION: Color = Color::rgb(242, 153, 46);
-/// The colour of sensors.
+/// The colour of sensors, which are objects with proximity queries.
 const SENSORS: Color = Color::rgb(150, 120, 200).with_alpha(88);
 /// The colour towards which touching objects are mixed.
 const WARM: Color = Color::rgb(255, 140, 110);
@@ -47,14 +50,14 @@ pub(crate) struct Look {
 }
 
 impl Look {
-    /// Returns the colour as a word.
+    /// Returns the colour of the object as a word; see [`word`].
     pub(crate) fn color(&self) -> u32 {
         let base = if self.flags & SENSOR == 0 { self.shaded() } else { SENSORS };
         if self.flags & SELECTED != 0 {
             return word(SELECTION.with_alpha(base.alpha.max(160)));
         }
-        // Most worlds have a half-space as floor: it touches objects nearly always, and is too large to be
-        // highlighted.
+        // Half-spaces are not highlighted: as floors they touch objects nearly always, and they
+        // fill much of the picture.
         let is_warm = self.flags & TOUCHES != 0 && self.kind != ShapeKind::Plane;
         word(if is_warm { mixed(base, WARM, WARMTH) } else { base })
     }
@@ -62,20 +65,19 @@ impl Look {
     /// Returns one of four tones of the colour of the shape's kind.
     fn shaded(&self) -> Color {
         let base = of_kind(self.kind);
-        // The order of the tones is 0, 2, 1, 3, so that consecutive objects differ more.
+        // The tones are not in order of lightness, so that consecutive objects differ more.
         let tone = [0, 32, 16, 48][self.object % 4];
         mixed(base, Color::rgb(225, 228, 230), tone)
     }
 }
 
-/// Returns the colour as a word: red, green, blue and alpha in this order in memory.
+/// Converts a colour to a word, whose bytes in memory are red, green, blue and alpha.
 pub(crate) const fn word(color: Color) -> u32 {
     let [red, green, blue] = color.rgb;
     u32::from_le_bytes([red, green, blue, color.alpha])
 }
 
-/// Mixes two colours: `part` is the share of the second colour in 256ths. The alpha is that of the
-/// first colour.
+/// Mixes two colours: `part` is the share of `to` in 256ths. The alpha is that of `from`.
 fn mixed(from: Color, to: Color, part: u16) -> Color {
     let mut rgb = from.rgb;
     for (byte, goal) in rgb.iter_mut().zip(to.rgb) {
@@ -85,8 +87,8 @@ fn mixed(from: Color, to: Color, part: u16) -> Color {
     Color { rgb, ..from }
 }
 
-/// The layers of a frame, in their order: the name of a layer, and the kind of element that it
-/// contains.
+/// The layers of a frame in the order of their indices: the name of each layer, and the kind of
+/// element that it contains.
 pub(crate) const LAYERS: [(&str, Drawn); 10] = [
     ("object", Drawn::Object),
     ("tight box", Drawn::TightBox),
@@ -105,8 +107,9 @@ pub(crate) fn layer_of(what: Drawn) -> usize {
     LAYERS.iter().position(|(_, drawn)| *drawn == what).unwrap_or(0)
 }
 
-/// Returns the styles of the visible layers, for objects of about this size. Objects themselves are
-/// drawn as instances and have no style. Queries always have a style, since samples read it.
+/// Returns the styles of the visible layers. The sizes of their elements are proportional to
+/// `size`, the size of a typical object. Objects themselves are drawn as instances and have no
+/// style. Queries always have styles, since samples read these styles.
 pub(crate) fn options<N: Real>(
     mesh: MeshOptions<N>,
     size: N,

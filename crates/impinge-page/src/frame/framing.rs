@@ -6,8 +6,9 @@ use impinge::world::CollisionWorld;
 
 use crate::space::coordinates;
 
-/// Objects with a larger extent count as unbounded, and larger coordinates are omitted. The square
-/// of this number is still within the range of `f32`.
+/// The largest magnitude of a drawn coordinate. Objects whose AABBs extend beyond it count as
+/// unbounded, and elements with larger coordinates are not drawn. The square of this number is
+/// within the range of `f32`.
 pub(crate) const FAR: f64 = 1e18;
 
 /// A box in `f64` and three dimensions; flat in 2D.
@@ -46,21 +47,23 @@ impl Bounds {
     }
 }
 
-/// The origin of coordinates in frames, and the size of a typical object.
+/// The origin of coordinates in frames, and the size of a typical object. The origin is 0 if the
+/// world is near 0 in relation to its size, otherwise the centre of the world.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Framing {
     pub(crate) origin: [f64; 3],
-    /// Half the diagonal of the AABB of the object of median size; never 0.
+    /// The median, over all bounded objects, of half the diagonal of the AABB. If the median is 0,
+    /// an eighth of half the diagonal of the box around all objects; if that is 0 too, 1.
     pub(crate) size: f64,
     /// The distance from its origin up to which a half-space is drawn.
     pub(crate) patch: f64,
 }
 
 impl Framing {
-    /// The framing before there is an object.
+    /// The framing of a world without bounded objects.
     pub(crate) const UNKNOWN: Self = Self { origin: [0.0; 3], size: 1.0, patch: 10.0 };
 
-    /// Returns the framing of a world; `None` if it has no objects.
+    /// Returns the framing of a world; `None` if the world has no objects.
     pub(crate) fn of<N: Space<D>, const D: usize, T>(
         world: &CollisionWorld<N, D, T>,
     ) -> Option<Self> {
@@ -82,7 +85,7 @@ impl Framing {
     }
 }
 
-/// Returns the boxes of the bounded objects.
+/// Returns the AABBs of the bounded objects.
 fn boxes<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
 ) -> impl Iterator<Item = Bounds> {
@@ -91,8 +94,8 @@ fn boxes<N: Space<D>, const D: usize, T>(
         .filter_map(|object| Bounds::of(&object.shape().aabb(&N::pose(object.position()))))
 }
 
-/// Returns the box around all bounded objects; `None` if there is none. Computes the AABBs of all
-/// objects.
+/// Returns the box around all bounded objects; `None` if no object is bounded. Computes the AABBs
+/// of all objects.
 pub(crate) fn bounds<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
 ) -> Option<Bounds> {

@@ -116,7 +116,7 @@ impl<N: Viewed<D>, const D: usize> Gather<'_, N, D> {
         scale.reserve(3 * count);
     }
 
-    /// Adds an instance of a mesh at a position.
+    /// Adds an instance of a mesh at a position. Adds nothing if the mesh was dropped.
     pub(crate) fn instance(&mut self, instance: Instance, position: &N::Isometry) {
         let Some(center) = self.meshes.keep(instance.mesh) else { return };
         let mut translation = coordinates(&N::translation(position));
@@ -147,7 +147,7 @@ fn is_nowhere<const COUNT: usize>(numbers: &[[f32; 3]; COUNT]) -> bool {
 
 impl<N: Viewed<D>, const D: usize> DebugRender<N, D> for Gather<'_, N, D> {
     fn line(&mut self, ends: [Point<N, D>; 2], color: Color, what: Drawn) {
-        // For an invisible layer nothing needs to be converted.
+        // The lines of an invisible layer are not even converted.
         let Some(layer) = self.layer(what) else { return };
         let ends = ends.map(|end| self.at(&end));
         if !is_nowhere(&ends) {
@@ -186,14 +186,14 @@ impl<N: Viewed<D>, const D: usize> DebugRender<N, D> for Gather<'_, N, D> {
             return;
         }
         let mesh = self.meshes.number(mesh);
-        // The colour is transparent, so that the shape of a query hides no object.
+        // The shape of a query is transparent, so that it hides no object.
         let color = word(color.with_alpha(color.alpha.min(96)));
         let (scale, object, flags) = (UNSCALED, NO_OBJECT, ASKED);
         self.instance(Instance { mesh, scale, object, color, flags }, pose);
     }
 }
 
-/// The sections of instances.
+/// The sections of the instances in a payload.
 #[derive(Debug, Serialize)]
 struct InstanceSections {
     count: usize,
@@ -230,7 +230,7 @@ struct PointSections {
     layer: Section,
 }
 
-/// The sections of a payload, and the texts of a frame.
+/// The sections of all buffers in a payload, and the texts of a frame.
 #[derive(Debug, Serialize)]
 pub(crate) struct Sections {
     instances: InstanceSections,

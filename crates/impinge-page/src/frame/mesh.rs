@@ -17,8 +17,8 @@ const PATIENCE: u64 = 120;
 struct Buffers {
     /// The [`ShapeMesh::id`] of the mesh.
     hash: u64,
-    /// The origin of the vertices, in the frame of the shape. If a mesh were far from this origin,
-    /// its vertices would coincide in `f32`.
+    /// The point in the frame of the shape to which the vertices are relative. It is not the origin
+    /// if the mesh is far from the origin, where vertices would coincide in `f32`.
     center: [f64; 3],
     vertices: Vec<f32>,
     triangles: Vec<u32>,
@@ -64,7 +64,7 @@ impl MeshTable {
         dropped
     }
 
-    /// Returns the id of a mesh, by which frames refer to it. Adds the mesh if it is new.
+    /// Returns the id by which frames refer to a mesh. Adds the mesh if the table lacks it.
     pub(crate) fn number<N: Real, const D: usize>(&mut self, mesh: &ShapeMesh<N, D>) -> u32 {
         let next = self.next;
         let number = *self.numbers.entry(mesh.id).or_insert(next);
@@ -114,8 +114,9 @@ impl Buffers {
     }
 }
 
-/// Returns the centre of the points if its distance from the origin exceeds 16 times their extent,
-/// otherwise the origin. Beyond that distance `f32` would lose more than 4 of its 24 bits.
+/// Returns the centre of the AABB of the points if one of its coordinates exceeds 16 times the
+/// largest extent of the AABB, otherwise the origin. Beyond that limit `f32` would lose more than 4
+/// of its 24 bits.
 fn far_center(points: &[[f64; 3]]) -> [f64; 3] {
     let ends = |axis: usize| {
         let on_axis = points.iter().map(|point| point[axis]);
@@ -132,7 +133,8 @@ fn far_center(points: &[[f64; 3]]) -> [f64; 3] {
     if distance > 16.0 * extent { center } else { [0.0; 3] }
 }
 
-/// Converts to the nearest `f32`, clamped to ±1e30, the range in which the page computes.
+/// Converts to the nearest `f32`, clamped to ±1e30, so that the result of a number is finite. NaN
+/// stays NaN.
 #[expect(clippy::cast_possible_truncation, reason = "rounds, as documented")]
 pub(crate) const fn single(x: f64) -> f32 {
     x.clamp(-1e30, 1e30) as f32

@@ -36,8 +36,8 @@ struct KnownShape<N: Real, const D: usize> {
 /// Draws the frames of one stage.
 ///
 /// A frame contains every pose, since a comparison with the poses of the previous frame would cost
-/// as much as writing them. Meshes are looked up only for objects with a new shape. The touching
-/// objects are computed again only after a change of the world.
+/// as much as writing all poses. Meshes are looked up only for objects with a new shape. The set of
+/// touching objects is computed again only after a change of the world.
 #[derive(Debug)]
 pub(crate) struct Picture<N: Viewed<D>, const D: usize> {
     drawing: DebugDrawing<N, D>,
@@ -48,7 +48,8 @@ pub(crate) struct Picture<N: Viewed<D>, const D: usize> {
     shapes: Vec<Option<KnownShape<N, D>>>,
     /// The origin and the size of the stage; `None` before the first object.
     framing: Option<Framing>,
-    /// For each index of a handle, whether the object touches another one; `None` after a change.
+    /// For each index of a handle, whether the object touches another object; `None` after a change
+    /// of the world, until the next frame.
     touching: Option<Vec<bool>>,
 }
 
@@ -80,7 +81,8 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
         self.touching = None;
     }
 
-    /// Draws a world, then calls `beside` for additional elements.
+    /// Draws a world, then calls `beside` with the drawing and the renderer, for additional
+    /// elements such as queries.
     pub(crate) fn frame<T>(
         &mut self,
         world: &CollisionWorld<N, D, T>,
@@ -125,8 +127,8 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
         Ok(Frame { text: serde_json::to_string(&text)?, payload: payload.0 })
     }
 
-    /// Begins a frame. Drops the shapes whose meshes were dropped, and returns the ids of these
-    /// meshes.
+    /// Begins a frame. Drops the meshes that were not used for a while and the entries of
+    /// `shapes` that refer to them, and returns the ids of these meshes.
     fn begin(&mut self) -> Vec<u32> {
         let dropped = self.meshes.begin();
         if !dropped.is_empty() {
@@ -137,8 +139,8 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
         dropped
     }
 
-    /// Returns the framing, which is that of the first frame with an object: later frames must not
-    /// change their coordinates.
+    /// Returns the framing of the first frame with an object, since later frames must not change
+    /// the origin of their coordinates. Before that, returns [`Framing::UNKNOWN`].
     fn framing<T>(&mut self, world: &CollisionWorld<N, D, T>) -> Framing {
         self.framing = self.framing.or_else(|| Framing::of(world));
         self.framing.unwrap_or(Framing::UNKNOWN)
@@ -150,8 +152,8 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
         self.drawing.set_options(options(mesh, N::lit(framing.size), is_shown));
     }
 
-    /// Returns a box for the camera: the box around the bounded objects; if there are none, the box
-    /// around the drawn part of an unbounded object.
+    /// Returns a box for the camera: the box around the bounded objects. If there are none, the box
+    /// is centred at 0 with half the extent with which half-spaces are drawn.
     pub(crate) fn bounds<T>(&self, world: &CollisionWorld<N, D, T>) -> [[f64; 3]; 2] {
         if let Some(bounds) = bounds(world) {
             return [bounds.mins, bounds.maxs];
@@ -187,8 +189,8 @@ impl<N: Viewed<D>, const D: usize> Objects<'_, N, D> {
         }
     }
 
-    /// Returns the kind and the mesh of an object's shape. They are computed only if the shape has
-    /// changed.
+    /// Returns the kind and the mesh of the shape of the object with this index. Both are computed
+    /// only if the object has another shape than in the last frame.
     fn known(
         &mut self,
         index: usize,
@@ -200,8 +202,8 @@ impl<N: Viewed<D>, const D: usize> Objects<'_, N, D> {
         }
         let Self { drawing, units, shapes, .. } = self;
         let slot = &mut shapes[index];
-        // Shapes are compared by identity. An equal shape at another address only costs a look-up,
-        // which finds the same mesh.
+        // Shapes are compared by their addresses. For an equal shape at another address, the
+        // look-up finds the same mesh.
         let _ = slot.take_if(|known| !known.shape.is_same(shape));
         slot.get_or_insert_with(|| {
             let (drawn, scale) = units.scaled(shape);
@@ -219,8 +221,8 @@ impl<N: Viewed<D>, const D: usize> Objects<'_, N, D> {
 }
 
 /// Returns, for each index of a handle, whether the object has a contact or intersects another
-/// object. The loop over all manifolds takes most of the time of a frame; therefore the result is
-/// kept until the world changes.
+/// object. The loop over all manifolds is slow, so the caller keeps the result until the world
+/// changes.
 fn touching<N: Viewed<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) -> Vec<bool> {
     let last = world.collision_objects().map(|object| object.handle().uid()).max();
     let mut touching = vec![false; last.map_or(0, |last| last + 1)];
@@ -236,9 +238,9 @@ fn touching<N: Viewed<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) ->
     touching
 }
 
-/// Draws boxes and contacts of the selected objects in the layers that are invisible; visible
-/// layers contain them already. For this the visibility of all layers is inverted, and the drawing
-/// has the styles of all layers.
+/// Draws the boxes and contacts of the selected objects whose layers are invisible; visible layers
+/// contain them already. Meanwhile the visibility of all layers is inverted, and the drawing has
+/// the styles of all layers.
 fn draw_selected<N: Viewed<D>, const D: usize, T>(
     drawing: &mut DebugDrawing<N, D>,
     world: &CollisionWorld<N, D, T>,
@@ -250,7 +252,7 @@ fn draw_selected<N: Viewed<D>, const D: usize, T>(
         return;
     }
     let (before, own) = (gather.is_shown, *drawing.options());
-    // The drawing keeps its meshes only if the mesh options stay equal.
+    // The mesh options stay equal, since otherwise the drawing would discard its meshes.
     let all = options(own.mesh, N::lit(framing.size), &[true; LAYERS.len()]);
     gather.is_shown = before.map(|is_shown| !is_shown);
     drawing.set_options(all);
@@ -276,7 +278,8 @@ fn draw_selected<N: Viewed<D>, const D: usize, T>(
     gather.is_shown = before;
 }
 
-/// Returns the edges of a box: for each axis, those from the corners that are at its lower end.
+/// Returns the edges of a box as pairs of corners: for each axis the edges parallel to it, which
+/// begin at the corners with the smaller coordinate.
 fn edges<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> impl Iterator<Item = [Point<N, D>; 2]> {
     let [mins, maxs] = [*aabb.mins(), *aabb.maxs()];
     let corner = move |number: usize| {

@@ -1,5 +1,5 @@
-//! Draws the recorded queries, each with its result in the replayed world. The library draws those
-//! for which it has a method.
+//! Draws the recorded queries, each with its result in the replayed world. Methods of
+//! [`DebugDrawing`] draw rays, casts and boxes; the pen draws points, shapes and projections.
 
 use core::fmt;
 
@@ -8,7 +8,7 @@ use impinge::math::{Point, Space};
 use impinge::query::{ClosestPoints, Impact, RayIntersection};
 use impinge_record::{Asked, CastQuestion, Detail, PlacedShape, Question};
 
-/// Draws queries with a drawing and a renderer.
+/// Draws queries: the drawing has the styles, and the renderer takes the elements.
 pub(crate) struct QueryPen<'a, N: Space<D>, const D: usize> {
     pub(crate) drawing: &'a mut DebugDrawing<N, D>,
     pub(crate) renderer: &'a mut dyn DebugRender<N, D>,
@@ -23,7 +23,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for QueryPen<'_, N, D> {
 impl<N: Space<D>, const D: usize> QueryPen<'_, N, D> {
     /// Draws a query and its results.
     pub(crate) fn draw(&mut self, asked: &Asked<N, D>) {
-        // The variants of the details correspond to the kind of the query.
+        // All details of a query have the variant that belongs to the kind of the query.
         let details = asked.answer.iter().map(|found| &found.detail);
         match &asked.query.question {
             Question::FirstRayHit(ray) | Question::RayHits(ray) => {
@@ -56,7 +56,7 @@ impl<N: Space<D>, const D: usize> QueryPen<'_, N, D> {
         }
     }
 
-    /// Draws the shape of a query. It is omitted if its pose is not finite, since queries are
+    /// Draws the shape of a query. A shape whose pose is not finite is omitted; queries are
     /// recorded with any arguments.
     fn shape(&mut self, placed: &PlacedShape<N, D>) {
         let style = self.drawing.options().query;
@@ -66,7 +66,7 @@ impl<N: Space<D>, const D: usize> QueryPen<'_, N, D> {
         }
     }
 
-    /// Draws a line from the point or shape of the query to the found point.
+    /// Draws a line between the two points of a result, and the second of them as a point.
     fn found(&mut self, ends: [Point<N, D>; 2]) {
         if let Some(style) = self.drawing.options().query_hit {
             self.renderer.line(ends, style.color, Drawn::QueryHit);
@@ -74,7 +74,7 @@ impl<N: Space<D>, const D: usize> QueryPen<'_, N, D> {
         }
     }
 
-    /// Draws the sweep of a shape and its first hit. Of each later hit it draws a line between the
+    /// Draws the sweep of a shape and its first hit. For each later hit, draws a line between the
     /// points in contact.
     fn cast<'a>(
         &mut self,

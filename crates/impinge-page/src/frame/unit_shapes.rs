@@ -10,7 +10,8 @@ use crate::frame::mesh::single;
 /// The scale of an unscaled mesh.
 pub(crate) const UNSCALED: [f32; 3] = [1.0; 3];
 
-/// A unit shape of each kind, with radii, half extents and half heights of 1.
+/// The unit shapes, with radii, half extents and half heights of 1. The ball also serves for
+/// ellipsoids.
 #[derive(Debug)]
 pub(crate) struct UnitShapes<N: Space<D>, const D: usize> {
     ball: ShapeHandle<N, D>,
@@ -34,9 +35,10 @@ impl<N: Recordable<D>, const D: usize> UnitShapes<N, D> {
         }
     }
 
-    /// Returns a unit shape and the scale with which its mesh is that of `shape`, up to rounding. A
-    /// shape of another kind, or with extent zero along an axis, is returned unscaled: its mesh
-    /// omits edges of length zero, which a scale of 0 would not do.
+    /// Returns a unit shape and the scale factors that make its mesh the mesh of `shape`, up to
+    /// rounding. Returns `shape` itself, unscaled, if its kind has no unit shape or a factor is not
+    /// a normal `f32`. With a factor of 0, edges of length zero would remain, which the mesh of a
+    /// flat shape omits.
     pub(crate) fn scaled<'a>(
         &'a self,
         shape: &'a ShapeHandle<N, D>,
@@ -52,8 +54,8 @@ impl<N: Recordable<D>, const D: usize> UnitShapes<N, D> {
         usable.unwrap_or((shape, UNSCALED))
     }
 
-    /// Returns the unit shape of the same kind, and the half extents of `shape` along the axes;
-    /// `None` if the kind has no unit shape.
+    /// Returns the unit shape for the kind of `shape`, and the half extents of `shape` along the
+    /// axes; `None` if the kind has no unit shape.
     fn unit_of(&self, shape: &ShapeHandle<N, D>) -> Option<(&ShapeHandle<N, D>, Vector<N, D>)> {
         match shape.geometry().kind() {
             ShapeKind::Ball => {
@@ -72,7 +74,7 @@ impl<N: Recordable<D>, const D: usize> UnitShapes<N, D> {
                     ShapeData::Cone(sizes) => (self.cone.as_ref()?, sizes),
                     _ => return None,
                 };
-                // Both have their axis along y.
+                // Cylinders and cones have their axis along y.
                 let along = |axis, _| if axis == 1 { half_height } else { radius };
                 Some((unit, Vector::<N, D>::from_fn(along)))
             }
@@ -96,7 +98,8 @@ mod tests {
         ShapeMesh::of(&**shape, &MeshOptions::default())
     }
 
-    /// Asserts that the scaled mesh of the unit shape is the mesh of the shape.
+    /// Asserts that the scaled mesh of the unit shape has the lines and triangles of the shape's
+    /// mesh, and its vertices up to 1e-5.
     fn assert_scaled<N: Recordable<D>, const D: usize>(shape: ShapeHandle<N, D>) {
         let units = UnitShapes::<N, D>::new();
         let (unit, scale) = units.scaled(&shape);

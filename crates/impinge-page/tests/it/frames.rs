@@ -17,8 +17,8 @@ fn frame(asker: &mut Asker, layers: &Value, selected: &[u32]) -> (Value, Vec<u8>
     asker.ask_with(&asked.to_string(), &[])
 }
 
-/// Records two overlapping boxes of one shape, the second rotated by a quarter turn, and a sensor
-/// beside them.
+/// Records two overlapping boxes with one shape handle, of which the second is rotated by a quarter
+/// turn, and a sensor beside them. The first box is at x = `at`.
 fn scene<N: Viewed<D>, const D: usize>(at: f64) -> Asker {
     let mut scene = Scene::<N, D>::new(Registry::new());
     let cube = scene.add([at, 0.0, 0.0], Cuboid::new(all::<N, D>(1.0)));
@@ -175,8 +175,8 @@ fn recorded_queries_are_drawn_where_they_were_asked() {
     recorded_queries::<f64, 3>();
 }
 
-/// Tests that balls, boxes and ellipsoids of any size are instances of two meshes, with their sizes
-/// as scale.
+/// Tests that balls, boxes and ellipsoids of different sizes are instances of two meshes, with
+/// their radii, half extents and half axes as scale factors.
 fn sizes<N: Viewed<D>, const D: usize>() {
     let mut scene = Scene::<N, D>::new(Registry::new());
     let lengths = Vector::<N, D>::from_fn(|axis, _| N::lit([0.5, 2.0, 3.0][axis]));

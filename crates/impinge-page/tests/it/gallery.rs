@@ -1,4 +1,4 @@
-//! Tests that each sample opens, runs and is drawn, and that controls accept valid and reject
+//! Tests that each sample opens, runs and is drawn, and that a control accepts valid and rejects
 //! invalid values.
 
 use impinge_samples::entries;

@@ -1,4 +1,5 @@
-//! Tests that any bytes, as a message, have a response.
+//! Tests that truncated, damaged and random messages have a response, and that damaged recordings
+//! open up to the damage.
 
 use impinge::shape::Ball;
 use impinge_page::{Engine, message, parts};
@@ -157,8 +158,8 @@ fn random_bytes_are_answered() {
     }
 }
 
-/// Returns the length of a header. After the part that `Header::read` needs follow a margin and a
-/// checksum of four bytes each.
+/// Returns the length of the header of a recording in `f32`. The part that `Header::read` needs is
+/// followed by a margin and a checksum of four bytes each.
 fn header_bytes(bytes: &[u8]) -> usize {
     let is_whole = |length: &usize| Header::read(&bytes[..*length]).is_ok();
     (0..).find(is_whole).expect("the header of a recording is whole") + 8
@@ -180,7 +181,7 @@ fn damaged_recordings_open_up_to_the_damage() {
         assert_eq!(answer["complete"], false, "byte {place}");
         answer["steps"].as_u64()
     };
-    // The recording has two updates. The later the damage is, the more of them remain.
+    // The recording has two updates. The later the damage is, the more updates remain.
     let truncated = (0..bytes.len()).filter_map(|length| check(&bytes[..length], length));
     let mut truncated: Vec<_> = truncated.collect();
     assert!(truncated.is_sorted(), "{truncated:?}");

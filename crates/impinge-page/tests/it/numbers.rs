@@ -1,4 +1,5 @@
-//! Compares distances, points, contacts, rays and boxes with closed forms.
+//! Compares distances, points, contacts, ray hits, boxes and picked objects with values computed by
+//! hand.
 
 use impinge::shape::{Ball, Cuboid};
 use impinge_page::Viewed;
@@ -7,8 +8,8 @@ use serde_json::{Value, json};
 
 use crate::support::{Asker, Scene, all, three};
 
-/// Returns the recording of a ball of radius 1 at the origin, a ball of radius 0.5 at x = 4, a box
-/// of half extents 1 at x = 10, and a box of half extents 0.5 that overlaps it by 0.25.
+/// Opens the recording of a ball of radius 1 at the origin, a ball of radius 0.5 at x = 4, a box of
+/// half extents 1 at x = 10, and a box of half extents 0.5 that overlaps the larger box by 0.25.
 fn scene<N: Viewed<D>, const D: usize>() -> Asker {
     let mut scene = Scene::<N, D>::new(Registry::new());
     scene.add([0.0; 3], Ball::new(N::ONE));

@@ -10,8 +10,8 @@ use crate::support::{Asker, Scene, place};
 /// The number of steps of the recording.
 const STEPS: usize = 10;
 
-/// Returns the recording of a ball of radius 1 that moves from x = -5 by 1 per step, past a ball of
-/// radius 0.5 at the origin.
+/// Returns the recording of a ball of radius 1 that moves from x = -5 by 1 per step, through a ball
+/// of radius 0.5 at the origin.
 fn scene<N: Viewed<D>, const D: usize>() -> Vec<u8> {
     let mut scene = Scene::<N, D>::new(Registry::new());
     let ball = scene.add([-5.0, 0.0, 0.0], Ball::new(N::ONE));
@@ -23,7 +23,7 @@ fn scene<N: Viewed<D>, const D: usize>() -> Vec<u8> {
     scene.finish()
 }
 
-/// Returns the x coordinate of the ball at a step.
+/// Returns the x coordinate of the moving ball at a step.
 fn x_at(step: usize) -> f64 {
     f64::from(u32::try_from(step).expect("a small step")) - 6.0
 }

@@ -1,4 +1,4 @@
-//! Helpers: they make recordings, and send requests in JSON to an engine.
+//! Helpers that make recordings, and that send requests in JSON to an engine.
 
 use impinge::math::{Pose, Vector};
 use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
@@ -13,7 +13,7 @@ use serde_json::Value;
 pub(crate) struct Asker(pub(crate) Engine);
 
 impl Asker {
-    /// Opens a recording.
+    /// Creates an engine and opens a recording in it.
     pub(crate) fn of(recording: &[u8]) -> Self {
         let mut asker = Self::default();
         let (info, _) = asker.ask_with(r#"{"do": "open", "kind": "recording"}"#, recording);
@@ -86,7 +86,7 @@ pub(crate) fn floats(section: &Value, payload: &[u8]) -> Vec<f32> {
     words(section, payload).into_iter().map(f32::from_bits).collect()
 }
 
-/// Returns the words of a section of a payload.
+/// Returns the 32-bit unsigned integers of a section of a payload.
 pub(crate) fn words(section: &Value, payload: &[u8]) -> Vec<u32> {
     let [start, count] = [0, 1].map(|part| {
         usize::try_from(section[part].as_u64().expect("a section has numbers"))
@@ -96,7 +96,7 @@ pub(crate) fn words(section: &Value, payload: &[u8]) -> Vec<u32> {
     bytes.map(|four| u32::from_le_bytes([four[0], four[1], four[2], four[3]])).collect()
 }
 
-/// Returns three numbers of a JSON array.
+/// Returns the first three numbers of a JSON array.
 pub(crate) fn three(value: &Value) -> [f64; 3] {
     [0, 1, 2].map(|axis| value[axis].as_f64().expect("a coordinate"))
 }

@@ -39,8 +39,8 @@ impl Reasons {
     }
 }
 
-/// Records objects of which all but the last three are at the origin. The filter rejects pairs of
-/// objects with equal data.
+/// Records six objects, of which the first three are at the origin. The filter `teams` of the
+/// registry rejects pairs of objects with equal data.
 fn scene<N: Recordable<D>, const D: usize>(registry: Registry<N, D, Vec<u8>>) -> Vec<u8> {
     let [mut shy, mut other] = [CollisionGroups::new(); 2];
     shy.set_membership(&[2]);

@@ -1,5 +1,5 @@
-// The axes of the world in a corner of the picture, rotated with the camera. They show the directions of the
-// coordinates in the panels.
+// The axes of the world in a corner of the picture, as the camera sees them. They show the directions of the
+// coordinates that the panels list.
 
 import { Vector3 } from "three";
 import type { StageCamera } from "./camera";
@@ -27,7 +27,9 @@ export class Axes {
     layer.append(this.element);
   }
 
-  /** Turns the axes with the camera. Axes that point towards the reader are drawn last. */
+  /**
+   * Draws the axes for the rotation of the camera, in order of their depth: axes that point towards the reader last.
+   */
   place({ camera }: StageCamera): void {
     const turned = this.axes.map((axis, index) => {
       // In the frame of the camera x is right, y up, and z points to the reader.

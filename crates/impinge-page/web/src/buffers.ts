@@ -3,7 +3,7 @@
 
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, type InterleavedBuffer } from "three";
 
-/** Uploads the first `numbers` numbers with the next picture. */
+/** Marks the first `numbers` numbers of a buffer for upload before the next picture. */
 export function upload(buffer: BufferAttribute | InterleavedBuffer, numbers: number): void {
   buffer.clearUpdateRanges();
   buffer.addUpdateRange(0, numbers);
@@ -11,8 +11,8 @@ export function upload(buffer: BufferAttribute | InterleavedBuffer, numbers: num
 }
 
 /**
- * Returns a capacity for `count` elements: the present one if it suffices, else at least twice as much, so that growing
- * is rare.
+ * Returns a capacity for `count` elements: `capacity` if it suffices, else at least twice as much, so that buffers
+ * seldom grow.
  */
 export function grown(capacity: number, count: number): number {
   return count <= capacity ? capacity : Math.max(count, 2 * capacity, 64);
@@ -29,7 +29,9 @@ export class Buffers {
     this.reserve(1);
   }
 
-  /** Reserves `count` vertices. The content is lost, since each frame writes all vertices. */
+  /**
+   * Reserves space for `count` vertices. If the buffers grow, their content is lost; each frame writes all vertices.
+   */
   reserve(count: number): void {
     const capacity = grown(this.capacity, count);
     if (capacity === this.capacity) return;
@@ -47,7 +49,7 @@ export class Buffers {
     return this.geometry.getAttribute(name).array as Float32Array;
   }
 
-  /** Draws and uploads the first `count` vertices. */
+  /** Limits drawing and upload to the first `count` vertices. */
   end(count: number): void {
     this.geometry.setDrawRange(0, count);
     for (const [name, size] of Object.entries(this.sizes)) {

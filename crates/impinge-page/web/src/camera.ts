@@ -1,4 +1,4 @@
-// The camera of a stage: perspective that orbits in 3D, orthographic that pans in 2D.
+// The camera of a stage: a perspective camera that orbits in 3D, or an orthographic camera that pans in 2D.
 //
 // There are two frames of coordinates. The world's frame is in f64. The stage's frame, in which three.js draws, is the
 // world's frame minus the origin of the stage, so that f32 keeps its precision in scenes far from 0. `Vec3` is a point
@@ -38,12 +38,12 @@ export interface CanvasPoint {
 const FIELD = 38;
 /** The tangent of half of `FIELD`: half the height of the visible area at a distance of 1. */
 const HALF_HEIGHT = Math.tan(MathUtils.degToRad(FIELD / 2));
-/** The fraction of the height or width that fitted bounds cover, whichever they fill first. */
+/** The maximum fraction of the canvas that a fitted box covers, in height and in width. */
 const FILL = 0.9;
-/** Points farther from the centre of the bounds than this many radii are not framed. */
+/** `fit` ignores points farther from the centre of the bounding sphere than this many radii. */
 const FAR = 2.5;
 
-/** The camera of a stage. Lengths are those of the world. */
+/** The camera of a stage. The unit of length is that of the world. */
 export class StageCamera {
   readonly camera: PerspectiveCamera | OrthographicCamera;
   readonly controls: OrbitControls;
@@ -53,9 +53,9 @@ export class StageCamera {
   readonly box = new Box3();
   /** The bounding sphere of the box. Sizes of lights and grids are proportional to its radius. */
   readonly sphere = new Sphere();
-  /** The box that `fit` framed: the bounds and some of the drawn points around them. */
+  /** The box that the camera frames: the bounds, extended by the drawn points near them. */
   private readonly framed = new Box3();
-  /** Whether the camera has not been moved by hand since it was aimed. */
+  /** Whether the camera frames `framed`: true after `aim`, until the reader moves the camera. */
   private isFitted = false;
   private readonly caster = new Raycaster();
   /** The width of the canvas divided by its height. */
@@ -77,7 +77,10 @@ export class StageCamera {
     this.framed.copy(this.box);
   }
 
-  /** Sets the bounds of the world and the origin of the stage. NaN and empty bounds become a cube of half extent 1. */
+  /**
+   * Sets the bounds of the world and the origin of the stage. Empty and non-finite bounds become a cube of half extent
+   * 1.
+   */
   frame([mins, maxs]: [Vec3, Vec3], origin: Vec3): void {
     this.origin = origin;
     this.box.set(this.relative(mins), this.relative(maxs));
@@ -85,13 +88,13 @@ export class StageCamera {
       this.box.setFromCenterAndSize(new Vector3(), new Vector3(2, 2, this.flat ? 0 : 2));
     }
     this.box.getBoundingSphere(this.sphere);
-    // A world of one point has radius 0, but other sizes are divided by the radius.
+    // A world of one point has the radius 0, by which other code would divide.
     this.sphere.radius = Math.max(this.sphere.radius, 1e-12);
   }
 
   /**
-   * Frames the bounds and those of `points` that are near them. Far points, such as the end of an unbounded ray, are
-   * ignored. In 3D the view direction is between the front, the right and the top.
+   * Frames the bounds and the `points` near them. Far points, such as the end of an unbounded ray, are ignored. In 3D
+   * the camera looks from the front, the right and above.
    */
   fit(points: Iterable<Vector3>): void {
     const { center, radius } = this.sphere;
@@ -101,8 +104,8 @@ export class StageCamera {
   }
 
   /**
-   * Sets the size of the canvas in CSS pixels. A fitted view is fitted again unless the reader moved the camera, for
-   * example when a phone is turned.
+   * Sets the size of the canvas in CSS pixels, for example when a phone is turned. The view is fitted again unless the
+   * reader has moved the camera.
    */
   resize(width: number, height: number): void {
     this.aspect = width / Math.max(height, 1);
@@ -112,7 +115,7 @@ export class StageCamera {
     this.camera.updateProjectionMatrix();
   }
 
-  /** Moves the near and the far plane around the scene. Called before each picture. */
+  /** Updates the matrices before each picture. In 3D, also moves the near and the far plane around the scene. */
   place(): void {
     if (this.camera instanceof PerspectiveCamera) {
       const { center, radius } = this.sphere;
@@ -127,7 +130,7 @@ export class StageCamera {
     this.camera.updateMatrixWorld();
   }
 
-  /** Returns the world's ray under a point of the window, in CSS pixels. */
+  /** Returns the ray of the world that a point of the window shows; `x` and `y` are in CSS pixels. */
   rayAt(x: number, y: number): WorldRay {
     this.caster.setFromCamera(this.toDevice(x, y), this.camera);
     const { origin, direction } = this.caster.ray;
@@ -138,7 +141,7 @@ export class StageCamera {
     return { from: this.absolute(origin), direction: direction.toArray() };
   }
 
-  /** Returns the point under a point of the window, in the plane through `anchor` that is parallel to the screen. */
+  /** Returns the point that a point of the window shows in the plane through `anchor` parallel to the screen. */
   pointAt(x: number, y: number, anchor: Vec3): Vec3 {
     this.caster.setFromCamera(this.toDevice(x, y), this.camera);
     const normal = this.camera.getWorldDirection(new Vector3());
@@ -149,7 +152,7 @@ export class StageCamera {
     return [px, py, this.flat ? 0 : pz];
   }
 
-  /** Returns the position of a point of the stage on the canvas; null behind the camera. */
+  /** Returns the position of a point of the stage on the canvas; null behind the camera and beyond the far plane. */
   project(at: Vector3): CanvasPoint | null {
     const device = at.clone().project(this.camera);
     if (!(device.z <= 1)) return null;
@@ -157,7 +160,7 @@ export class StageCamera {
     return { x: ((device.x + 1) / 2) * clientWidth, y: ((1 - device.y) / 2) * clientHeight, depth: device.z };
   }
 
-  /** Returns the number of CSS pixels of a length of 1 at the target. */
+  /** Returns the number of CSS pixels that a length of 1 covers at the target of the camera. */
   pixelsPerUnit(): number {
     const height = this.canvas.clientHeight;
     if (this.camera instanceof PerspectiveCamera) {
@@ -184,7 +187,7 @@ export class StageCamera {
     this.controls.update();
   }
 
-  /** Zooms by a factor; above 1 the camera comes nearer. */
+  /** Zooms by a factor; a factor above 1 enlarges the picture. */
   zoom(factor: number): void {
     if (this.camera instanceof OrthographicCamera) this.camera.zoom *= factor;
     else {
@@ -214,7 +217,7 @@ export class StageCamera {
     if (this.camera instanceof PerspectiveCamera) this.fitPerspective(this.camera);
     else this.fitOrthographic(this.camera);
     this.controls.update();
-    // After the controls have reported the change.
+    // The listener of the controls, which `update` calls, resets the flag.
     this.isFitted = true;
     this.place();
   }
@@ -231,7 +234,7 @@ export class StageCamera {
   }
 
   /**
-   * Moves the camera to the nearest position from which the box is inside the view, and in the middle of it.
+   * Moves the camera to the nearest position from which the framed box is inside the view and in its middle.
    *
    * Let p be a corner relative to the centre, b the unit vector back to the camera, a an axis of the screen, t the
    * tangent of half the field along a. From a distance d, shifted by s along a, the corner is visible where |p·a - s|
@@ -255,13 +258,13 @@ export class StageCamera {
       const { plus, minus } = ends(axis, tangent);
       return (plus + minus) / (2 * tangent);
     });
-    // The camera stays outside of the bounds, even if they are a line towards it.
+    // The camera stays outside of the bounds, even if the framed box is a line towards the camera.
     const distance = Math.max(1.2 * this.sphere.radius, ...distances);
     const { target } = this.controls;
     target.copy(this.sphere.center);
     for (const { axis, tangent } of axes) {
-      // Along the axis that is not full, the corners are at the edges of a narrower view, whose tangent is a fixed
-      // point.
+      // Along the axis that the box does not fill, the box fits into a narrower view. Its tangent is the fixed point of
+      // this iteration.
       let { plus, minus } = ends(axis, tangent);
       for (let round = 0; round < 8; round += 1) ({ plus, minus } = ends(axis, (plus + minus) / (2 * distance)));
       target.addScaledVector(axis, (plus - minus) / 2);
@@ -279,7 +282,7 @@ export class StageCamera {
     this.spread(camera);
   }
 
-  /** Makes the view contain the bounds for any aspect ratio. Bounds without a size are enlarged. */
+  /** Sets the extent of the view so that it contains the framed box. A box without a size is enlarged. */
   private spread(camera: OrthographicCamera): void {
     const { x, y } = this.framed.getSize(new Vector3());
     this.halfHeight = Math.max(y, x / this.aspect, this.sphere.radius * 1e-3) / 2 / FILL;
@@ -303,7 +306,7 @@ function viewDirection(up: Vector3): Vector3 {
   return front.normalize().addScaledVector(up, 0.42).normalize();
 }
 
-/** Returns the corners: the bits of an index choose between the least and the greatest coordinate. */
+/** Returns the corners of a box. The bits of a corner's index choose between the least and the greatest coordinates. */
 function cornersOf({ min, max }: Box3): Vector3[] {
   return Array.from(
     { length: 8 },

@@ -10,7 +10,7 @@ export const LINEAR = Float32Array.from(
   (_, byte) => scratch.setRGB(byte / 255, 0, 0, SRGBColorSpace).r,
 );
 
-/** Converts a colour of the engine, with red in the lowest byte, to CSS. */
+/** Converts a colour of the engine, with red in the lowest byte, to an opaque colour of CSS. */
 export function css(color: number): string {
   const [red, green, blue] = [color & 255, (color >>> 8) & 255, (color >>> 16) & 255];
   return `rgb(${red} ${green} ${blue})`;

@@ -9,7 +9,7 @@ export type Value = number | string | boolean | null;
 /** A function that sends a control's new value to the engine, which may reject it. */
 type Send = (name: string, value: Value) => void;
 
-/** The form of a sample. `update` writes values that the sample changed by itself. */
+/** The form with the controls of a sample. */
 export class ControlForm {
   readonly element = make("form", { class: "controls" });
   /** For each control, by its name, a function that shows a value. */
@@ -20,12 +20,12 @@ export class ControlForm {
     for (const control of controls) this.element.append(this.row(control, send));
   }
 
-  /** Shows new values. Buttons, and controls that the form does not have, are skipped. */
+  /** Shows values that the sample has changed. Buttons, and controls that the form lacks, are skipped. */
   update(controls: Control[]): void {
     for (const control of controls) this.writers.get(control.name)?.(control);
   }
 
-  /** Returns the element of one control with its name beside it. */
+  /** Returns the element of a control, labelled with the name of the control. */
   private row(control: Control, send: Send): HTMLElement {
     switch (control.kind) {
       case "number":

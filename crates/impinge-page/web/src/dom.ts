@@ -1,4 +1,4 @@
-// Functions that create elements. Texts of files are set as text and never parsed as HTML.
+// Functions that create elements. Texts, for example from recordings, are set as text and never parsed as HTML.
 
 type Attributes = Record<string, string | number | boolean | null>;
 type Child = Node | string;

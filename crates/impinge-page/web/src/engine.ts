@@ -34,7 +34,7 @@ export type Source = { kind: "recording"; bytes: Uint8Array } | { kind: "stream"
 export class EngineError extends Error {
   constructor(
     text: string,
-    /** The `code` of the protocol. */
+    /** A `code` of the protocol, or `memory` if there is no memory for the message. */
     readonly code: string,
   ) {
     super(text);
@@ -47,12 +47,12 @@ export async function loadEngine(bytes: Uint8Array<ArrayBuffer>): Promise<Engine
   return new Engine(instance.exports as unknown as Exports);
 }
 
-/** The payload of messages without one. */
+/** The empty payload. */
 const NO_BYTES = new Uint8Array(0);
 
 /**
- * The engine. Each method sends a message of the protocol and throws an `EngineError` if it is rejected. Calls are
- * synchronous.
+ * The engine. Each method sends a message of the protocol, and throws an `EngineError` if the engine rejects it. Calls
+ * are synchronous.
  */
 export class Engine {
   private readonly encoder = new TextEncoder();
@@ -65,7 +65,7 @@ export class Engine {
     return this.ask<{ samples: SampleEntry[] }>({ do: "samples" }).samples;
   }
 
-  /** Replaces the stage. */
+  /** Opens a stage in place of the current stage. */
   open(source: Source): Info {
     if (source.kind === "recording") {
       return this.ask({ do: "open", kind: source.kind }, source.bytes);
@@ -83,12 +83,12 @@ export class Engine {
     return this.ask({ do: "seek", step });
   }
 
-  /** Makes steps. A recording stops at its end. */
+  /** Advances by `steps` steps. A recording stops at its end. */
   advance(steps: number): Status {
     return this.ask({ do: "advance", steps });
   }
 
-  /** Starts a sample again with the present values of its controls. */
+  /** Starts a sample again with the present values of its controls, or goes to the first update of a recording. */
   reset(): Status {
     return this.ask({ do: "reset" });
   }
@@ -99,8 +99,8 @@ export class Engine {
   }
 
   /**
-   * Returns the frame to draw. `known` is the number of meshes that the page has. The answer is valid until the next
-   * call.
+   * Returns the frame to draw, which is valid until the next call. `known` is the number of mesh ids that the page has
+   * received: only meshes with larger or equal ids are sent.
    */
   frame(layers: string[], selected: number[], known: number): Frame {
     const { text, payload } = this.exchange({ do: "frame", layers, selected, known }, NO_BYTES);
@@ -118,7 +118,8 @@ export class Engine {
   }
 
   /**
-   * Returns the object under a ray. In 2D `reach` is the largest distance of an object that does not contain the point.
+   * Returns the first object that a ray hits. In 2D, returns the object that contains the point `from`, or the nearest
+   * object within the distance `reach`.
    */
   pick(from: Vec3, direction: Vec3, reach: number): PickAnswer {
     return this.ask({ do: "pick", from, direction, reach });
@@ -144,7 +145,7 @@ export class Engine {
     return this.exchange(message, payload).text as Answer;
   }
 
-  /** Writes a message into the module's memory, and reads the answer in place. */
+  /** Writes a message into the module's memory and processes it. The payload of the answer stays in that memory. */
   private exchange(message: object, payload: Uint8Array): { text: unknown; payload: Payload } {
     const text = this.encoder.encode(JSON.stringify(message));
     const start = 4 + padded(text.length);
@@ -159,7 +160,7 @@ export class Engine {
     return this.answer(this.exports.call(bytes.length));
   }
 
-  /** Reads an answer; its payload stays in the module's memory. */
+  /** Parses the text of the answer at an address; throws the error that it reports. */
   private answer(address: number): { text: unknown; payload: Payload } {
     const { buffer } = this.exports.memory;
     const length = new DataView(buffer, address).getUint32(0, true);
@@ -171,7 +172,7 @@ export class Engine {
   }
 }
 
-/** Returns the next multiple of four, where payloads begin. */
+/** Rounds a length up to a multiple of four: payloads begin at such offsets. */
 function padded(length: number): number {
   return (length + 3) & ~3;
 }

@@ -2,7 +2,10 @@
 
 import type { Vec3 } from "./protocol";
 
-/** Formats a number with at least four significant digits; very large and very small numbers have an exponent. */
+/**
+ * Formats a number with four significant digits, or six from 1000 on, without trailing zeros. Magnitudes below 1e-4 or
+ * from 1e7 on have an exponent. Null and undefined become a dash.
+ */
 export function number(value: number | null | undefined): string {
   if (value === null || value === undefined) return "–";
   if (!Number.isFinite(value)) return String(value);
@@ -11,13 +14,13 @@ export function number(value: number | null | undefined): string {
   return minus(String(Number(value.toPrecision(size >= 1000 ? 6 : 4))));
 }
 
-/** Formats the first `dimension` coordinates; a dash for null. */
+/** Formats the first `dimension` coordinates. Null and undefined become a dash. */
 export function vector(value: Vec3 | null | undefined, dimension: number): string {
   if (!value) return "–";
   return value.slice(0, dimension).map(number).join(", ");
 }
 
-/** Returns a count with its noun: `1 object`, `2 objects`. */
+/** Returns a count with its noun, such as `1 object` or `2 objects`. Thin spaces separate thousands. */
 export function counted(count: number, noun: string): string {
   return `${count.toLocaleString("en").replaceAll(",", "\u202f")} ${noun}${count === 1 ? "" : "s"}`;
 }

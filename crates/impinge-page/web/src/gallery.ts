@@ -3,7 +3,7 @@
 import { button, make, setText } from "./dom";
 import type { SampleEntry } from "./protocol";
 
-/** The filters in the order of their buttons. */
+/** The filters by dimension, in the order of their buttons. */
 const FILTERS = [
   { wanted: "all", label: "All" },
   { wanted: "2", label: "2D" },
@@ -51,7 +51,7 @@ export function sampleInAddress(): string | null {
   return new URLSearchParams(location.hash.slice(1)).get("sample");
 }
 
-/** Returns whether the sample has the dimension, and all the words in its texts. */
+/** Returns whether the sample has the wanted dimension, and its texts contain all words. */
 function matches({ name, title, about, dimension }: SampleEntry, wanted: string, words: string[]): boolean {
   const text = `${name} ${title} ${about}`.toLowerCase();
   return (wanted === "all" || wanted === String(dimension)) && words.every((word) => text.includes(word));

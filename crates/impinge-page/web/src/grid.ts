@@ -1,6 +1,7 @@
 // The grid: a plane whose shader draws lines where a coordinate is a multiple of the cell.
 //
-// The lines stay thin and smooth at any distance. They fade where the distance between them is below a pixel.
+// The lines are smooth, and about a pixel wide at any distance. They fade out where a cell is smaller than 20 pixels,
+// and are invisible below about 3 pixels.
 
 import { Color, DoubleSide, Mesh, PlaneGeometry, ShaderMaterial, Vector3 } from "three";
 import { ORDER } from "./order";
@@ -14,7 +15,8 @@ export class Grid extends Mesh<PlaneGeometry, ShaderMaterial> {
   constructor() {
     const uniforms = { tint: { value: new Color() }, extent: { value: 1 } };
     const shaders = { vertexShader: VERTEX, fragmentShader: FRAGMENT };
-    // Offset towards the camera, as faces of solids are offset away: so the grid is visible on a floor at its height.
+    // The grid is offset towards the camera, so that it is visible on a floor at its height. Faces of solids are offset
+    // in the opposite direction.
     const offset = { polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -1 };
     const options = { transparent: true, depthWrite: false, side: DoubleSide };
     super(new PlaneGeometry(2, 2), new ShaderMaterial({ ...shaders, ...options, ...offset, uniforms }));
@@ -27,8 +29,8 @@ export class Grid extends Mesh<PlaneGeometry, ShaderMaterial> {
   }
 
   /**
-   * Places the grid for the bounds that the camera frames. A cell is the largest power of ten below their radius. Lines
-   * are at multiples of it if the origin of the stage is one.
+   * Places the grid for the bounds that the camera frames. The size of a cell is the largest power of ten that does not
+   * exceed the radius of the bounding sphere. The lines are at multiples of the cell size in the frame of the stage.
    */
   fit({ box, sphere, flat }: StageCamera, up: Vector3): void {
     const cell = 10 ** Math.floor(Math.log10(sphere.radius));
@@ -55,7 +57,8 @@ const VERTEX = `
     gl_Position = projectionMatrix * modelViewMatrix * vec4(cells, 0.0, 1.0);
   }`;
 
-// The function `lines` is 1 on a line and 0 from half a pixel beside it. Lines at tenths of a cell are fainter.
+// The function `lines` is 1 on a line and decreases to 0 at a distance of one pixel. Lines at tenths of a cell are
+// fainter.
 const FRAGMENT = `
   uniform vec3 tint;
   uniform float extent;

@@ -1,11 +1,11 @@
-// Pointer and keyboard: translates gestures and keys to calls of their actions.
+// Pointer and keyboard: calls the actions of gestures and of keys.
 
 import { button, make } from "./dom";
 
 /** The meaning of a click or drag. */
 export type Mode = "select" | "pair" | "ray" | "move";
 
-/** The modes, each with a hint for the reader and a key. */
+/** The modes in the order of their buttons, each with a hint for the reader and a key. */
 const MODES: { mode: Mode; label: string; hint: string; key: string }[] = [
   { mode: "select", label: "Select", hint: "Click an object; Shift-click a second one", key: "s" },
   { mode: "pair", label: "Pair", hint: "Click two objects: why do they touch, or not?", key: "p" },
@@ -29,7 +29,7 @@ export interface Gestures {
   click(at: At, second: boolean): void;
   /** Called in 2D while a ray is drawn from one point to another, and when it ends. */
   drawRay(from: At, to: At): void;
-  /** Called when a drag may begin. Returns whether there is an object to move. */
+  /** Called when a drag may begin. Grabs the object there, and returns whether there is one. */
   grab(at: At): boolean;
   /** Moves the grabbed object. */
   move(to: At): void;
@@ -89,7 +89,7 @@ export class Pointer {
     this.hint.textContent = MODES.find((other) => other.mode === mode)?.hint ?? "";
   }
 
-  /** Two fingers pinch and pan: this ends a click, or the gesture of the first finger. */
+  /** Ends the gesture of the first finger when a second finger goes down, since two fingers pinch and pan. */
   private interrupt(event: PointerEvent): void {
     if (!event.isPrimary && this.start) this.finish();
   }
@@ -113,7 +113,10 @@ export class Pointer {
     return "click";
   }
 
-  /** Turns a press into a drag once it has moved far enough. */
+  /**
+   * Continues a press. Once it has moved by more than the tolerance, it is a drag, which draws a ray or moves an
+   * object.
+   */
   private drag(event: PointerEvent): void {
     if (!this.start || !event.isPrimary) return;
     const at = pointOf(event);
@@ -144,14 +147,14 @@ function pointOf({ clientX, clientY, pointerType }: PointerEvent): At {
   return { x: clientX, y: clientY, radius: pointerType === "touch" ? PRECISION.touch : PRECISION.mouse };
 }
 
-/** A key or several, the action, and the description in the list of keys. */
+/** One or more keys with a common action, and the description of the action in the list of keys. */
 export interface Key {
   keys: string[];
   text: string;
   act: (event: KeyboardEvent) => void;
 }
 
-/** Calls the action of a key, unless the reader types or the focused control uses the key. */
+/** Calls the actions of keys, unless a modifier other than Shift is held or the focused element uses the key. */
 export function listen(keys: Key[], signal: AbortSignal): void {
   const acts = new Map(keys.flatMap(({ keys: names, act }) => names.map((name) => [name, act] as const)));
   const press = (event: KeyboardEvent): void => {
@@ -190,7 +193,7 @@ export function fillHelp(dialog: HTMLDialogElement, keys: Key[]): void {
   );
 }
 
-/** Returns the names of keys as on a keyboard. A long list is shortened to its first and its last key. */
+/** Returns the names of keys as on a keyboard. A list of more than two keys is shortened. */
 function keyNames(keys: string[]): string[] {
   const names = keys.map((key) => (key === " " ? "Space" : key.replace("Arrow", "").replace("Escape", "Esc")));
   if (names.length <= 2) return names;

@@ -7,7 +7,7 @@ import { type Links, objectPanel, pairPanel, rayPanel } from "./panels";
 import type { Info, Vec3 } from "./protocol";
 import type { AnswerLine } from "./view";
 
-/** A ray in world coordinates; the direction is a unit vector. */
+/** A ray in the frame of the world; the direction is a unit vector. */
 interface Ray {
   from: Vec3;
   direction: Vec3;
@@ -15,7 +15,7 @@ interface Ray {
   longest: number | null;
 }
 
-/** The number of neighbours in the panel of an object, including the object itself. */
+/** The number of nearest objects that the panel of an object requests; the object itself is usually one of them. */
 const NEIGHBOURS = 4;
 
 /** The current question: one or two selected objects, or a ray. */
@@ -39,7 +39,7 @@ export class Inquiry {
     pair: (a, b) => this.set([a, b], null),
   };
 
-  /** Returns `true` if there is no question. */
+  /** Whether nothing is selected and no ray is drawn. */
   get empty(): boolean {
     return this.selected.length === 0 && this.ray === null;
   }
@@ -52,12 +52,12 @@ export class Inquiry {
     else this.set([object], null);
   }
 
-  /** Ends the question. */
+  /** Clears the selection and the ray. */
   clear(): void {
     this.set([], null);
   }
 
-  /** Casts a ray from a point. `longest` is a length, since the direction is normalized. */
+  /** Casts a ray of length `longest` from a point; null for an unbounded ray. Does nothing if the direction is zero. */
   shoot(from: Vec3, direction: Vec3, longest: number | null): void {
     const length = Math.hypot(...direction);
     if (!(length > 0)) return;
@@ -65,8 +65,8 @@ export class Inquiry {
   }
 
   /**
-   * Computes the answers again after a step or a move of objects. Returns the lines to draw. If an object is gone, the
-   * panel says so.
+   * Computes the answer to the current question, for instance again after a step. Writes the panel, and returns the
+   * lines to draw. If the engine rejects the question because an object is gone, the panel says so.
    */
   answer(): AnswerLine[] {
     try {
@@ -98,7 +98,10 @@ export class Inquiry {
     this.write(key, () => objectPanel(answer, nearest, this.info.dimension, this.links));
   }
 
-  /** Returns a line between the nearest points with the distance; for overlapping objects with the depth. */
+  /**
+   * Writes the panel of two objects. Returns a line between their nearest points with the distance, or between the
+   * points of the contact with the depth if the objects overlap.
+   */
   private answerPair(a: number, b: number): AnswerLine[] {
     const answer = this.engine.pair(a, b);
     this.write(JSON.stringify(answer), () => pairPanel(answer, this.info.dimension, this.links));
@@ -109,19 +112,19 @@ export class Inquiry {
     return points ? [{ ends: points, kind: "distance", text: number(answer.distance) }] : [];
   }
 
-  /** Returns the ray, and the normal at each hit. */
+  /** Writes the panel of a ray. Returns the ray and the normals at its first hits as lines. */
   private answerRay({ from, direction, longest }: Ray): AnswerLine[] {
     const hits = this.engine.ray(from, direction, longest);
     this.write(JSON.stringify(hits), () => rayPanel(hits, this.info.dimension, this.links));
     const last = hits.at(-1);
-    // An unbounded ray is drawn up to 1.1 times the time of its last hit.
+    // An unbounded ray is drawn up to 1.1 times the time of its last hit, or with the length 1.1 without a hit.
     const drawn = longest ?? (last?.time ?? 1) * 1.1;
     const end = from.map((part, index) => part + (direction[index] ?? 0) * drawn) as Vec3;
     const ticks = hits.slice(0, 50).map((hit): AnswerLine => normalTick(hit.point, hit.normal, drawn, hit.object));
     return [{ ends: [from, end], kind: "ray" }, ...ticks];
   }
 
-  /** Writes the panel if its key differs, so that the focused element stays. */
+  /** Replaces the content of the panel if `key` differs from the last one. The focus stays at the same button. */
   private write(key: string, content: () => Node[]): void {
     if (key === this.written) return;
     this.written = key;
@@ -132,7 +135,7 @@ export class Inquiry {
   }
 }
 
-/** Returns the normal of a hit as a short line, named by the object. */
+/** Returns the normal of a hit as a short line, with the index of the hit object as its text. */
 function normalTick(point: Vec3, normal: Vec3 | null, scale: number, object: number): AnswerLine {
   const length = normal ? scale * 0.04 : 0;
   const tip = point.map((part, index) => part + (normal?.[index] ?? 0) * length) as Vec3;

@@ -1,4 +1,4 @@
-// The actions of gestures and keys on a stage.
+// The effects of gestures and keys on a stage.
 
 import type { Engine } from "./engine";
 import { byId } from "./dom";
@@ -26,7 +26,7 @@ export function interact(engine: Engine, viewer: Viewer, leave: (() => void) | n
   return tools;
 }
 
-/** Carries out the pointer's gestures as questions and moves. */
+/** Translates the gestures of the pointer to questions and to moves of objects. */
 class StageGestures implements Gestures {
   private dragged: Dragged | null = null;
 
@@ -37,7 +37,8 @@ class StageGestures implements Gestures {
   ) {}
 
   /**
-   * Selects an object, or casts a ray from the camera in 3D. In 2D a ray is a drag, and a click selects in every mode.
+   * Casts a ray from the camera in the mode `ray` in 3D; otherwise selects the object under the pointer. In 2D a ray is
+   * a drag, and a click selects in every mode.
    */
   click(at: At, second: boolean): void {
     const { camera } = this.viewer.view;
@@ -55,7 +56,10 @@ class StageGestures implements Gestures {
     this.viewer.inquiry.shoot(a, direction, Math.hypot(...direction));
   }
 
-  /** Grabs the object under the pointer. Stops time, since a running world would move the object back. */
+  /**
+   * Grabs the object under the pointer, and selects it. Stops time, since a running world would move the object back.
+   * Returns whether there is an object.
+   */
   grab(at: At): boolean {
     const { camera } = this.viewer.view;
     this.viewer.attempt(() => {
@@ -70,7 +74,8 @@ class StageGestures implements Gestures {
   }
 
   /**
-   * Moves the object so that the grabbed point stays under the pointer, at its distance from the plane of the screen.
+   * Moves the object so that the grabbed point stays under the pointer, in the plane parallel to the screen where it
+   * was grabbed.
    */
   move(to: At): void {
     if (!this.dragged) return;
@@ -101,13 +106,13 @@ class StageGestures implements Gestures {
     return this.engine.pick(from, direction, radius / camera.pixelsPerUnit());
   }
 
-  /** Returns the point of the world under a point of the window, in 2D. */
+  /** Returns the point of a 2D world under a point of the window. */
   private point(at: At): Vec3 {
     return this.viewer.view.camera.rayAt(at.x, at.y).from;
   }
 }
 
-/** Returns the keys of a stage with their words; `leave` goes back to the gallery. */
+/** Returns the keys of a stage with their actions; `leave` goes back to the gallery, and is null without a gallery. */
 function stageKeys(viewer: Viewer, leave: (() => void) | null): Key[] {
   const { player, view, inquiry, layers } = viewer;
   const turn = ({ key }: KeyboardEvent): void => {

@@ -1,8 +1,8 @@
 // Texts in the picture: elements above the canvas, so that they are sharp and can be in any script.
 //
-// A text is hidden if it would overlap another text or come near the point of another text. Answers to the reader have
-// precedence, then texts nearer to the camera, then earlier texts of the engine. So the same picture always shows the
-// same texts.
+// A text is hidden if it would overlap a text of higher precedence, or if a text of the engine would come near the
+// point of another such text. Answers to the reader have the highest precedence, then texts nearer to the camera, then
+// earlier texts of the engine. So the same picture always shows the same texts.
 
 import type { Vector3 } from "three";
 import type { CanvasPoint, StageCamera } from "./camera";
@@ -53,7 +53,7 @@ export class Labels {
     this.texts = texts;
   }
 
-  /** Replaces the texts of the page's answers, which come first. */
+  /** Replaces the texts of answers to the reader, which have precedence. */
   setAnswers(answers: PlacedText[]): void {
     this.answers = answers;
   }
@@ -90,7 +90,7 @@ export class Labels {
     });
   }
 
-  /** Returns the element of an index. */
+  /** Returns the element with an index. Creates it if the pool is not large enough; indices are used in order. */
   private element(index: number): HTMLElement {
     const found = this.pool[index];
     if (found) return found;
@@ -101,8 +101,8 @@ export class Labels {
   }
 
   /**
-   * Returns the rectangle of a text at the height of its point: to the right of the point, or to the left if it would
-   * leave the canvas.
+   * Returns the rectangle of a text at the height of its point: to the right of the point, or to the left if the text
+   * would not fit into the canvas on the right.
    */
   private beside({ x, y }: CanvasPoint, { offsetWidth: width, offsetHeight: height }: HTMLElement): Rectangle {
     const { clientWidth, clientHeight } = this.layer;
@@ -122,15 +122,15 @@ function write(element: HTMLElement, { text, color }: PlacedText): void {
 }
 
 /**
- * Returns whether the text of a point comes near to another point. Points nearer to each other than `CLEARANCE` share
- * one text, so they do not count.
+ * Returns whether a text, with its own point `own`, comes nearer than `CLEARANCE` to another point. False if both
+ * points are nearer to each other than that: such points share one text.
  */
 function comesNear({ left, top, right, bottom }: Rectangle, own: CanvasPoint, { x, y }: CanvasPoint): boolean {
   if (Math.hypot(own.x - x, own.y - y) < CLEARANCE) return false;
   return left - x < CLEARANCE && x - right < CLEARANCE && top - y < CLEARANCE && y - bottom < CLEARANCE;
 }
 
-/** Returns whether the distance of the rectangles is less than the gap. */
+/** Returns whether two rectangles overlap or are nearer to each other than `GAP`. */
 function overlap(a: Rectangle, b: Rectangle): boolean {
   return a.left < b.right + GAP && b.left < a.right + GAP && a.top < b.bottom + GAP && b.top < a.bottom + GAP;
 }

@@ -1,5 +1,5 @@
-// The layers of a frame as check boxes, with their colours as a legend. The colours are those of the engine. The style
-// sheet repeats them, since a frame contains only the colours of visible layers.
+// The layers of a frame as check boxes, with their colours as a legend. The style sheet repeats the colours of the
+// engine, since a frame contains only the colours of visible layers.
 
 import { make } from "./dom";
 
@@ -21,7 +21,7 @@ const LAYERS = [
 /** The engine's names of all layers. */
 export const LAYER_NAMES = LAYERS.map(({ name }) => name);
 
-/** The check boxes of the layers, which hold the state. */
+/** The check boxes of the layers. They hold the state: a layer is visible if its box is checked. */
 export class Layers {
   readonly element = make("ul", { class: "layers" });
   private readonly boxes = LAYERS.map(({ shown }) => make("input", { type: "checkbox", checked: shown }));
@@ -42,7 +42,7 @@ export class Layers {
   }
 }
 
-/** Returns a row with a check box, a colour, words and a key. */
+/** Returns the row of a layer: its check box, its colour, its description and its key. */
 function row(box: HTMLInputElement, index: number): HTMLElement {
   const { name, label } = LAYERS[index]!;
   const swatch = make("i", { class: `swatch ${name.replace(" ", "-")}`, "aria-hidden": "true" });

@@ -2,7 +2,9 @@
 
 import { PageError } from "./messages";
 
-/** Passes on the bytes of a stream in order, and returns when it ends. A failed request is an error with its reason. */
+/**
+ * Passes the bytes of a stream to `take` in order, and returns at its end. Throws a `PageError` if the request fails.
+ */
 export async function follow(address: string, take: (bytes: Uint8Array) => void): Promise<void> {
   const response = await fetch(address).catch(lost);
   if (!response.ok || !response.body) throw new PageError(refusal(response));
@@ -14,7 +16,7 @@ export async function follow(address: string, take: (bytes: Uint8Array) => void)
   }
 }
 
-/** Returns the reason why there is no stream. */
+/** Returns a sentence about the reason why the server refuses the stream. */
 function refusal({ status, statusText }: Response): string {
   if (status === 503) return "Too many pages follow this recording. Close one of them and load this page again.";
   return `The recording cannot be followed: its program answers ${status} ${statusText}.`;

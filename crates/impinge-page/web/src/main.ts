@@ -23,7 +23,7 @@ class Page {
     private readonly engine: Engine,
   ) {}
 
-  /** Opens the content of the file. Errors of a recording are passed to the caller. */
+  /** Opens the content of the file. Throws if the embedded recording cannot be opened. */
   open(): void {
     switch (this.scene.open) {
       case "recording":
@@ -91,7 +91,10 @@ class Page {
   }
 }
 
-/** Returns a line with the facts of a stage: dimension, scalar, number of steps, and the program that wrote it. */
+/**
+ * Returns a line with the dimension and the scalar of a stage, the number of steps of a recording that does not grow,
+ * and the program that wrote the recording.
+ */
 function facts(info: Info): string {
   const steps = info.steps === null || info.kind === "stream" ? [] : [`${info.steps} steps`];
   return [`${info.dimension}D`, info.scalar, ...steps, info.written_by].filter(Boolean).join(" · ");
@@ -109,7 +112,7 @@ function dismiss(): void {
   byId("notice").hidden = true;
 }
 
-/** Calls `act` and reports its error. */
+/** Calls `act`, and shows its error if it throws one. */
 function attempt(act: () => void): void {
   try {
     act();

@@ -5,7 +5,7 @@ import { EngineError } from "./engine";
 /** An error whose text is a sentence for readers. */
 export class PageError extends Error {}
 
-/** The sentences by the code of the engine. */
+/** The sentence for each code of an `EngineError`. */
 const SENTENCES: Record<string, string> = {
   message: "This page has made a mistake and goes on without what was asked. Loading it again may help.",
   "unknown-sample": "There is no sample of this name.",
@@ -20,7 +20,9 @@ const SENTENCES: Record<string, string> = {
 };
 const UNKNOWN = "Something went wrong in this page. Loading it again may help.";
 
-/** Returns a sentence about any thrown value. All but a `PageError` are also written to the browser's console. */
+/**
+ * Returns a sentence about any thrown value. Values other than a `PageError` are also written to the browser's console.
+ */
 export function sentence(error: unknown): string {
   if (error instanceof PageError) return error.message;
   console.warn(error);

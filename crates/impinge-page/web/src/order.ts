@@ -2,8 +2,8 @@
 // of the other parts covers all earlier parts.
 
 /**
- * Opaque solids write depth. Transparent solids and lines are drawn after them and write no depth, so that all of these
- * remain visible. In 2D there is no depth, and the order is that of the layers of a drawing.
+ * Opaque solids in 3D write depth. Transparent solids and lines are drawn after them and write no depth, so that all of
+ * these remain visible. In 2D nothing writes depth, so the order alone decides what is covered.
  */
 export const ORDER = {
   grid: 0,

@@ -23,7 +23,7 @@ export interface Links {
   pair(a: number, b: number): void;
 }
 
-/** Returns the panel of one object, with its neighbours by distance. */
+/** Returns the panel of an object, with its pairs and the nearest other objects. */
 export function objectPanel(
   answer: ObjectAnswer,
   nearest: NearAnswer["nearest"],
@@ -137,7 +137,9 @@ function sign(event: PairEvent): string {
   return "proximity";
 }
 
-/** Returns other objects by their distance from the origin of this one. */
+/**
+ * Returns a list of the nearest other objects, with their distances from the origin of this object; empty without one.
+ */
 function near(object: number, nearest: NearAnswer["nearest"], links: Links): Node[] {
   const others = nearest.filter((other) => other.object !== object);
   if (others.length === 0) return [];
@@ -168,7 +170,7 @@ function manifolds({ manifolds }: PairAnswer, dimension: number): HTMLElement {
   );
 }
 
-/** Returns a pair of an object; touching pairs are marked. */
+/** Returns a list item with the state of a pair and a link to it; touching pairs are marked. */
 function pairLink(object: number, pair: ObjectPair, links: Links): HTMLElement {
   const open = link(`${object} and ${pair.object}`, () => links.pair(object, pair.object));
   return make("li", { class: pair.touching ? "touch" : "" }, open, ` ${pairText(pair)}`);
@@ -181,7 +183,7 @@ function pairText(pair: ObjectPair): string {
   return pair.depth === null || pair.depth === undefined ? contacts : `${contacts}, depth ${number(pair.depth)}`;
 }
 
-/** Formats an angle in degrees: in 2D counterclockwise, in 3D with its axis. */
+/** Formats the rotation of an object as an angle in degrees: counterclockwise in 2D, with the axis in 3D. */
 function rotation({ rotation: [x, y, z, w] }: ObjectAnswer, dimension: number): string {
   if (dimension === 2) return `${number((2 * Math.atan2(z, w) * 180) / Math.PI)}°`;
   const sine = Math.hypot(x, y, z);
@@ -197,7 +199,7 @@ function queryText(query: ObjectAnswer["query"]): string {
   return [query.kind, ...numbers.map(([name, value]) => `${name} ${number(value as number)}`)].join(", ");
 }
 
-/** Returns the groups by their numbers; self-collision only if it is enabled. */
+/** Returns rows with the numbers of the groups in each list, and a row about self-collision if it is enabled. */
 function groupRows(groups: Groups): [string, string][] {
   const text = (value: number[] | "all"): string => {
     if (value === "all") return "all";

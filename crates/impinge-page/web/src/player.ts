@@ -23,7 +23,7 @@ export class Player {
   private owed = 0;
   /** The step that the reader chose last, until it is shown. */
   private wanted: number | null = null;
-  /** The first step that can be shown: before it the world of a recording is empty. */
+  /** The first step that can be shown: 1 for a recording, whose world is empty before; 0 for a sample. */
   private readonly first: number;
 
   constructor(
@@ -36,12 +36,12 @@ export class Player {
     this.first = info.kind === "stream" ? 1 : info.step;
   }
 
-  /** Returns the shown step, or the step of the next picture. */
+  /** The step of the next picture: the step that the reader has chosen, else the shown step. */
   get step(): number {
     return this.wanted ?? this.status.step;
   }
 
-  /** Returns `true` if the time can go back; samples only go forward. */
+  /** Whether time can go back: only in recordings, complete or growing. */
   get canSeek(): boolean {
     return this.info.kind !== "sample";
   }
@@ -51,7 +51,7 @@ export class Player {
     return this.info.steps !== null && this.step >= this.info.steps;
   }
 
-  /** Starts or stops time. A recording at its end starts again from its beginning. */
+  /** Starts or stops time. If a recording is at its end, starts again from its first step. */
   toggle(): void {
     if (!this.playing && this.atEnd) this.reset();
     this.following = false;
@@ -66,7 +66,7 @@ export class Player {
     this.changed(this.status);
   }
 
-  /** Makes single steps and stops time. Only recordings can go back. */
+  /** Stops time and goes by `steps` steps. A negative number goes back in recordings, and does nothing in samples. */
   move(steps: number): void {
     this.playing = false;
     if (this.canSeek) this.seek(this.step + steps);
@@ -74,7 +74,8 @@ export class Player {
   }
 
   /**
-   * Chooses the step of the next picture. If it is called several times before that picture, only the last call counts.
+   * Chooses the step of the next picture; does nothing in samples. Of several calls before that picture, only the last
+   * counts.
    */
   seek(step: number): void {
     if (!this.canSeek) return;
@@ -83,7 +84,7 @@ export class Player {
     this.following = this.info.kind === "stream" && this.wanted === last && step >= last;
   }
 
-  /** Goes to the end and follows it while the recording grows. */
+  /** Goes to the end of a recording. If it grows, follows its end from now on. */
   follow(): void {
     this.playing = false;
     this.seek(Number.MAX_SAFE_INTEGER);
@@ -104,13 +105,15 @@ export class Player {
     this.changed(this.status);
   }
 
-  /** Takes over new data of a live recording. */
+  /** Takes over the description of a live recording that has grown. */
   grow(info: Info): void {
     this.info = info;
     if (this.following) this.follow();
   }
 
-  /** Advances time before each picture; `seconds` is the time since the previous one. */
+  /**
+   * Goes to the chosen step and advances time, before each picture. `seconds` is the time since the previous picture.
+   */
   tick(seconds: number): void {
     if (this.wanted !== null) {
       const step = this.wanted;
@@ -120,7 +123,7 @@ export class Player {
     if (this.playing) this.run(Math.max(0, Math.min(seconds, MAX_PAUSE)));
   }
 
-  /** Makes the due whole steps. */
+  /** Advances by the whole steps that are due after `seconds`. At the end of a recording, stops time. */
   private run(seconds: number): void {
     const step = this.info.time_step > 0 ? this.info.time_step : 1 / 60;
     this.owed += (seconds * this.speed) / step;

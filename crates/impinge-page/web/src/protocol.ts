@@ -1,8 +1,8 @@
-// The types of messages and answers of the engine. `PROTOCOL.md` of the crate specifies them.
+// The types of the engine's answers, which `PROTOCOL.md` of the crate specifies.
 
 /** Three numbers; in 2D the third is 0. */
 export type Vec3 = [number, number, number];
-/** The components x, y, z, w. */
+/** The components x, y, z, w of a unit quaternion. */
 export type Quaternion = [number, number, number, number];
 
 /** A card of the gallery. */
@@ -49,7 +49,7 @@ export interface Info {
   written_by: string;
   /** The last step; null for samples, which have no end. */
   steps: number | null;
-  /** Whether the last record of a recording was read. */
+  /** Whether the record that ends a recording was read. */
   complete: boolean;
   /** The time between two steps, in seconds. */
   time_step: number;
@@ -106,7 +106,9 @@ export interface Label {
   layer: number;
 }
 
-/** The sections of a frame. Positions are relative to the origin; colours are words. */
+/**
+ * The sections of a frame. Positions are relative to `origin`; colours are 32-bit words with red in the lowest byte.
+ */
 export interface FrameText {
   origin: Vec3;
   meshes: FrameMesh[];
@@ -128,7 +130,7 @@ export interface FrameText {
   layers: string[];
 }
 
-/** A frame with its payload, which is the engine's memory: it must be read before the next call. */
+/** A frame with its payload, which lies in the engine's memory and is valid until the next call. */
 export interface Frame extends FrameText {
   payload: Payload;
 }
@@ -164,7 +166,7 @@ export type Groups = {
   self_collision: boolean;
 };
 
-/** A pair of an object after the last update, of contacts or of proximity. */
+/** The state of a pair of an object after the last update. `status` is present only for pairs with a proximity. */
 export interface ObjectPair {
   object: number;
   kind: string;
@@ -207,7 +209,7 @@ export interface Test {
   text: string;
 }
 
-/** The description of two objects. `points` is null if they overlap. */
+/** The description of two objects. `points` is null if the objects touch or overlap. */
 export interface PairAnswer {
   a: number;
   b: number;

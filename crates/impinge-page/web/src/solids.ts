@@ -27,10 +27,11 @@ import type { Frame } from "./protocol";
 /** The maximum angle in radians between faces that are shaded as one smooth surface. */
 const CREASE = 0.6;
 /**
- * The number of frames without instances after which a batch is released. Samples that alternate keep their batches.
+ * The number of frames without instances after which a batch is released. A batch whose instances come and go every few
+ * frames is kept.
  */
 const MAX_IDLE_FRAMES = 240;
-/** The alpha of opaque objects, and the number of values of alpha. */
+/** The alpha of opaque objects, and the number of possible values of alpha. */
 const [OPAQUE, ALPHAS] = [255, 256];
 /** The object index of an instance that is not an object. */
 const NO_OBJECT = 0xffffffff;
@@ -43,7 +44,7 @@ const rotation = new Quaternion();
 const scale = new Vector3();
 const pose = new Matrix4();
 
-/** A mesh, copied out of the engine's memory. Sizes are scales of instances, so ten thousand boxes share one mesh. */
+/** A mesh, copied out of the engine's memory. Instances of different sizes share a mesh: their scales differ. */
 interface Mesh {
   vertices: Float32Array;
   triangles: Uint32Array;
@@ -51,15 +52,15 @@ interface Mesh {
 }
 
 /**
- * Sections of a frame. The pose of an instance has seven numbers: a translation and a unit quaternion x, y, z, w. Its
- * scale has three, along the axes of its mesh.
+ * The poses and scales of a frame's instances. A pose has seven numbers: a translation and a unit quaternion x, y, z,
+ * w. A scale has three numbers: the factors along the axes of the mesh.
  */
 interface Poses {
   pose: Float32Array;
   scale: Float32Array;
 }
 
-/** The batches of a stage. The key of a batch is `mesh * ALPHAS + alpha`. */
+/** The batches of a stage. A batch is all instances of one mesh with one alpha; its key is `mesh * ALPHAS + alpha`. */
 export class Solids {
   /** All batches, for the scene. */
   readonly group = new Group();
@@ -67,7 +68,7 @@ export class Solids {
   private readonly batches = new Map<number, Batch>();
   /** The number of frames so far, to find idle batches. */
   private frames = 0;
-  /** Opposite corners of the boxes of instances that are not objects, such as the shape at the end of a cast. */
+  /** Opposite corners of the boxes around instances that are not objects, such as the shape at the end of a cast. */
   private readonly corners: Vector3[] = [];
 
   /** The number of mesh ids that were received: meshes with smaller ids are known. */
@@ -102,7 +103,7 @@ export class Solids {
     for (const [key, batch] of this.batches) this.release(key, batch);
   }
 
-  /** Copies new meshes out of the engine's memory, and deletes those that the engine dropped. */
+  /** Copies new meshes out of the engine's memory. Deletes the meshes that the engine dropped, with their batches. */
   private receive({ meshes, dropped, payload }: Frame): void {
     for (const id of dropped) this.meshes.delete(id);
     for (const [key, batch] of this.batches) if (!this.meshes.has(meshOf(key))) this.release(key, batch);
@@ -131,7 +132,7 @@ export class Solids {
     }
   }
 
-  /** Creates the batch of a key; undefined for a mesh that was not received. */
+  /** Creates the batch with a key; undefined if its mesh was not received. */
   private begin(key: number): Batch | undefined {
     const mesh = this.meshes.get(meshOf(key));
     if (!mesh) return undefined;
@@ -141,7 +142,7 @@ export class Solids {
     return batch;
   }
 
-  /** Releases a batch. Its mesh stays, since instances of it may appear again. */
+  /** Releases a batch. Its mesh stays, since instances of the mesh may appear again. */
   private release(key: number, batch: Batch): void {
     this.group.remove(batch.faces, batch.edges);
     batch.dispose();
@@ -149,12 +150,12 @@ export class Solids {
   }
 }
 
-/** Returns the id of the mesh of a batch's key. */
+/** Returns the id of the mesh in the key of a batch. */
 function meshOf(key: number): number {
   return Math.floor(key / ALPHAS);
 }
 
-/** All instances of one mesh with one opacity. */
+/** All instances of one mesh with one alpha. */
 class Batch {
   faces: InstancedMesh;
   readonly edges: LineSegments<InstancedBufferGeometry, ShaderMaterial>;
@@ -163,9 +164,12 @@ class Batch {
   used = 0;
   /** The number of instances for which the buffers have space. */
   private capacity = 0;
-  /** 4 × 4 matrices, column by column: scale, then rotation, then translation. */
+  /**
+   * The 4 × 4 matrices of the instances, column by column. They apply the scale, then the rotation, then the
+   * translation.
+   */
   private matrix = new InstancedBufferAttribute(new Float32Array(0), 16);
-  /** Red, green and blue in linear light. */
+  /** Red, green and blue of the instances in linear light. */
   private color = new InstancedBufferAttribute(new Float32Array(0), 3);
 
   constructor(data: Mesh, alpha: number, flat: boolean) {
@@ -198,7 +202,7 @@ class Batch {
     return [min, max];
   }
 
-  /** Draws and uploads the added instances. */
+  /** Marks the added instances for upload and drawing. A batch without instances is hidden. */
   show(shadows: boolean): void {
     const visible = this.count > 0;
     this.faces.visible = visible;
@@ -235,14 +239,14 @@ class Batch {
   }
 }
 
-/** Returns a copy with a larger capacity. */
+/** Returns a copy of an attribute with a larger capacity. */
 function larger(old: InstancedBufferAttribute, capacity: number): InstancedBufferAttribute {
   const array = new Float32Array(capacity * old.itemSize);
   array.set(old.array);
   return new InstancedBufferAttribute(array, old.itemSize).setUsage(DynamicDrawUsage);
 }
 
-/** Returns the triangles; in 3D with normals that are smooth except at creases. */
+/** Returns the triangles of a mesh; in 3D with normals that are smooth except at creases. */
 function facesOf(data: Mesh, flat: boolean): BufferGeometry {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(data.vertices, 3));
@@ -250,7 +254,7 @@ function facesOf(data: Mesh, flat: boolean): BufferGeometry {
   return flat ? geometry : toCreasedNormals(geometry, CREASE);
 }
 
-/** Returns the edges that the engine chose, such as those between faces at an angle. */
+/** Returns the lines of a mesh, which the engine has selected, for example the edges between faces at an angle. */
 function edgesOf(data: Mesh): InstancedBufferGeometry {
   const geometry = new InstancedBufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(data.vertices, 3));
@@ -258,7 +262,7 @@ function edgesOf(data: Mesh): InstancedBufferGeometry {
   return geometry;
 }
 
-/** Returns the material of faces: in 2D nearly opaque areas, in 3D shaded faces. */
+/** Returns the material of faces: in 2D unshaded areas, always slightly transparent; in 3D shaded faces. */
 function faceMaterial(alpha: number, flat: boolean): Material {
   const opacity = flat ? 0.92 * (alpha / OPAQUE) : alpha / OPAQUE;
   const options = { transparent: opacity < 1, opacity, depthWrite: !flat && opacity === 1, side: 2 as const };

@@ -22,8 +22,8 @@ import { ORDER } from "./order";
 import type { Frame } from "./protocol";
 
 /**
- * The layers that solids in front of them hide. The other layers lie on the surfaces of solids, where rounding would
- * decide which is nearer. They are drawn over all solids.
+ * The layers whose lines are hidden by solids in front of them. The lines of the other layers lie mostly on the
+ * surfaces of solids, where rounding would decide which is nearer, so they are drawn over all solids.
  */
 const IN_DEPTH = new Set(["object", "tight box", "loosened box", "tree"]);
 
@@ -45,7 +45,7 @@ export class Lines {
   /** The number of segments since `begin`. */
   private count = 0;
 
-  /** Lines in the order of `ORDER.lines` are tested for depth. */
+  /** `order` is a value of `ORDER`. Only lines with the value `ORDER.lines` are tested for depth. */
   constructor(width: number, order: number) {
     const depthTest = order === ORDER.lines;
     this.material = new LineMaterial({ linewidth: width, vertexColors: true, depthTest, depthWrite: false });
@@ -56,14 +56,17 @@ export class Lines {
     this.object.renderOrder = order;
   }
 
-  /** Removes the segments, and reserves space for `most`. */
+  /** Removes the segments, and reserves space for `most` segments. */
   begin(most: number): void {
     this.count = 0;
     const capacity = grown(this.ends.length / 6, Math.max(most, 1));
     if (6 * capacity > this.ends.length) this.reserve(capacity);
   }
 
-  /** Adds a segment: six numbers from `ends[at]`, and a colour's sRGB bytes from `bytes[color]`. */
+  /**
+   * Adds a segment: the six numbers that begin at `ends[at]`, and the sRGB bytes of a colour that begin at
+   * `bytes[color]`.
+   */
   add(ends: ArrayLike<number>, at: number, bytes: ArrayLike<number>, color: number): void {
     for (let index = 0; index < 6; index += 1) this.ends[6 * this.count + index] = ends[at + index] ?? 0;
     for (let index = 0; index < 3; index += 1) {
@@ -77,7 +80,7 @@ export class Lines {
     return pointsOf(this.ends, 2 * this.count);
   }
 
-  /** Draws and uploads the added segments. */
+  /** Marks the added segments for upload and drawing. */
   end(): void {
     this.object.visible = this.count > 0;
     this.geometry.instanceCount = this.count;
@@ -118,7 +121,9 @@ export class Dots {
     this.object.renderOrder = ORDER.dots;
   }
 
-  /** Sets the scale: `pixels` of the screen for a length of 1, and `density` pixels of the screen for one of CSS. */
+  /**
+   * Sets the scale: the number of CSS pixels per unit of length, and the number of pixels of the screen per CSS pixel.
+   */
   scale(pixels: number, density: number): void {
     const { uniforms } = this.object.material;
     uniforms.pixels!.value = pixels;
@@ -178,7 +183,7 @@ export class Faces {
     this.object.visible = triangles.count > 0;
   }
 
-  /** Returns the corners of the triangles. `end` has set the draw range. */
+  /** Returns the corners of the triangles; `Buffers.end` has set their number as the draw range. */
   points(): Generator<Vector3> {
     return pointsOf(this.buffers.array("position"), this.buffers.geometry.drawRange.count);
   }
@@ -189,11 +194,12 @@ export class Faces {
   }
 }
 
-/** Everything in a frame except objects. */
+/** The lines, points and triangles of a frame. */
 export class Strokes {
   readonly group = new Group();
-  /** Lines of the layers `IN_DEPTH`, and all others. */
+  /** The lines of the layers `IN_DEPTH`. */
   private readonly behind = new Lines(1.5, ORDER.lines);
+  /** The lines of all other layers. */
   private readonly above = new Lines(2.25, ORDER.linesAbove);
   private readonly dots = new Dots();
   private readonly faces = new Faces();
@@ -212,7 +218,7 @@ export class Strokes {
     for (const part of [this.behind, this.above, this.faces]) yield* part.points();
   }
 
-  /** Replaces the content by that of a frame. */
+  /** Replaces the lines, points and triangles by those of a frame. */
   update(frame: Frame): void {
     const { lines, payload } = frame;
     const inDepth = frame.layers.map((name) => IN_DEPTH.has(name));
@@ -237,8 +243,8 @@ function* pointsOf(numbers: Float32Array, count: number): Generator<Vector3> {
 }
 
 /**
- * Returns the material of points. Their size is a length in the world, limited to `least` to 11 CSS pixels on the
- * screen.
+ * Returns the material of dots. Their diameter is a length in the world, clamped to the range from `least` to 11 CSS
+ * pixels on the screen.
  */
 function dotMaterial(): ShaderMaterial {
   return new ShaderMaterial({

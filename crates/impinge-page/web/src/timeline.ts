@@ -1,7 +1,7 @@
 // The time line: a slider over the steps, in front of marks at the steps that have changes.
 //
-// The slider is that of the browser, with its support of pointer, touch and assistive technology. Its thumb is as wide
-// as both margins of the marks together, so that its middle is above the mark of its step.
+// The slider is an input element, so the browser supports pointer, touch and assistive technology. Its thumb is as wide
+// as both margins of the marks together, so that the middle of the thumb is at the mark of its step.
 
 import { make } from "./dom";
 import type { Mark } from "./protocol";
@@ -13,11 +13,11 @@ const PAD = 10;
 /** The height in CSS pixels; the style sheet has the same value. */
 const HEIGHT = 58;
 /**
- * The positions of the rows from top to bottom: added, removed and changed; started; the track; stopped; proximities
- * and queries.
+ * The distances of the rows from the top in CSS pixels: `changed` has added, removed and changed objects, `queries` has
+ * queries and proximities. Started and stopped contacts are bars above and below `track`.
  */
 const ROWS = { changed: 8, track: HEIGHT / 2, queries: 50 };
-/** The length of the longest bar. */
+/** The length of the longest bar in CSS pixels. */
 const BAR = 13;
 
 /** The kinds of marks in the order of the legend. */
@@ -45,7 +45,7 @@ export class Timeline {
     new ResizeObserver(() => this.layout()).observe(this.element);
   }
 
-  /** Sets the number of steps and the marks, which grow with a live recording. */
+  /** Sets the number of steps and the marks; called again when a live recording has grown. */
   setMarks(steps: number, marks: Mark[]): void {
     this.steps = steps;
     this.marks = marks;
@@ -60,7 +60,7 @@ export class Timeline {
     this.slider.style.setProperty("--played", String(this.part(step)));
   }
 
-  /** Returns the step of the next or previous mark; null if there is none. */
+  /** Returns the step of the next (1) or previous (-1) mark; null if there is none. */
   neighbour(step: number, direction: 1 | -1): number | null {
     const found =
       direction > 0 ? this.marks.find((mark) => mark.step > step) : this.marks.findLast((mark) => mark.step < step);
@@ -83,7 +83,7 @@ export class Timeline {
     return this.element.clientWidth;
   }
 
-  /** Returns the position of a step on the track, from 0 at the first to 1 at the last. */
+  /** Returns the position of a step on the track, from 0 at step 0 to 1 at the last step. */
   private part(step: number): number {
     return this.steps === 0 ? 0 : step / this.steps;
   }
@@ -112,7 +112,7 @@ export class Timeline {
     this.draw();
   }
 
-  /** Shows the marks under the pointer. */
+  /** Shows the step under the pointer, and the marks in its bin. */
   private hover(event: PointerEvent): void {
     const part = (event.clientX - this.element.getBoundingClientRect().left - PAD) / (this.width - 2 * PAD);
     const step = Math.round(Math.max(0, Math.min(part, 1)) * this.steps);
@@ -130,7 +130,7 @@ export class Timeline {
   }
 }
 
-/** Returns a count with its noun. */
+/** Returns the count of a kind in words. */
 function describe(kind: (typeof KINDS)[number], count: number): string {
   if (kind === "queries") return count === 1 ? "1 query" : `${count} queries`;
   if (kind === "proximities") return count === 1 ? "1 proximity" : `${count} proximities`;
@@ -141,7 +141,7 @@ function describe(kind: (typeof KINDS)[number], count: number): string {
 function drawMark(context: CanvasRenderingContext2D, x: number, counts: Counts, color: (name: string) => string): void {
   context.lineCap = "butt";
   context.lineWidth = BIN - 1;
-  // The length is logarithmic in the count, so that both one and a thousand are visible.
+  // The length is 4 for a count of one, and grows with the logarithm of the count up to a count of eight.
   const length = (count: number): number => Math.min(BAR, 4 + 3 * Math.log2(count));
   if (counts.started > 0)
     stroke(context, [x, ROWS.track - 4, x, ROWS.track - 4 - length(counts.started)], color("started"));
@@ -189,7 +189,7 @@ function stroke(
   context.stroke();
 }
 
-/** Returns the meaning of the marks, for the foot of the page. */
+/** Returns the list of the signs with their meanings, for the foot of the page. */
 export function legend(): HTMLElement {
   const signs = { started: "▮", stopped: "▮", proximities: "○", added: "+", removed: "×", changed: "–", queries: "●" };
   const list = make("ul", { class: "legend", "aria-label": "Marks of the time line" });

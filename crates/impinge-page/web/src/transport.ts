@@ -42,7 +42,7 @@ export class Transport {
     if (player.canSeek) this.timeline.setStep(player.step);
   }
 
-  /** Takes over the length and the marks of a recording. */
+  /** Takes over the length and the marks of a recording that has grown. */
   grow(): void {
     const { steps, marks } = this.player.info;
     if (steps !== null) this.timeline.setMarks(steps, marks);

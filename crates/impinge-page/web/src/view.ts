@@ -19,7 +19,7 @@ export interface AnswerLine {
 }
 
 /**
- * Draws a stage. Positions in frames are in the stage's frame, positions in answers are in the world's frame; see
+ * Draws a stage. Frames have positions in the stage's frame of coordinates, answers have positions in the world's; see
  * `camera.ts`.
  *
  * The picture is drawn only after changes: call `update` after a frame, `answer` after a question, then `render`.
@@ -71,12 +71,12 @@ export class View {
     this.placeLight();
   }
 
-  /** Moves the camera so that the world and the drawings around it are in the view. */
+  /** Moves the camera so that the world and the lines, triangles and shapes drawn near it are in the view. */
   fit(): void {
     this.camera.fit([...this.solids.points(), ...this.strokes.points()]);
   }
 
-  /** Replaces the content by that of another frame, which `render` will draw. */
+  /** Replaces the drawn frame; `render` draws the new one. */
   update(frame: Frame): void {
     const hasMoved = frame.origin.some((part, axis) => part !== this.origin[axis]);
     this.origin = frame.origin;
@@ -84,7 +84,7 @@ export class View {
     this.strokes.update(frame);
     this.labels.set(frame.labels.map(({ at, text, color }) => ({ at: new Vector3(...at), text, color: css(color) })));
     this.light.shadow.needsUpdate = true;
-    // The origin is final once the stage has an object; before that nothing was drawn that could jump.
+    // The origin is final once the stage has an object. So if it changes, no object was drawn before that could jump.
     if (!hasMoved) return;
     this.frame(this.bounds);
     this.fit();
@@ -107,7 +107,7 @@ export class View {
     );
   }
 
-  /** Draws the picture once. */
+  /** Draws the picture. */
   render(): void {
     this.camera.place();
     this.strokes.scale(this.camera.pixelsPerUnit(), this.renderer.getPixelRatio());
@@ -178,8 +178,8 @@ export class View {
     // About two texels of the shadow map, as a length in the world. Without this bias surfaces cast stripes of shadow
     // on themselves.
     shadow.normalBias = radius * 2e-3;
-    // The box is aligned with the light and contains the ball around the world, from before the lamp to behind the
-    // world.
+    // The box is aligned with the light and contains the bounding sphere of the world. It extends from near the lamp to
+    // behind the world.
     const half = 1.2 * radius;
     Object.assign(shadow.camera, { left: -half, right: half, top: half, bottom: -half });
     Object.assign(shadow.camera, { near: 0.1 * radius, far: 5 * radius });
@@ -188,7 +188,7 @@ export class View {
   }
 }
 
-/** Creates the renderer of the page: one for all stages, since browsers allow few. */
+/** Creates the renderer of the page. All stages share it, since browsers limit the number of WebGL contexts. */
 export function makeRenderer(canvas: HTMLCanvasElement): WebGLRenderer {
   const renderer = new WebGLRenderer({ canvas, antialias: true });
   renderer.shadowMap.enabled = true;

@@ -14,7 +14,7 @@ import type { Info, Status } from "./protocol";
 import { Transport } from "./transport";
 import { View } from "./view";
 
-/** The minimum time between two updates of the panels while time runs, in milliseconds. */
+/** The minimum time between two updates of the world's panel while time runs, in milliseconds. */
 const PANEL_PAUSE = 120;
 /** The minimum time between two updates of the summary for assistive technology, in milliseconds. */
 const SUMMARY_PAUSE = 1500;
@@ -74,7 +74,7 @@ export class Viewer {
     requestAnimationFrame((time) => this.loop(time));
   }
 
-  /** Returns a signal that `close` aborts, so that listeners end. */
+  /** The signal that `close` aborts. Listeners that use it end with the stage. */
   get signal(): AbortSignal {
     return this.controller.signal;
   }
@@ -109,7 +109,7 @@ export class Viewer {
     this.view.dispose();
   }
 
-  /** Takes over new data of a live recording. */
+  /** Takes over the description of a live recording that has grown. */
   grow(info: Info): void {
     this.player.grow(info);
     this.transport.grow();
@@ -145,8 +145,8 @@ export class Viewer {
   }
 
   /**
-   * Runs before each picture of the screen, until the stage is closed. All times are those of pictures, since other
-   * clocks may be ahead of them.
+   * Runs before each picture of the screen, until the stage is closed. All times are those that the browser passes for
+   * pictures, since its other clocks may be ahead of them.
    */
   private loop(time: number): void {
     if (this.signal.aborted) return;
@@ -158,14 +158,17 @@ export class Viewer {
     requestAnimationFrame((next) => this.loop(next));
   }
 
-  /** Simplifies the picture if pictures take too long, as with software rendering. One long pause does not count. */
+  /**
+   * Simplifies the picture if pictures take too long on average, as with software rendering. One pause does not
+   * suffice.
+   */
   private watchPace(passed: number): void {
     if (!this.player.playing || this.pace > SLOW) return;
     this.pace += (Math.min(passed, 4 * SLOW) - this.pace) / 20;
     if (this.pace > SLOW) this.view.simplify();
   }
 
-  /** Brings the parts up to date: the frame before the picture, and the panels last, since they may wait. */
+  /** Updates the parts that are out of date: the frame before the picture, and the panels last, since they may wait. */
   private bringUpToDate(time: number): void {
     if (this.stale.frame) {
       this.stale.frame = false;
@@ -191,7 +194,7 @@ export class Viewer {
     this.summarize(time);
   }
 
-  /** Writes a summary in words for assistive technology. */
+  /** Writes a summary in words for assistive technology; while time runs, at most once in `SUMMARY_PAUSE`. */
   private summarize(time: number): void {
     const { player } = this;
     if (player.playing && time - this.last.summary < SUMMARY_PAUSE) {

@@ -49,7 +49,7 @@ test("boxes in 2D cover the pixels that the fitted bounds say", options, async (
   await until(page, /step 120/);
   await settle(page);
   const project = await projection2(page, BOUNDS2);
-  // The blue boxes are every fourth box in rows of eight: columns 0 and 4, rows 0 to 7, at a distance of 1.
+  // Every fourth box is blue. In rows of eight these are columns 0 and 4, of rows 0 to 7, whose centres are 1 apart.
   const [low, high] = [project([-0.5, 8, 0]), project([6.5, 0, 0])];
   const seen = await silhouette(page, "blue");
   for (const [one, other] of [
@@ -61,7 +61,7 @@ test("boxes in 2D cover the pixels that the fitted bounds say", options, async (
       `${JSON.stringify(one)} is not ${JSON.stringify(other)}`,
     );
   }
-  // Fifteen boxes of area 1: normals cover parts of them, and edges are darker.
+  // Fifteen boxes of area 1 are blue. A normal covers a part of one, and their edges are darker.
   const box = (high.x - low.x) / 7;
   const expected = 15 * box * box;
   assert.ok(seen.pixels > 0.8 * expected && seen.pixels < 1.05 * expected, `${seen.pixels} of ${expected} pixels`);

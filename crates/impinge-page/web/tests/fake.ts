@@ -1,6 +1,6 @@
 // A small engine of boxes without rotation, with the exports of the real engine. With it the page's drawing can be
-// tested and measured without the cost of collision detection. All answers are in closed form. `texts2:60` is
-// `boxes2:60` with a text at each box.
+// tested and measured without the cost of collision detection. Rays and searches of nearest objects find nothing. The
+// stage `texts2:60` is `boxes2:60` with a text at each box.
 
 import type { Exports } from "../src/engine";
 import type { Control, FrameText, Label, Section, Vec3 } from "../src/protocol";
@@ -20,8 +20,8 @@ interface Stage {
 }
 
 /**
- * Returns boxes in a square or a cube. The name, such as `boxes2:400` or `boxes3:10000`, has the dimension and their
- * number.
+ * Returns a stage with boxes in a square or a cube. Its name, such as `boxes2:400` or `boxes3:10000`, has the dimension
+ * and the number of boxes.
  */
 function makeStage(name: string, steps: number | null): Stage {
   const isNamed = name.startsWith("texts");
@@ -126,7 +126,7 @@ class FakeEngine {
 
   private go(message: Record<string, unknown>): object {
     const steps = ((message.do === "seek" ? message.step : message.steps) as number) ?? 1;
-    // The real engine rejects these too.
+    // The real engine rejects such numbers too.
     if (!(Number.isInteger(steps) && steps >= 0)) return { error: `invalid value: ${steps}`, code: "message" };
     this.step = message.do === "seek" ? steps : this.step + steps;
     this.step = Math.min(this.step, this.stage.steps ?? Infinity);
@@ -207,7 +207,7 @@ class FakeEngine {
     return boxes.map(({ at }, index) => ({ at, text: `number ${index}`, color: 0xff3cc8ff, layer: 0 }));
   }
 
-  /** Returns the first box that a ray hits, by the slab method. */
+  /** Returns the first box that a ray hits, by the slab method; in 2D the first box that contains the point `from`. */
   private pick(from: Vec3, direction: Vec3): object {
     let best = { object: null as number | null, time: Infinity };
     this.boxes.forEach(({ at, half }, object) => {
@@ -333,7 +333,7 @@ class Writer {
   }
 }
 
-/** The address of messages; 0 would mean that there is no memory. */
+/** The address of messages. It is not 0, which would mean that there is no memory. */
 const ADDRESS = 8;
 
 /** Returns the exports of a module whose memory is replaced by each call. */

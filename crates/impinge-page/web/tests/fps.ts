@@ -1,6 +1,6 @@
-// Measures how many pictures per second the page draws of a moving world. The engine of boxes is used, so that the cost
-// is that of drawing. The time of scripts, including that engine, is the cost of the page with a graphics card; without
-// one the remaining time is that of the rasterizer.
+// Measures how many pictures per second the page draws of a moving world. The engine is that of `fake.ts`, so that most
+// of the cost is drawing. The time of scripts, which includes this engine, is what remains with a graphics card;
+// without a card, the rest of the time is spent in the rasterizer.
 
 import { findBrowser, launch, settle, until, visit, write } from "./support";
 
@@ -26,7 +26,9 @@ async function main(): Promise<void> {
   await browser.close();
 }
 
-/** Runs in the page and counts its pictures: each picture of the moving world is one iteration of its loop. */
+/**
+ * Runs in the page, and counts animation frames for `duration` milliseconds. The page draws the moving world in each.
+ */
 async function countPictures(duration: number): Promise<number> {
   const start = performance.now();
   let pictures = 0;

@@ -1,7 +1,7 @@
 // Tests of the whole page: template, bundle, the module of the engine, and recordings with known numbers.
 //
-// The recordings are written by `examples/falling_ball.rs`: a ball of radius 0.5 falls from a height of 3, by 0.1 in each
-// step, onto a floor from -4 to 4 whose top is at 0. A second ball rests at x = 2.
+// The recordings are written by `examples/falling_ball.rs`: a ball of radius 0.5 falls from a height of 3, by 0.1 in
+// each step, onto a floor from -4 to 4 whose top is at 0. A second ball rests at x = 2.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
@@ -54,7 +54,7 @@ async function listed(page: Page, term: string): Promise<number> {
   return Number(text.replace("\u2212", "-"));
 }
 
-/** Waits until the panel of the selection matches. */
+/** Waits until the text of the selection's panel matches a pattern. */
 async function selected(page: Page, pattern: RegExp): Promise<void> {
   await page.waitForFunction(
     (source) => new RegExp(source).test(document.querySelector(".selection")?.textContent ?? ""),
@@ -209,7 +209,7 @@ test("a ball in 3D is picked where the camera has it, and the picture covers the
   await page.close();
 });
 
-/** Serves the page and a recording that arrives in pieces. */
+/** Returns a server of the page and of a recording, which it sends in four pieces. */
 function serve(recording: Uint8Array): Server {
   const scene = { open: "live", title: "Live", log: "/log" } as const;
   return createServer((request, response) => {
@@ -278,12 +278,12 @@ test(
     await page.evaluate(() => document.querySelector<HTMLButtonElement>("[data-wanted='2']")?.click());
     const shown = await page.$$eval(".card:not([hidden])", (cards) => cards.length);
     assert.equal(shown, dimensions.filter((text) => text === "2D").length);
-    // Every eighth sample: a browser without a GPU draws slowly, and the engine's own tests run all of them.
+    // Only every eighth sample runs: a browser without a GPU draws slowly, and the tests of the engine run all samples.
     for (const name of names.filter((_, index) => index % 8 === 0)) {
       await page.evaluate((hash) => (location.hash = hash), name);
       // The test does not wait for a picture: rendering ten thousand objects in software is slow.
       const summary = await until(page, /^step 0: /).catch(() => assert.fail(`${name} does not open`));
-      // A picture of so many objects takes minutes in software, so the test only checks that the sample opens.
+      // A picture of a thousand or more objects takes minutes in software, so such a sample need only open.
       if (/^step 0: \d+\s\d{3} objects/.test(summary)) continue;
       await page.keyboard.press("ArrowRight");
       await until(page, /^step 1: \d/).catch(() => assert.fail(`${name} does not run`));
@@ -303,7 +303,7 @@ test(
     const { page, errors } = await visit(browser, "about:blank", { motion: true, undrawn: true });
     for (const { name } of samples) {
       for (const way of ["link", "reload"]) {
-        // If only the sample in the address of the same file changed, the page would not be loaded again.
+        // Without this, only the hash of the address would change, and the browser would not load the page again.
         if (way === "link") await page.goto("about:blank");
         await (way === "link" ? page.goto(`${address}#sample=${name}`) : page.reload());
         await until(page, /^step [1-9]/).catch(() => assert.fail(`${name} does not run by ${way}`));

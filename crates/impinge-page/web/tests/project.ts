@@ -1,5 +1,5 @@
-// Computes positions of points of a world on the screen, independently of the page's camera, which is tested against
-// them.
+// Computes the positions of a world's points on the screen, independently of the page's camera. The tests compare the
+// pictures of the page with these positions.
 
 import type { Page } from "puppeteer-core";
 import { PerspectiveCamera, Vector3 } from "three";
@@ -26,7 +26,9 @@ async function canvasOf(page: Page): Promise<Rectangle> {
 /** The fraction of the canvas that fitted bounds cover. */
 const FILL = 0.9;
 
-/** Returns the projection of a 2D world whose bounds were fitted: they fill the height or the width. */
+/**
+ * Returns the projection of a 2D world with fitted bounds: they cover the fraction `FILL` of the height or the width.
+ */
 export async function projection2(page: Page, [low, high]: [Vec3, Vec3]): Promise<Projection> {
   const { x, y, width, height } = await canvasOf(page);
   const scale = FILL * Math.min(width / (high[0] - low[0]), height / (high[1] - low[1]));
@@ -42,9 +44,9 @@ export function corners([low, high]: [Vec3, Vec3]): Vec3[] {
 }
 
 /**
- * Returns the projection of a 3D world with y up. Its bounds are in the middle of a field of 38 degrees and fill the
- * height or the width. The page solves for the camera in closed form; here it is found by iteration: centred, then
- * moved nearer or farther.
+ * Returns the projection of a 3D world with y up. Its bounds are in the middle of a field of view of 38 degrees, and
+ * cover the fraction `FILL` of the height or the width. The page computes the distance of the camera in closed form.
+ * Here an iteration centres the bounds, then moves the camera nearer or farther.
  */
 export async function projection3(page: Page, bounds: [Vec3, Vec3]): Promise<Projection> {
   const { x, y, width, height } = await canvasOf(page);

@@ -46,13 +46,13 @@ export function launch(path: string): Promise<Browser> {
   return puppeteer.launch({ executablePath: path, args: FLAGS });
 }
 
-/** Returns the module of the engine, whose path is in the environment; null if it was not built. */
+/** Returns the module of the engine, whose path is in `IMPINGE_PAGE_WASM`; null if the variable is not set. */
 export function findModule(): Uint8Array | null {
   const path = process.env.IMPINGE_PAGE_WASM;
   return path ? readFileSync(path) : null;
 }
 
-/** Returns the golden recording in 2D or 3D. */
+/** Returns the golden recording of the crate `impinge-record` in 2D or 3D. */
 export function golden(dimension: 2 | 3): Uint8Array {
   return readFileSync(join(WEB, `../../impinge-record/tests/golden/scene${dimension}.rec`));
 }
@@ -73,7 +73,7 @@ export function fill({ scene, recording, wasm }: Parts): string {
   return template.replace(/\{\{([A-Z]+)\}\}/g, (whole, name: string) => values[name] ?? whole);
 }
 
-/** Writes a file as the command does, and returns its address. */
+/** Writes a page with these parts into a temporary folder, and returns its address. */
 export function write(parts: Parts): string {
   const path = join(mkdtempSync(join(tmpdir(), "page-")), "page.html");
   writeFileSync(path, fill(parts));
@@ -148,7 +148,7 @@ function watchBanner(): void {
   });
 }
 
-/** Waits until the summary for assistive technology matches. */
+/** Waits until the summary for assistive technology matches a pattern, and returns the summary. */
 export async function until(page: Page, pattern: RegExp): Promise<string> {
   await page.waitForFunction(
     (source) => new RegExp(source).test(document.getElementById("summary")?.textContent ?? ""),
@@ -158,7 +158,7 @@ export async function until(page: Page, pattern: RegExp): Promise<string> {
   return page.$eval("#summary", (element) => element.textContent ?? "");
 }
 
-/** Waits until the page has drawn. */
+/** Waits for some time, in which the page usually draws. */
 export async function settle(page: Page, milliseconds = 400): Promise<void> {
   await page.evaluate((pause) => new Promise((done) => setTimeout(done, pause)), milliseconds);
 }

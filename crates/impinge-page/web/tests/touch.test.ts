@@ -69,7 +69,7 @@ test("a tap selects, two taps in the mode of pairs ask for a distance, a tap bes
   assert.match(await tap(page, project(FIRST)), /Object 0\b/);
   await page.tap(".modes button:nth-child(2)");
   assert.match(await tap(page, project(THIRD)), /Pair of 0 and 2[\s\S]*distance\s+2\b/);
-  // In the mode of pairs no box is within a finger's width of this tap.
+  // This tap is farther from all boxes than the tolerance of a finger, so it clears the selection.
   assert.equal(await tap(page, project([4, 13.5, 0])), "");
   assert.deepEqual(errors, []);
   await page.close();

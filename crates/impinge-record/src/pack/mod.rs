@@ -1,6 +1,6 @@
 //! Packed recordings: the calls of a recording in about a tenth of its bytes.
 //!
-//! Records are split into streams, and poses are predicted from earlier ones, as `poses.rs`
+//! Records are split into streams, and poses are predicted from earlier poses, as `poses.rs`
 //! describes. The residuals are small numbers, which deflate compresses well.
 
 mod poses;
@@ -31,7 +31,8 @@ pub fn is_packed(bytes: &[u8]) -> bool {
     bytes.starts_with(&MAGIC)
 }
 
-/// Packs a recording. Its end may be missing, but it must end with a complete record.
+/// Packs a recording. The last record may be missing, but the bytes must end with a complete
+/// record.
 ///
 /// [`unpack`] returns the same recording to the bit, except for the hashes of objects in its
 /// updates. These are omitted, since random bits cannot be compressed. A differing replay is still

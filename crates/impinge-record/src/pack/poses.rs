@@ -18,7 +18,7 @@ use crate::space::Recordable;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Layout {
     pub(super) scalar_bytes: usize,
-    /// The number of components of the translation, which precede those of the rotation.
+    /// The number of components of the translation, which precede the components of the rotation.
     pub(super) dimension: usize,
     pub(super) numbers: usize,
 }
@@ -55,7 +55,7 @@ impl Layout {
         if bits & sign == 0 { bits | sign } else { !bits & self.mask() }
     }
 
-    /// Maps an integer of [`Self::ordered`] back to the bits of a number.
+    /// Returns the bits of the number that [`Self::ordered`] maps to this integer.
     const fn unordered(&self, integer: u64) -> u64 {
         let sign = self.mask() ^ (self.mask() >> 1);
         if integer & sign == 0 { !integer & self.mask() } else { integer ^ sign }
@@ -96,7 +96,8 @@ impl Layout {
 pub(super) enum PoseKind {
     /// The position of the object was set.
     Moved,
-    /// The object was added, or is part of a key frame. Then its pose is most likely the last one.
+    /// The object was added, or is part of a key frame. Then its pose is most likely the last pose
+    /// of its index.
     Placed,
 }
 

@@ -13,7 +13,7 @@ use crate::log::{Cursor, Header, Log, Raw};
 const UPDATE_BYTES: usize = 28;
 
 /// The maximum length of a description, in bytes, that is not written again while it is unchanged.
-/// If longer ones were repeated, a few packed bytes could unpack to many.
+/// If longer descriptions were repeated, a few packed bytes could unpack to many bytes.
 const REPEATED_BYTES: usize = 256;
 
 /// The bytes that describe each object, by index: shape, groups, query type and data.
@@ -29,7 +29,7 @@ pub(super) struct Packed {
     pub(super) checksum: u32,
 }
 
-/// Splits records.
+/// Splits the records of a recording into streams.
 #[derive(Debug)]
 pub(super) struct Packer {
     layout: Layout,
@@ -178,7 +178,7 @@ fn remember(descriptions: &mut Descriptions, index: u32, description: &[u8]) {
     }
 }
 
-/// Rebuilds records.
+/// Rebuilds the records of a recording from streams.
 #[derive(Debug)]
 pub(super) struct Unpacker {
     layout: Layout,
@@ -214,7 +214,7 @@ impl Unpacker {
         Ok(log)
     }
 
-    /// Checks that `length` does not exceed that of the unpacked recording.
+    /// Checks that `length` does not exceed the length of the unpacked recording.
     fn check(&self, length: usize) -> Result<(), ReadError> {
         let problem = Problem::BadValue { what: "the length of the recording" };
         if length <= self.limit { Ok(()) } else { Err(ReadError { offset: 0, problem }) }

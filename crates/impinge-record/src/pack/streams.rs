@@ -59,7 +59,7 @@ impl Streams {
         self.bits(residual, low);
     }
 
-    /// Writes the lowest `count` bits of a value; the first bit becomes the lowest of its byte.
+    /// Writes the lowest `count` bits of a value, the lowest bit first, to the stream [`BITS`].
     fn bits(&mut self, value: u64, count: u32) {
         for bit in 0..count {
             self.open |= (value >> bit & 1) << self.open_bits;

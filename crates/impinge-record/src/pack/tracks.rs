@@ -29,7 +29,7 @@ pub(super) struct Track {
     /// used.
     history: [Numbers; HISTORY],
     /// For each scalar and candidate, the average length of its residuals in sixteenths of a bit.
-    /// It is an exponential average, in which the latest residual has the weight 1/4.
+    /// The average is exponential: the latest residual has the weight 1/4.
     costs: [[u32; CANDIDATES]; MAX_NUMBERS],
 }
 

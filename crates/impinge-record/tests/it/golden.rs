@@ -1,11 +1,11 @@
 //! Compares recordings of each version of the format with golden files, so that the format does not
 //! change unnoticed.
 //!
-//! `golden/scene2.rec` and `golden/scene3.rec` have version 1, those in `golden/version2/` version
-//! 2. They contain every shape, call and query of these versions, and are read as long as the
-//! version is supported. The files in `golden/version3/` contain the calls that are new in version
-//! 3. If results change on purpose, or the format gets a new version, run `IMPINGE_BLESS=1 cargo
-//! test -p impinge-record golden` and commit the files.
+//! `golden/scene2.rec` and `golden/scene3.rec` have version 1, the files in `golden/version2/` have
+//! version 2. These files contain every shape, call and query of their versions, and are read as
+//! long as the version is supported. The files in `golden/version3/` contain the calls that are new
+//! in version 3. If results change on purpose, or the format gets a new version, run
+//! `IMPINGE_BLESS=1 cargo test -p impinge-record golden` and commit the files.
 
 use std::num::NonZeroU64;
 use std::path::PathBuf;
@@ -31,8 +31,8 @@ fn written<N: Stage<D>, const D: usize>() -> Vec<u8> {
     scene.recorder.finish().bytes
 }
 
-/// Converts a recording to version 2 of the format. If it has no calls of version 3, only the
-/// version number differs.
+/// Converts a recording without calls of version 3 to version 2 of the format: only the version
+/// number and the checksums differ.
 fn in_version_2(bytes: &[u8]) -> Vec<u8> {
     let mut earlier = bytes.to_vec();
     earlier[8] = 2;

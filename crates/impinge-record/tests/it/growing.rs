@@ -165,8 +165,8 @@ fn a_changed_world_is_undone_by_the_next_seek() -> Result<(), impinge_record::Re
     Ok(())
 }
 
-/// Deforms a long polyline with balls on it at each step. In the recorded world its search tree is
-/// refitted, in the replay it is built anew.
+/// Deforms a long polyline with balls on it at each step. In the recorded world the search tree of
+/// the polyline is refitted; in the replay it is built anew.
 #[test]
 fn deformed_shapes_have_the_same_bits() -> Result<(), impinge_record::RecordError> {
     let mut recorder = balls()?;

@@ -176,7 +176,7 @@ fn turned(axis: [f64; 3], angle: f64, at: [f64; 3]) -> Isometry<f32> {
     Isometry::from_parts(at.cast::<f32>().into(), turn.cast::<f32>())
 }
 
-/// Simulates bodies in `f32`, with its rounding errors. They are thrown from a height, rotate,
+/// Simulates bodies with the rounding errors of `f32`. The bodies are thrown from a height, rotate,
 /// bounce on a half-space and come to rest.
 fn integrated() -> impl FnMut(u32, f64) -> Isometry<f32> {
     struct Body {

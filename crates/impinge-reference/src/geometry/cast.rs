@@ -11,11 +11,12 @@ use super::solid::Solid;
 use super::vector::{add, dot, norm, scale, sub};
 
 /// Returns the least `t >= 0` at which `origin + t * direction` is in the solid: zero if the origin
-/// is, `None` if the ray misses. `direction` may have any length; if it is zero, only the origin is
-/// tested.
+/// is in the solid, `None` if the ray misses. `direction` may have any length; if it is zero, only
+/// the origin is tested.
 ///
-/// The time is accurate to about 1e-14 of the distances involved. A ray that passes the solid at a
-/// distance of at most 1e-12 of these distances counts as a hit, also for flat solids.
+/// The distance along the ray is accurate to about 1e-14 of the distances involved if the ray
+/// enters the solid by more than 1e-12 of them. A ray that passes the solid at a distance of at
+/// most 1e-12 of these distances counts as a hit, also for flat solids.
 #[must_use]
 pub fn ray_cast<const D: usize>(
     solid: &Solid<D>,
@@ -48,16 +49,16 @@ pub fn ray_cast<const D: usize>(
 /// The result of [`linear_cast`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cast {
-    /// The first time at which the signed distance is at most zero; zero if it is so at the start,
-    /// `None` if it never is.
+    /// The first time at which the signed distance is at most zero; zero if it is at most zero at
+    /// the start, `None` if it stays positive up to `max_time`.
     pub time_of_impact: Option<f64>,
     /// The least signed distance on the path. If it is near zero, the solids only graze, and
     /// rounding may decide between hit and miss.
     pub least_distance: f64,
 }
 
-/// Moves two solids along their velocities, without rotation, from time zero to `max_time` (which
-/// may be infinite).
+/// Computes the first contact and the least distance of two solids that move with constant
+/// velocities, without rotation, from time zero to `max_time` (which may be infinite).
 ///
 /// The time is accurate to about 1e-14 of the distances involved, divided by the speed of approach;
 /// for cylinders and cones to 1e-9. A pass at a distance of at most 1e-12 (for cylinders and cones
@@ -78,8 +79,8 @@ pub fn linear_cast<const D: usize>(
     let along = scale(&velocity, 1.0 / speed);
     let between = norm(&sub(&pose2.translation, &pose1.translation));
     let reach = solid1.bounding_radius() + solid2.bounding_radius();
-    // Beyond `horizon` the solids only move apart. A half-space keeps its normal, so that for it
-    // twice the distance to the contact suffices.
+    // Beyond `horizon` the solids only move apart. Against a half-space the normal is constant, so
+    // that twice the path to the contact suffices.
     let horizon = if reach.is_finite() {
         between + reach
     } else {
@@ -96,14 +97,16 @@ pub fn linear_cast<const D: usize>(
 
 /// The first zero and the minimum of a convex function on an interval that begins at zero.
 struct Descent {
-    /// The first argument at which the function is at most zero; `None` if it stays positive.
+    /// The first argument at which the function is at most zero; `None` if there is none. See
+    /// [`Self::of`] for functions that only touch zero.
     first: Option<f64>,
     /// The minimum value of the function.
     least: f64,
 }
 
 impl Descent {
-    /// Examines `height` on `[0, end]`. A positive minimum of at most `thickness` counts as a zero.
+    /// Searches `height` on `[0, end]`. If its minimum is at least `-thickness`, the level
+    /// `thickness` takes the place of zero, so that rounding errors do not lose a grazing contact.
     fn of(height: &impl Fn(f64) -> f64, end: f64, thickness: f64) -> Self {
         let start = height(0.0);
         if end.is_nan() || end <= 0.0 || start <= 0.0 {

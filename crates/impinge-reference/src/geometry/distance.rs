@@ -26,7 +26,8 @@ impl<const D: usize> Reference<D> {
         Self { lower: distance, upper: distance, normal: Some(normal) }
     }
 
-    /// Returns the distance of `distance` from the interval `[lower, upper]`; zero within it.
+    /// Returns the length by which `distance` lies outside of `[lower, upper]`; zero within this
+    /// interval.
     #[must_use]
     pub fn error_of(&self, distance: f64) -> f64 {
         (self.lower - distance).max(distance - self.upper).max(0.0)
@@ -41,8 +42,9 @@ impl<const D: usize> Reference<D> {
 /// - A cylinder or cone against any other solid: a proven bracket. `upper - lower` is at most about
 ///   1e-11 times the size of the pair (the bounding radii plus the distance of the origins). If
 ///   many directions are nearly equally good, as for coaxial solids that interpenetrate, it is up
-///   to about 1e-4 of the size, typically 1e-6. In longer searches of such pairs `lower` was within
-///   1e-7 of the true value. They take tens of milliseconds, others about 0.1 ms.
+///   to about 1e-4 of the size, typically 1e-6. Longer searches of such pairs showed that `lower`
+///   was within 1e-7 of the true value. Such a pair takes tens of milliseconds, any other pair
+///   about 0.1 ms.
 /// - Two half-spaces: infinite overlap (`-inf`) unless they are antiparallel to within 1e-12.
 ///
 /// The solids are measured relative to the origin of the first, so that a large distance from the
@@ -106,8 +108,8 @@ pub fn separation_along<const D: usize>(
     -solid2.extent(&near2, &negate(normal)) - solid1.extent(&near1, normal)
 }
 
-/// Returns the signed distance along the only direction in which it can be finite: the normal of a
-/// half-space. The normal is `None` if the distance is infinite.
+/// Returns the signed distance along `normal`, the world normal of a half-space: only in this
+/// direction can it be finite. The normal of the result is `None` if the distance is infinite.
 fn along<const D: usize>(
     solid1: &Solid<D>,
     pose1: &Pose<D>,
@@ -120,8 +122,8 @@ fn along<const D: usize>(
     Reference { lower: distance, upper: distance, normal }
 }
 
-/// Returns the signed distance of a world point from a solid, and the unit direction from the solid
-/// to the point in the world frame.
+/// Returns the signed distance of a world point from a solid, and the unit direction of
+/// [`PointMeter::measure`] in the world frame.
 fn from_point<const D: usize>(
     solid: &Solid<D>,
     pose: &Pose<D>,
@@ -359,8 +361,8 @@ mod tests {
         assert!((20..=80).contains(&hits), "hits {hits}");
     }
 
-    /// Compares the bracket with the separation along random directions, near the returned normal
-    /// and everywhere else.
+    /// Asserts that no random direction has a separation above the upper bound. The directions lie
+    /// near the returned normal and everywhere else.
     #[test]
     fn random_directions_never_beat_the_answer() {
         let mut random = Random::new(11);

@@ -18,18 +18,19 @@ pub(super) struct Features<const D: usize> {
     pub(super) edges: Vec<([f64; D], [f64; D])>,
     /// The unit directions of the edges without repetition. Opposite directions count as equal.
     pub(super) directions: Vec<[f64; D]>,
-    /// A unit normal of each face, of either sign. If the points lie on a line in 3D, or coincide,
-    /// some directions perpendicular to the line, or the axes.
+    /// A unit normal of each face, of either sign. Without faces: if the points lie on a line in
+    /// 3D, some directions perpendicular to the line; if they coincide, the axes.
     pub(super) normals: Vec<[f64; D]>,
 }
 
-/// A plane with no point in front of it.
+/// A plane through D or more points that has all other points on one side.
 struct Face<const D: usize> {
     normal: [f64; D],
     /// The indices of the points on the plane.
     on: Vec<usize>,
-    /// The norm of the product of the scaled sides at the first defining point: 0 if the defining
-    /// points are collinear. The larger it is, the more accurate is the normal.
+    /// The length of the product of the sides at the first defining point (in 3D the cross product,
+    /// in 2D the side itself), after division of the sides by the size of the hull: 0 if the
+    /// defining points are collinear. The larger it is, the more accurate is the normal.
     quality: f64,
 }
 
@@ -175,8 +176,8 @@ fn distinct_lines<const D: usize>(edges: &[([f64; D], [f64; D])]) -> Vec<[f64; D
     kept
 }
 
-/// Returns directions perpendicular to the lines in 3D; all axes if there is no line, which is a
-/// single point.
+/// Returns directions perpendicular to the lines in 3D; all axes if `directions` is empty, because
+/// the hull is a single point.
 fn normals_of_a_line_or_point<const D: usize>(directions: &[[f64; D]]) -> Vec<[f64; D]> {
     let axes: Vec<[f64; D]> = (0..D).map(axis).collect();
     if directions.is_empty() {

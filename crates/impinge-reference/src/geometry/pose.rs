@@ -2,7 +2,7 @@
 
 use super::vector::{add, axis, dot, norm, sub};
 
-/// A position of a solid: `world = rotation * local + translation`.
+/// The position and rotation of a solid: `world = rotation * local + translation`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose<const D: usize> {
     /// The rows of the rotation matrix. The matrix must be orthogonal with determinant +1, which is

@@ -6,10 +6,10 @@
 //! which may stop at a local maximum, nor topology.
 //!
 //! Upper bound of a triangle with the corners n1, n2, n3: for any m in M, `h(n) <= n·m`. A unit n
-//! of the triangle is `Σ λᵢ nᵢ / |Σ λᵢ nᵢ|` with λ >= 0 and Σ λ = 1, so `h(n) <= max nᵢ·m / |Σ λᵢ
-//! nᵢ|`. The denominator is at most 1, and at least the distance of the flat triangle from the
-//! origin. The bound holds for every m. It is least for a point of the triangle of the three
-//! support points, which is found as the value of a 3 x 3 matrix game.
+//! of the triangle is `Σ λᵢ nᵢ / |Σ λᵢ nᵢ|` with λ >= 0 and Σ λ = 1, so
+//! `h(n) <= max nᵢ·m / |Σ λᵢ nᵢ|`. The denominator is at most 1, and at least the distance of the
+//! flat triangle from the origin. The bound holds for every m in M. The m with the least bound is
+//! taken from the triangle of the three support points: it is the solution of a 3 x 3 matrix game.
 
 use super::vector::{add, dot, negate, perpendicular, scale, sub, unit};
 
@@ -83,8 +83,8 @@ pub(crate) fn maximise(
 }
 
 impl Search<'_> {
-    /// Evaluates h for one direction and keeps it if it is the best so far. Returns the support
-    /// point.
+    /// Evaluates h at `normal` and keeps `normal` if its h is the largest so far. Returns the
+    /// support point.
     fn probe(&mut self, normal: &Vector) -> Vector {
         let support = (self.lowest)(normal);
         let height = dot(normal, &support);

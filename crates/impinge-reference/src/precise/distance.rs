@@ -18,8 +18,8 @@ pub struct Precise<const D: usize> {
     /// the best normal is not unique. The zero vector for two half-spaces, which count as
     /// overlapping without bound.
     pub normal: Vector<D>,
-    /// An upper bound of the signed distance minus `distance`; proven up to rounding errors of
-    /// 1e-28 of the size.
+    /// An upper bound of the error of `distance`: the signed distance is at most `distance + gap`.
+    /// Proven up to rounding errors of 1e-28 of the size.
     pub gap: f64,
     /// The error with which `normal` satisfies the conditions of a local maximum of the separation,
     /// as a length. If Newton's method has converged, it consists of rounding errors.
@@ -30,9 +30,9 @@ pub struct Precise<const D: usize> {
 }
 
 impl<const D: usize> Precise<D> {
-    /// Whether `distance` is accurate to `share` of the size, or to 1e-20 of it.
+    /// Returns `true` if `distance` is accurate to `share` of the size, or to 1e-20 of the size.
     ///
-    /// Either `gap` proves it; or `gap` proves that no other local maximum is higher by more than
+    /// Either `gap` proves this; or `gap` proves that no other local maximum is higher by more than
     /// 1e-10 of the size, and `miss` shows that Newton's method has converged. (The second case
     /// could fail only if two local maxima agreed to ten digits.)
     #[must_use]
@@ -48,9 +48,9 @@ impl<const D: usize> Precise<D> {
 /// - Polytopes, with or without a radius, and a half-space against anything: every candidate
 ///   direction is tested.
 /// - With a disk or ellipsoid: the sphere of directions is searched in `f64`, and Newton's method
-///   refines the result to all digits. If the solids are apart or touch, a point of the difference
-///   proves the result. If they overlap, the search proves that no other direction is better by
-///   more than 1e-11 of the size.
+///   refines the result to all digits. If the solids are apart or touch, a point of the Minkowski
+///   difference proves the result. If they overlap, the search proves that no other direction is
+///   better by more than 1e-11 of the size.
 ///
 /// Only the difference of the two translations matters. For two half-spaces the distance is -1e300,
 /// for overlap without bound.
@@ -90,8 +90,8 @@ pub fn signed_distance<const D: usize>(
 
 /// Returns the least of `normal · b` over the second solid minus the greatest of `normal · a` over
 /// the first: for every direction a lower bound of the signed distance. `normal` is normalized
-/// first. If one solid is a half-space, its own normal is used instead. `None` for two half-spaces,
-/// and for a zero normal.
+/// first. If one solid is a half-space, the normal of the half-space is used instead of `normal`.
+/// `None` for two half-spaces, and for a zero normal.
 #[must_use]
 pub fn separation_along<const D: usize>(
     solid1: &Solid<D>,
@@ -218,12 +218,12 @@ fn coaxed<const D: usize>(pair: Pair<'_, D>, found: Polished<D>, size: f64) -> P
 }
 
 /// Returns the length of `point`, an upper bound of the separation, minus the separation along the
-/// normal. It is near zero if the solids are apart or barely overlap.
+/// normal. The result is near zero if the solids are apart or barely overlap.
 fn proven_gap<const D: usize>(found: &Polished<D>) -> f64 {
     (norm(&found.point) - found.height).to_f64().max(0.0)
 }
 
-/// Returns a candidate for both normals of each disk.
+/// Returns one candidate for each of the two normals of each disk.
 fn disks<const D: usize>(pair: Pair<'_, D>) -> Vec<Polished<D>> {
     let mut found = Vec::new();
     for (parts, is_second) in [(pair.parts1, false), (pair.parts2, true)] {

@@ -2,8 +2,8 @@
 //!
 //! [`crate::geometry`] computes the same quantities in `f64`. Here the numbers are [`Quad`]s, and
 //! the solids include ellipsoids and tapered capsules. All input is exact: the rotation of a pose
-//! is that of the stored complex number or quaternion after normalization. A library that takes a
-//! stored rotation for unit therefore has the resulting error in these comparisons.
+//! is that of the stored complex number or quaternion after normalization. A library that assumes
+//! stored rotations to have unit length is therefore charged with the error of this assumption.
 
 mod distance;
 mod linear;

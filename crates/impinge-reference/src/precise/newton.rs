@@ -46,8 +46,8 @@ pub(super) struct Pair<'a, const D: usize> {
 }
 
 /// Returns the best normal near `start`. Active parts are chosen among the `breadth` most extreme
-/// parts of each solid. More than one is needed if edges or faces are parallel, since some choices
-/// then have no solution.
+/// parts of each solid. A `breadth` above one is needed if edges or faces are parallel, since some
+/// choices then have no solution.
 pub(super) fn polish<const D: usize>(
     pair: Pair<'_, D>,
     start: &Vector<D>,
@@ -112,16 +112,17 @@ fn subsets(order: &[usize], count: usize, breadth: usize) -> Vec<Vec<usize>> {
     masks.map(chosen).collect()
 }
 
-/// Whether `found` has a larger height than `best`, or, if they are equal up to rounding, a smaller
-/// miss.
+/// Returns `true` if `found` has a larger height than `best`, or, if the heights are equal up to
+/// rounding, a smaller miss.
 pub(super) fn is_better<const D: usize>(found: &Polished<D>, best: &Polished<D>) -> bool {
     let gain = (found.height - best.height).to_f64();
     let noise = 1e-29 * (found.height.to_f64().abs() + norm(&found.point).to_f64());
     gain > noise || gain > -noise && found.miss() < best.miss()
 }
 
-/// Returns `normal`, an axis of a disk, as a candidate. Its point of the difference joins the disk
-/// to the point of the other solid that gives the smallest miss.
+/// Returns a candidate whose normal is `normal`, an axis of `disk`. Its point of the Minkowski
+/// difference is that of a touching point of the other solid and the nearest point of the disk,
+/// with the smallest miss found.
 pub(super) fn across_disk<const D: usize>(
     pair: Pair<'_, D>,
     disk: &Placed<D>,
@@ -170,8 +171,9 @@ fn touching_points<const D: usize>(
 }
 
 /// Returns points of a flat polygon. If the polygon overlaps a disk with this centre, seen along
-/// `normal`, one of them lies in the disk. They are the corners, the point nearest to the centre on
-/// each line between two corners, and the projected centre if the polygon contains it.
+/// `normal`, one of the returned points lies in the disk. They are the corners, the point nearest
+/// to the centre on each line between two corners, and the projected centre if the polygon contains
+/// it.
 fn common_candidates<const D: usize>(
     corners: &[Vector<D>],
     center: &Vector<D>,
@@ -210,7 +212,8 @@ fn touched<const D: usize>(parts: &[Placed<D>], normal: &Vector<D>) -> Vector<D>
     mixed(&points, &vec![Quad::ONE / Quad::new(points.len() as f64); points.len()])
 }
 
-/// Returns the point of the Minkowski difference with the least height along `normal`.
+/// Returns a point of the Minkowski difference with the least height along `normal`: the difference
+/// of the means of the support points of both solids.
 fn supported<const D: usize>(pair: Pair<'_, D>, normal: &Vector<D>) -> Vector<D> {
     sub(&touched(pair.parts2, &negate(normal)), &touched(pair.parts1, normal))
 }
@@ -236,7 +239,7 @@ struct Active<'a, const D: usize> {
 #[derive(Clone)]
 struct State<const D: usize> {
     normal: Vector<D>,
-    /// The factor by which the point is a multiple of the normal.
+    /// The factor `m` in the equation `point = m · normal`.
     multiple: Quad,
     weights1: Vec<Quad>,
     weights2: Vec<Quad>,
@@ -251,7 +254,8 @@ struct Local<const D: usize> {
 }
 
 impl<const D: usize> Local<D> {
-    /// Returns `None` for a disk if `normal` is its axis: the extent is not differentiable there.
+    /// Evaluates the extent of `part` along `normal`. Returns `None` for a disk if `normal` is its
+    /// axis, since the extent is not differentiable there.
     fn new(part: &Placed<D>, normal: &Vector<D>) -> Option<Self> {
         let support = part.support(normal);
         let mut bend = [[Quad::ZERO; D]; D];

@@ -30,8 +30,8 @@ impl<const D: usize> Polytope<'_, D> {
         self.topology.edges.iter().map(move |&ends| (self.corner(ends[0]), along(ends)))
     }
 
-    /// Returns the face normals. If there are no faces, some directions perpendicular to the line,
-    /// or all axes for a point.
+    /// Returns the face normals, of any length. If there are no faces: for points on a line, some
+    /// directions perpendicular to the line; for a single point, all axes.
     fn normals(&self) -> Vec<Vector<D>> {
         let axes = (0..D).map(|i| exact(&plain::axis::<D>(i)));
         if !self.topology.faces.is_empty() {

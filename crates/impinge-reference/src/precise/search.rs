@@ -70,8 +70,8 @@ impl<const D: usize> Task<'_, D> {
         Bracket { upper: upper.max(best.lower), ..best }
     }
 
-    /// Evaluates the height of a direction and keeps it if it is the best so far. Returns the
-    /// support point.
+    /// Evaluates the height of `direction`, scaled to unit length, and keeps it if the height is
+    /// the largest so far. Returns the support point; the origin if `direction` is zero.
     fn probe(&self, direction: &[f64; D], best: &mut Bracket<D>) -> [f64; D] {
         let Some(normal) = unit(direction) else { return [0.0; D] };
         let point = (self.lowest)(&normal);

@@ -152,7 +152,7 @@ impl Solid<3> {
 }
 
 impl Part<3> {
-    /// A disk about the y axis.
+    /// Returns the disk about the y axis at the height `y`.
     fn disk(y: f64, radius: f64) -> Self {
         Self { center: [0.0, y, 0.0], columns: vec![along(0, radius), along(2, radius)] }
     }
@@ -221,7 +221,8 @@ impl Pose<3> {
     }
 }
 
-/// A part in the frame of its pair, with all digits and in `f64`.
+/// A part of a placed solid, with world axes, relative to the origin of the first solid of its
+/// pair. The numbers are kept with all digits and in `f64`.
 #[derive(Clone, Debug)]
 pub(super) struct Placed<const D: usize> {
     pub(super) center: Vector<D>,

@@ -121,7 +121,8 @@ fn agrees_with_the_reference_in_f64_and_with_itself_swapped() {
     assert!(settled > 290, "settled {settled}");
 }
 
-/// If two support points differ by a multiple of their common normal, they are the closest points.
+/// Places random ellipsoids at a known distance: if two support points differ by a multiple of
+/// their common normal, they are the closest points. Asserts that the distance is found and proven.
 fn ellipsoids_across<const D: usize>(
     random: &mut Random,
     pose: impl Fn(&mut Random, [f64; D]) -> Pose<D>,

@@ -16,7 +16,7 @@ pub(super) struct Topology<const D: usize> {
     pub(super) edges: Vec<[usize; 2]>,
 }
 
-/// A plane with no point in front of it.
+/// A plane through D or more points that has all other points on one side.
 struct Face<const D: usize> {
     corners: [usize; D],
     /// The indices of all points on the plane.

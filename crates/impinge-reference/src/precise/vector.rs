@@ -63,7 +63,7 @@ pub fn norm<const D: usize>(a: &Vector<D>) -> Quad {
     dot(a, a).sqrt()
 }
 
-/// Returns `a` scaled to length one; `None` for the zero vector.
+/// Returns `a` scaled to length one; `None` for the zero vector, and if a component is infinite.
 #[must_use]
 pub fn unit<const D: usize>(a: &Vector<D>) -> Option<Vector<D>> {
     // Squares of components below 1e-140 would lose digits, so that `a` is first scaled to a length

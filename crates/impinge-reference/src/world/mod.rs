@@ -14,7 +14,7 @@
 //! - If at least one object queries proximity, only the proximity is computed. It is intersecting
 //!   if the signed distance is at most zero, within margin if the distance is at most the sum of
 //!   the margins, and otherwise disjoint. An object that queries contacts has margin zero.
-//! - An update returns the differences from the previous update, whatever caused them: a motion,
+//! - An update returns the differences from the previous update. Their cause may be a motion or
 //!   another shape, group, query type or filter. A pair that changes from contacts to proximity
 //!   stops touching, and its proximity starts as disjoint.
 //! - The removal of an object ends its pairs at once, with the state of the last update: touching

@@ -31,7 +31,8 @@ impl<const D: usize> Pair<D> {
     }
 
     /// Returns the upper bound of the signed distance minus the separation along `normal`. For
-    /// half-spaces, whose separation may be infinite, returns the distance of the two normals.
+    /// half-spaces, whose separation may be infinite, returns the length of the difference between
+    /// `normal` and the normal of `found`.
     fn normal_loss(&self, found: &Reference<D>, normal: &[f64; D]) -> f64 {
         let along = separation_along(&self.solid1, &self.pose1, &self.solid2, &self.pose2, normal);
         if along.is_finite() {

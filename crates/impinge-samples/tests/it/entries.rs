@@ -32,7 +32,7 @@ where
     done.unwrap_or_else(|error| panic!("{} at step {}: {error}", entry.name, running.step()));
 }
 
-/// Asserts that all positions, depths and readouts are finite.
+/// Asserts that all positions, depths, readouts and drawn lines are finite.
 fn check_finite<const D: usize>(entry: &Entry, running: &Running<D>)
 where
     f32: Stage<D>,
@@ -120,8 +120,8 @@ fn every_sample_is_the_same_on_every_run() {
     }
 }
 
-/// Returns the values to test: the minimum, the middle and the maximum of a number, and all words
-/// of a choice.
+/// Returns the values to test: the minimum, the middle and the maximum of a number, all words of a
+/// choice, both values of a flag, and the press of a button.
 fn values(control: &Control) -> Vec<ControlValue> {
     match control.kind {
         ControlKind::Number { min, max, .. } => {

@@ -115,8 +115,8 @@ fn bullets_never_pass_walls() {
     never_pass::<3>();
 }
 
-/// Returns the pairs of objects that overlap, found by testing all pairs. Links with a common joint
-/// and pairs of obstacles are excluded.
+/// Returns the labels of the pairs of objects that overlap, by testing all pairs. Pairs of links
+/// with a common joint and pairs of obstacles are excluded.
 fn overlaps<const D: usize>(objects: &[&Object<D>]) -> BTreeSet<String>
 where
     f32: Stage<D>,

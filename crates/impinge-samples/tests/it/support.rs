@@ -9,7 +9,8 @@ use impinge_samples::{ControlValue, Entry, Make, Running, Sample, World, entries
 
 pub(crate) type Object<const D: usize> = CollisionObject<f32, D, String>;
 
-/// The scalar `f32`, with a constructor of the samples of one dimension.
+/// A constructor of samples in `D` dimensions, which returns `None` for a sample of the other
+/// dimension.
 pub(crate) trait Stage<const D: usize>: Recordable<D> {
     fn make(entry: &Entry) -> Option<Box<dyn Sample<D>>>;
 }
@@ -70,7 +71,8 @@ where
     objects.find(|object| object.data() == label).expect("an object of this label")
 }
 
-/// Returns the position of an object as the isometry type of queries about two shapes.
+/// Returns the position of an object as the isometry type that queries of two shapes accept in
+/// either dimension.
 pub(crate) fn position<const D: usize>(object: &Object<D>) -> na::Isometry<f32, Rotation<f32, D>, D>
 where
     f32: Space<D>,
@@ -98,7 +100,7 @@ where
     }
 }
 
-/// Draws the additions of a sample to its objects, and returns the counts.
+/// Draws the elements that a sample adds to its objects, and returns the numbers of lines.
 pub(crate) fn drawn<const D: usize>(running: &Running<D>) -> Count
 where
     f32: Recordable<D>,

@@ -17,7 +17,7 @@ pub fn asteroids<const D: usize>(count: usize) -> Scene<D> {
     Scene { name: "asteroids", margin: MARGIN, objects, steps: 100 }
 }
 
-/// The asteroids, of which only every hundredth moves.
+/// The scene of [`asteroids`], in which only every hundredth asteroid moves.
 #[must_use]
 pub fn few_asteroids_moving<const D: usize>(count: usize) -> Scene<D> {
     let mut scene = asteroids(count);

@@ -7,7 +7,8 @@ use crate::{Motion, Scene, SceneObject, SceneShape, Wave};
 
 /// Capsules 0.9 wide and 0.4 deep, with an area of 1.2 for each, in two opposite streams. All walk
 /// by 0.02 to 0.04 per step along the first axis, with their shoulders across it, sway, and are
-/// reflected at the walls. A person touches or overlaps about one other.
+/// reflected at the walls. The axis-aligned box of a person overlaps those of one to three others
+/// on average.
 #[must_use]
 pub fn crowd(count: usize) -> Scene<2> {
     let random = &mut Random::new(10);

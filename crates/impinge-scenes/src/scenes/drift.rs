@@ -36,7 +36,7 @@ fn drifting<const D: usize>(edge: f64, random: &mut Random) -> SceneObject<D> {
     SceneObject::new(SceneShape::Cuboid { half_extents }, NEAR_CONTACTS, motion)
 }
 
-/// The sparse drift, of which only every hundredth box moves.
+/// The scene of [`sparse_drift`], in which only every hundredth box moves.
 #[must_use]
 pub fn few_moving<const D: usize>(count: usize) -> Scene<D> {
     let mut scene = sparse_drift(count);
@@ -44,7 +44,7 @@ pub fn few_moving<const D: usize>(count: usize) -> Scene<D> {
     Scene { name: "1 % moving", ..scene }
 }
 
-/// The sparse drift, of which only ten boxes move, or all if there are fewer.
+/// The scene of [`sparse_drift`], in which only the first ten boxes move.
 #[must_use]
 pub fn ten_moving<const D: usize>(count: usize) -> Scene<D> {
     let mut scene = sparse_drift(count);
@@ -58,8 +58,8 @@ pub(super) fn freeze<const D: usize>(scene: &mut Scene<D>, moves: impl Fn(usize)
     frozen.for_each(|(_, object)| object.motion = object.motion.frozen());
 }
 
-/// The sparse drift in which every tenth object is a sensor: a ball of radius 1.5 with a proximity
-/// query. About twenty others are within it at a time.
+/// The scene of [`sparse_drift`], in which every tenth object is a sensor: a ball of radius 1.5
+/// with a proximity query. A sensor overlaps about seven other objects at a time.
 #[must_use]
 pub fn sensors<const D: usize>(count: usize) -> Scene<D> {
     let mut scene = sparse_drift(count);
@@ -70,8 +70,8 @@ pub fn sensors<const D: usize>(count: usize) -> Scene<D> {
     Scene { name: "sensors", ..scene }
 }
 
-/// The sparse drift with a hundredth of the boxes removed and as many added at each step. At every
-/// step `count` boxes are alive, or up to a hundred more if 100 does not divide `count`.
+/// A sparse drift in which a hundredth of the boxes is removed, and an equal number added, at each
+/// step. At every step `count` boxes are alive, rounded up to a multiple of 100.
 #[must_use]
 pub fn spawn_and_despawn<const D: usize>(count: usize) -> Scene<D> {
     let random = &mut Random::new(3);

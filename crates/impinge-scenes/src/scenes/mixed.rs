@@ -5,8 +5,9 @@ use super::pile::{axis, edge};
 use crate::random::Random;
 use crate::{Motion, Scene, SceneObject, SceneQuery, SceneShape, Wave, rounded};
 
-/// A plane and `count` solids of size 1, equally many of each kind of the dimension, all moving and
-/// rotating. Every seventh has a proximity query, the others query contacts.
+/// A plane and `count` solids of size 1, equally many of each kind of shape that exists in `D`
+/// dimensions, all moving and rotating. Every seventh has a proximity query, the others query
+/// contacts.
 #[must_use]
 pub fn mixed_shapes<const D: usize>(count: usize) -> Scene<D> {
     let random = &mut Random::new(5);
@@ -63,8 +64,8 @@ fn corner<const D: usize>(distance: f64, random: &mut Random) -> [f64; D] {
     random.direction::<D>().map(|x| rounded(x * distance))
 }
 
-/// Returns the tips of a cross along the axes, which span all dimensions, and up to eight points
-/// outside of it.
+/// Returns the points at the distance `radius` on the axes, which span all dimensions, and up to
+/// eight random points at 1.2 times this distance from the origin.
 fn convex<const D: usize>(radius: f64, random: &mut Random) -> Vec<[f64; D]> {
     let tips = (0..2 * D).map(|n| {
         let mut tip = [0.0; D];

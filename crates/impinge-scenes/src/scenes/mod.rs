@@ -1,5 +1,5 @@
-//! The scenes, by subject. The constructor gets the number of objects; equal numbers give equal
-//! scenes.
+//! The scenes, by subject. Each constructor takes the number of objects; the same arguments give
+//! the same scene.
 
 mod asteroids;
 mod crowd;
@@ -31,7 +31,7 @@ pub use vehicles::{
 
 use crate::SceneQuery;
 
-/// The query type of most objects: the prediction of a pair is the sum, 0.002.
+/// The query type of most objects. The prediction of a pair is the sum of both predictions, 0.002.
 const NEAR_CONTACTS: SceneQuery = SceneQuery::Contacts { linear: 0.001, angular: 0.0 };
 /// The margin for objects of size 1 that move a few percent of their size per step.
 const MARGIN: f64 = 0.04;

@@ -20,7 +20,7 @@ pub fn pile<const D: usize>(count: usize) -> Scene<D> {
     Scene { name: "pile", margin: MARGIN, objects, steps: 100 }
 }
 
-/// The pile without rotations.
+/// The scene of [`pile`] without rotations.
 #[must_use]
 pub fn aligned_pile<const D: usize>(count: usize) -> Scene<D> {
     let mut scene = pile(count);
@@ -30,8 +30,8 @@ pub fn aligned_pile<const D: usize>(count: usize) -> Scene<D> {
     Scene { name: "aligned pile", ..scene }
 }
 
-/// The pile with random rotations of up to a quarter turn in either direction. Boxes still overlap
-/// their neighbours along the axes, but not all diagonal ones.
+/// The scene of [`pile`] with random rotations of up to a quarter turn in either direction. Boxes
+/// still overlap their neighbours along the axes, but not all diagonal neighbours.
 #[must_use]
 pub fn turned_pile<const D: usize>(count: usize) -> Scene<D> {
     let random = &mut Random::new(15);

@@ -12,12 +12,13 @@ use crate::{Motion, Scene, SceneObject, SceneShape, Wave, rounded};
 const CELL: f64 = 1.0;
 /// Half the height of a plate.
 const HALF_HEIGHT: f64 = 0.25;
-/// The largest distance by which a solid slides from its start, to either side along each axis.
+/// The largest distance by which a solid slides from the centre of its lot (the square of the field
+/// that is reserved for it), to either side along each axis.
 const WAY: f64 = 1.0;
 
 /// `count` flat boxes on a height field, which is the first object. Their half extents are `half`
 /// horizontally and 0.25 vertically. The cells of the field have width 1, and its heights vary by
-/// 0.02. The boxes slide back and forth by 0.01 to 0.03 per step, each rotated by a random angle
+/// ±0.02. The boxes slide back and forth by 0.01 to 0.03 per step, each rotated by a random angle
 /// about the vertical axis. Their undersides lie at the mean height, so that they touch most of the
 /// triangles that they cover: about `8 · half²` in 3D, `2 · half` segments in 2D. No two boxes
 /// overlap.
@@ -59,8 +60,8 @@ struct Slider {
 }
 
 impl Slider {
-    /// Returns the width of the field per solid: the diagonal of the solid, the distance that it
-    /// slides, and two cells.
+    /// Returns the width of the field per solid: the sum of the diagonal of the solid, the distance
+    /// over which it slides, and two cells.
     fn lot(&self) -> f64 {
         2.0 * (1.5 * self.half + WAY + CELL)
     }

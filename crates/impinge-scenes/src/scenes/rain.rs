@@ -14,9 +14,9 @@ const DIP: f64 = 0.1;
 /// `count` balls, boxes, capsules and convex solids of size 1, equally many of each. They fall from
 /// up to 12 above a hilly mesh by 0.05 to 0.15 per step, each at its own speed, rotate, and rise
 /// again from the terrain. The mesh is the first object and has 25 triangles per solid; in 2D it is
-/// a polyline of 5 segments for every two.
+/// a polyline of 5 segments for every two solids.
 ///
-/// At any time a few percent of them touch the terrain, and a few percent touch each other.
+/// At any time a few percent of the solids touch the terrain, and a few percent touch each other.
 #[must_use]
 pub fn rain<const D: usize>(count: usize) -> Scene<D> {
     let random = &mut Random::new(11);

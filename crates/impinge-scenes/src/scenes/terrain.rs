@@ -14,9 +14,9 @@ const HILL: usize = 16;
 /// mesh, which is the first object. It has 100 triangles per solid, a million for 10 000. In 2D the
 /// terrain is a polyline of 10 segments per solid.
 ///
-/// All move back and forth along the terrain by 0.01 to 0.03 per step, over up to half their size,
-/// and up and down by 0.05. At any time about two thirds of them touch the terrain, each a few of
-/// its triangles, and few touch each other. No centre is ever below the terrain.
+/// All move back and forth by 0.007 to 0.02 per step along each horizontal axis, over 0.5 to either
+/// side, and up and down by ±0.05. At any time about two thirds of the solids touch the terrain,
+/// each a few of its triangles, and few touch each other. No centre is ever below the terrain.
 #[must_use]
 pub fn terrain_mesh<const D: usize>(count: usize) -> Scene<D> {
     let ground = Ground::new(count, &mut Random::new(6));
@@ -67,7 +67,8 @@ fn stone<const D: usize>(radius: f64, random: &mut Random) -> Vec<[f64; D]> {
     points
 }
 
-/// Returns an object whose axis-aligned box touches the terrain at step 0.
+/// Returns an object whose axis-aligned box stands on the terrain when the object is in the middle
+/// of its path.
 fn standing<const D: usize>(
     shape: SceneShape<D>,
     ground: &Ground<D>,
@@ -123,7 +124,8 @@ impl<const D: usize> Ground<D> {
         Self { counts, cell, heights: heights.collect() }
     }
 
-    /// Returns the extents of the terrain along the axes; rows lie along the third axis.
+    /// Returns the extents of the terrain along the axes; the rows follow each other along the
+    /// third axis.
     pub(super) fn extents(&self) -> [f64; D] {
         std::array::from_fn(|axis| match axis {
             0 => (self.counts[1] - 1) as f64 * self.cell,

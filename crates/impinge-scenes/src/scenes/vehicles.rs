@@ -7,10 +7,11 @@ use crate::placement::cross;
 use crate::random::{Random, root};
 use crate::{Motion, Scene, SceneObject, SceneShape, Wave, rounded};
 
-/// Half the length, the height and the width of a vehicle, in its frame: its length lies along the
-/// first axis.
+/// Half the length, half the height and half the width of a vehicle, in its frame. The length lies
+/// along the first axis.
 const HALF: [f64; 3] = [2.0, 0.75, 1.0];
-/// The area of terrain per vehicle, as a multiple of that per solid of size 1.
+/// The area of terrain per vehicle, as a multiple of the area that [`Ground::new`] provides per
+/// solid.
 const SHARE: usize = 4;
 /// The depth of the underside below the mean height of the terrain under it. It is about the
 /// roughness and curvature of the terrain over this length, so that most triangles under a vehicle
@@ -23,9 +24,9 @@ const BORDER: f64 = 4.0;
 /// hilly mesh of triangles 0.5 wide, which is the first object. It has 400 triangles per vehicle.
 /// In 2D the terrain is a polyline of 40 segments per vehicle.
 ///
-/// Each is tilted with the terrain, covers dozens of triangles, and drives back and forth by 0.01
-/// to 0.03 per step along its length, over a distance of 1 to either side, and up and down with the
-/// terrain. Few touch each other.
+/// Each vehicle is tilted with the terrain, covers dozens of triangles, and drives back and forth
+/// by 0.01 to 0.03 per step along its length, over a distance of 1 to either side, and up and down
+/// with the terrain. Few vehicles touch each other.
 #[must_use]
 pub fn vehicles_mesh<const D: usize>(count: usize) -> Scene<D> {
     scene("vehicles on mesh", count, Ground::mesh, driving)

@@ -104,8 +104,9 @@ pub(crate) fn dodecahedron() -> SceneShape<3> {
     SceneShape::Convex { points: points.collect() }
 }
 
-/// Returns the hull of points in a ball of radius 0.6 with flat sides at the heights ±0.4, each of
-/// `sides` corners.
+/// Returns a hull with a flat top and a flat bottom at the heights ±0.4, each of `sides` random
+/// corners. The other corners are random points of a sphere of radius 0.6; those with a height
+/// above 0.35 are moved towards the middle.
 pub(crate) fn flat_hull(random: &mut Random, sides: usize) -> SceneShape<3> {
     let mut points = Vec::new();
     for height in [-0.4, 0.4] {
@@ -122,7 +123,7 @@ pub(crate) fn flat_hull(random: &mut Random, sides: usize) -> SceneShape<3> {
     SceneShape::Convex { points }
 }
 
-/// Returns the hull of points on a ball.
+/// Returns the hull of random points of a sphere.
 pub(crate) fn round_hull(random: &mut Random, points: usize, radius: f64) -> SceneShape<3> {
     let points = (0..points).map(|_| random.direction::<3>().map(|x| x * radius));
     SceneShape::Convex { points: points.collect() }

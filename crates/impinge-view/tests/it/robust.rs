@@ -80,7 +80,7 @@ fn large_and_small_scenes_are_framed() {
     }
 }
 
-/// Returns the bytes of pictures of all scenes.
+/// Returns the bytes of pictures of all scenes, in PNG and most of them also in SVG.
 fn bytes<N: Real>() -> Vec<Vec<u8>> {
     let png = |draw: fn(&mut PngPicture), camera: Camera| {
         let mut picture = PngPicture::new(camera, [80, 60]);

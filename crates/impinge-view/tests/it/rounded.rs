@@ -13,8 +13,8 @@ fn mesh_of(shape: &dyn Shape<f64, 3>, turn: u32) -> ShapeMesh<f64, 3> {
     ShapeMesh::of(shape, &options)
 }
 
-/// Checks that each side of a triangle is the reverse of exactly one other side, and that all
-/// vertices are on the surface.
+/// Checks that each side of a triangle is the reverse of exactly one side of another triangle, and
+/// that all vertices are on the surface, to within 1e-14.
 fn assert_closed(solid: &Rounded<f64>, turn: u32, name: &str) {
     let mesh = mesh_of(solid, turn);
     let mut sides = BTreeMap::new();
@@ -42,7 +42,7 @@ fn volume(mesh: &ShapeMesh<f64, 3>) -> f64 {
     mesh.triangles.iter().map(of).sum()
 }
 
-/// Returns the convex hull of points in general position on a sphere that is stretched along z.
+/// Returns the convex hull of points in general position on a cylinder of radius 1 and height 3.
 fn hull(count: u32) -> ConvexHull<f64> {
     let point = |index: u32| {
         let n = f64::from(index);

@@ -1,4 +1,4 @@
-//! Hand-made meshes, and scenes that consist of them.
+//! Meshes that are not made by the library, and scenes that consist of them.
 
 use impinge::debug_render::{Color, DebugRender, Drawn, ShapeMesh};
 use impinge::dim3::math::{Isometry, Point, Vector};
@@ -117,7 +117,7 @@ fn moved<N: Real>(place: [f64; 3], turn: [f64; 3]) -> Isometry<N> {
     Isometry::new(Vector::from(place.map(N::lit)), Vector::from(turn.map(N::lit)))
 }
 
-/// Draws boxes on a floor, balls, and contacts.
+/// Draws boxes and balls on a floor, and points and an arrow like contacts.
 pub(crate) fn boxes<N: Real>(picture: &mut impl DebugRender<N, 3>) {
     let (floor, cube) = (box_mesh(1, [3.0, 0.15, 2.2]), box_mesh(2, [0.5; 3]));
     let (plank, ball) = (box_mesh(3, [1.1, 0.12, 0.5]), ball_mesh(4, 0.5));

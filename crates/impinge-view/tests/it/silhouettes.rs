@@ -1,4 +1,4 @@
-//! Compares the covered pixels of pictures with computed ones.
+//! Compares the pixels that pictures cover, and their colours, with computed values.
 
 use crate::scenes::{INK, ball_mesh, box_mesh, faces};
 use impinge::debug_render::{Color, DebugRender, Drawn, ShapeMesh};

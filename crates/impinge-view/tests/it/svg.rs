@@ -80,8 +80,8 @@ fn hidden_lines_of_a_box_are_the_three_behind() {
     assert_eq!(hidden, 3, "those that meet at the farthest corner");
 }
 
-/// The picture of a ball without lines is its silhouette, which is closed and not hidden by the
-/// ball.
+/// Draws a ball without lines. The picture is the silhouette of the ball, which has an edge for
+/// each step around and is not hidden by the ball.
 #[test]
 fn the_outline_of_a_ball_is_not_hidden_by_the_ball() {
     for direction in [[0.0, 0.0, -1.0], [-0.6, -0.5, -1.0], [0.3, -1.0, 0.2]] {

@@ -14,7 +14,8 @@ fn framed(size: [u32; 2]) -> PngPicture {
     PngPicture::new(Camera::plane().fit(corners), size).with_margin(0.0)
 }
 
-/// Returns the smallest and the largest column and row of pixels that differ from the background.
+/// Returns the smallest and the largest column and row of the pixels that differ from the pixel at
+/// the upper left; `None` if all are equal.
 fn extent(image: &Image) -> Option<[[u32; 2]; 2]> {
     let [width, height] = image.size();
     let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));

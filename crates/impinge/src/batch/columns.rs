@@ -113,9 +113,9 @@ pub struct WitnessColumns<'a, N: Real, const D: usize> {
     /// The signed distance of the shapes, negative where they overlap; infinite beyond the maximum
     /// distance.
     pub distance: &'a mut [N],
-    /// The point on the surface of the first shape, in the world frame.
+    /// The nearest or deepest point of the first shape, on its surface and in the world frame.
     pub point1: &'a mut [[N; D]],
-    /// The point on the surface of the second shape, in the world frame.
+    /// The nearest or deepest point of the second shape, on its surface and in the world frame.
     pub point2: &'a mut [[N; D]],
     /// The unit vector from the first shape to the second, in the world frame.
     pub normal: &'a mut [[N; D]],
@@ -193,7 +193,8 @@ impl<N: Real, const D: usize> ContactColumns<'_, N, D> {
 /// ```
 #[derive(Debug, Default)]
 pub struct ImpactColumns<'a, N: Real, const D: usize> {
-    /// The time at which the solids first touch, zero or more; infinite without an impact.
+    /// The time at which the solids first touch, or reach the target distance of the options; zero
+    /// or more, infinite without an impact.
     pub time: &'a mut [N],
     /// The unit vector from the first solid to the second at that time, in the world frame.
     pub normal: &'a mut [[N; D]],

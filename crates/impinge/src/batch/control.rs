@@ -11,8 +11,8 @@ use crate::chunks::{CHUNK, Cut, PerChunk, each_chunk};
 /// A callback that receives the number of finished elements.
 type Report<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
 
-/// The number of chunks that are computed before their lists are joined. It bounds the memory of
-/// lists that are not joined yet.
+/// The maximum number of chunks whose lists are filled before [`Progress::collect`] passes them on.
+/// It bounds the memory of these lists.
 const CHUNKS_PER_WAVE: usize = 1024;
 
 /// A callback that receives the progress of a batch and may cancel the batch.

@@ -89,7 +89,7 @@ fn kinds_of<N: Real, const D: usize>(solids: &[Solid<N, D>; 2]) -> [ShapeKind; 2
     [Geometry(solids[0].kind()).kind(), Geometry(solids[1].kind()).kind()]
 }
 
-/// A pair that may be within the prediction, and its contacts.
+/// A pair whose bounds leave open whether it is within the prediction, and its contacts.
 struct PairManifolds<'a, N: Real, const D: usize> {
     /// Both solids with their poses, in canonical order.
     placed: [Placed<'a, N, D>; 2],
@@ -153,7 +153,8 @@ impl<N: Real, const D: usize> PlacedSolids<N, D> for PairManifolds<'_, N, D> {
     }
 }
 
-/// Pairs of a chunk whose solids have the same two kinds.
+/// The pairs of a chunk whose solids have the same two kinds. If these kinds have a kernel, it
+/// computes the pairs in SIMD lanes.
 pub(crate) struct SolidGroup<'g, 'a, N: Real, const D: usize> {
     pairs: &'g mut [Option<PairManifolds<'a, N, D>>],
     /// For each pair in the group: the kinds of its solids, and its index in `pairs`.

@@ -155,8 +155,9 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         entries::contacts(self, prediction, control, out)
     }
 
-    /// Computes the time at which the solids of each pair first touch if they move with constant
-    /// velocities and do not rotate: see [`impact`](crate::query::impact()).
+    /// Computes the time at which the solids of each pair first touch, or reach the target distance
+    /// of `options`, if they move with constant velocities and do not rotate: see
+    /// [`impact`](crate::query::impact()).
     ///
     /// `velocities` has a list for each side, in the world frame and in units of length per unit of
     /// time. A list has one velocity for each pair, or a single velocity for all pairs, or is empty
@@ -456,7 +457,7 @@ fn nearest_of<N: Space<D>, const D: usize>(
 ) -> Option<(usize, N)> {
     let mut best = known;
     for index in range {
-        // No pair is nearer than a pair that touches.
+        // A pair that touches is the nearest one, and all pairs that follow have larger indices.
         if best.is_some_and(|(first, distance)| distance <= N::ZERO && first < index) {
             break;
         }
@@ -468,7 +469,8 @@ fn nearest_of<N: Space<D>, const D: usize>(
     best
 }
 
-/// Returns the nearer of two pairs; at equal distances the pair with the lower index.
+/// Returns the nearer of two pairs, at equal distances the pair with the lower index; `None` if
+/// both are `None`.
 fn nearer<N: Real>(one: Option<(usize, N)>, other: Option<(usize, N)>) -> Option<(usize, N)> {
     let (Some((index1, distance1)), Some((index2, distance2))) = (one, other) else {
         return one.or(other);

@@ -95,8 +95,9 @@ impl<'a, N: Space<D>, const D: usize> PlacedPairs<'a, N, D> {
         }
     }
 
-    /// Calls `put` for each pair that may be at most `limit` apart, with its slot in the chunk. A
-    /// pair of convex solids comes with its separation, a pair with a composite with its shapes.
+    /// Calls `put` with the chunk slot of each pair that may be at most `limit` apart. Passes the
+    /// separation of two convex solids within the limit, or the shapes of a pair with a composite,
+    /// whose distance may exceed the limit.
     pub(super) fn separations(&self, mut put: impl FnMut(usize, PairAnswer<'_, 'a, N, D>)) {
         let mut convex = self.convex(|slot, placed| put(slot, PairAnswer::Alone(placed)));
         let mut found = vec![None; self.slots.len()];

@@ -120,7 +120,7 @@ impl<'a, N: Space<D>, const D: usize> PointBatch<'a, N, D> {
     }
 }
 
-/// A point in the world frame and a placed shape.
+/// One element of a [`PointBatch`]: a point in the world frame and a placed shape.
 struct PointQuestion<'a, N: Real, const D: usize> {
     shape: &'a dyn Shape<N, D>,
     pose: Pose<N, D>,

@@ -163,7 +163,7 @@ pub(super) const fn index_in(len: usize, element: usize) -> usize {
 /// A side together with data that is computed once for all of its elements.
 pub(super) struct PreparedSide<'a, N: Real, const D: usize> {
     side: Side<'a, N, D>,
-    /// The number of poses.
+    /// The number of poses: 1 if all elements share a pose.
     poses: usize,
     /// The shape if all elements share it; else `None`.
     shape: Option<(&'a dyn Shape<N, D>, Geometry<'a, N, D>)>,

@@ -125,7 +125,8 @@ pub fn boxes<N: Space<D>, const D: usize>(
     entries::boxes(side, control)
 }
 
-/// The elements of a side and their boxes.
+/// A side with the grown box of each element, which a search compares with the boxes of the other
+/// side.
 struct BoxedSide<'a, N: Real, const D: usize> {
     side: PreparedSide<'a, N, D>,
     /// The grown box of each element; `None` if its pose is not finite or it has no finite point.

@@ -110,8 +110,8 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     /// Creates the box with the given centre and half extents, rounded outwards.
     ///
     /// # Panics
-    /// If a coordinate is NaN, or a half extent is negative and not absorbed by rounding;
-    /// [`Aabb::try_from_half_extents`] returns an error instead.
+    /// If a coordinate is NaN, or a half extent is so negative that the rounded corners are
+    /// inverted; [`Aabb::try_from_half_extents`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn from_half_extents(center: Point<N, D>, half_extents: Vector<N, D>) -> Self {
@@ -124,7 +124,8 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     /// Creates the box with the given centre and half extents, rounded outwards.
     ///
     /// # Errors
-    /// If a coordinate is NaN, or a half extent is negative and not absorbed by rounding.
+    /// If a coordinate is NaN, or a half extent is so negative that the rounded corners are
+    /// inverted.
     pub fn try_from_half_extents(
         center: Point<N, D>,
         half_extents: Vector<N, D>,
@@ -133,7 +134,7 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         Self::try_new(aabb.mins, aabb.maxs)
     }
 
-    /// Returns the box that contains a single point; the coordinates are not checked.
+    /// Returns the box that contains only the given point. The coordinates are not checked for NaN.
     pub(crate) const fn at(point: Point<N, D>) -> Self {
         Self { mins: point, maxs: point }
     }
@@ -178,12 +179,13 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         &self.maxs
     }
 
-    /// Returns the centre; not finite if the box is unbounded.
+    /// Returns the centre; not finite if the box is unbounded or its size overflows.
     pub fn center(&self) -> Point<N, D> {
         self.mins + self.half_extents()
     }
 
-    /// Returns half the size along each axis; infinite where the box is unbounded.
+    /// Returns half the size along each axis; infinite where the box is unbounded or its size
+    /// overflows.
     pub fn half_extents(&self) -> Vector<N, D> {
         (self.maxs - self.mins) * N::HALF
     }
@@ -218,8 +220,9 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     /// this box, clamped to `t ≥ 0`; `None` if the boxes do not touch at any `t ≥ 0`.
     ///
     /// This is the slab test with the extents of both boxes added. If `moving` is a single point,
-    /// the result equals [`Self::ray_interval`] of a ray. With a zero velocity the interval is from
-    /// zero to infinity, or the result is `None`. The velocity must be finite.
+    /// the result equals [`Self::ray_interval`] for the ray from that point along `velocity`. With
+    /// a zero velocity the interval is from zero to infinity, or the result is `None`. The velocity
+    /// must be finite.
     pub fn sweep_interval(&self, moving: &Self, velocity: &Vector<N, D>) -> Option<(N, N)> {
         let (mut enter, mut leave) = (N::ZERO, N::INFINITY);
         for axis in 0..D {
@@ -261,9 +264,9 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     }
 }
 
-/// Returns the length of a vector whose squared length overflows. The result is never less than a
-/// length whose square is finite. So distances are monotonic: a box that encloses another box is
-/// not farther away.
+/// Returns the length of a vector whose squared length overflows. The result is never less than the
+/// largest length whose square is finite. So distances are monotonic: a box that encloses another
+/// box is not farther away.
 #[cold]
 fn long_distance<N: Real, const D: usize>(gaps: &Vector<N, D>) -> N {
     let largest = max_component(gaps);

@@ -38,7 +38,8 @@ pub trait BoundingVolume<N: Real>: Clone {
 
     /// Returns `true` if the two volumes have a common point.
     fn intersects(&self, other: &Self) -> bool;
-    /// Returns `true` if every point of `other` is in this volume.
+    /// Returns `true` only if every point of `other` is in this volume. Boxes are compared exactly;
+    /// spheres may give `false` if the outer one exceeds the inner one by rounding errors only.
     fn contains(&self, other: &Self) -> bool;
     /// Returns the smallest volume of this type that contains both volumes.
     #[must_use]

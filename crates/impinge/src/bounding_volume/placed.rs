@@ -1,9 +1,10 @@
 //! Boxes around placed solids, rounded outwards.
 //!
-//! A coordinate of a placed point is `t + Σ Rᵢⱼ·pⱼ`. The sum is rounded, so boxes are grown by an
-//! upper bound of its error ([`slack_of`]). The addition of `t` is rounded outwards to a
-//! neighbouring number ([`sum_below`], [`sum_above`]), so that the boxes of solids far from the
-//! origin are tight too. If a pose maps axes to axes, only this addition is rounded.
+//! A pose with rotation `R` and translation `t` maps a point `p` to the coordinates `tᵢ + Σⱼ
+//! Rᵢⱼ·pⱼ`. The sum is rounded, so boxes are grown by an upper bound of its error ([`slack_of`]).
+//! The addition of `tᵢ` is rounded outwards to a neighbouring number ([`sum_below`],
+//! [`sum_above`]), so that the boxes of solids far from the origin are tight too. If a pose maps
+//! axes to axes, only this addition is rounded.
 
 use super::Aabb;
 use crate::math::outward::{slack_of, sum_above, sum_below};
@@ -46,7 +47,8 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     /// Returns the box around points that `pose` has rotated but not yet translated. `low` and
     /// `high` are the least and greatest coordinates of the rotated points as computed by
     /// [`Pose::vector`]. `size` is an upper bound of the distance of the points from the local
-    /// origin. The result is unbounded if the coordinates overflow.
+    /// origin. The result is unbounded if one of its coordinates would be NaN, as after an
+    /// overflow.
     ///
     /// A coordinate of a rotated point is a sum of D products with an error of at most D·ε·size/2
     /// (Higham, "Accuracy and Stability of Numerical Algorithms", 2002, section 3.1).

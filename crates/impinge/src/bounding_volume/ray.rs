@@ -1,4 +1,4 @@
-//! Rays.
+//! Rays: the arguments of ray casts.
 
 use crate::math::{Point, Pose, Real, Vector};
 

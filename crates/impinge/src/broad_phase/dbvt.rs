@@ -45,8 +45,8 @@ impl<N: Space<D>, const D: usize> TreeVolume<N> for Aabb<N, D> {
     }
 }
 
-/// Two dynamic trees over bounding volumes loosened by a margin: one of moving and one of still
-/// objects.
+/// The default broad phase: two dynamic trees over bounding volumes loosened by a margin, one of
+/// moving and one of still objects.
 ///
 /// An object changes a tree only when its exact volume leaves its loosened volume, or when it comes
 /// to rest. So objects that move slowly or jitter cost almost nothing. The first update of a new
@@ -158,8 +158,8 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
         self.finder.loosened(id_of(handle))
     }
 
-    /// Iterates over the pairs of the last update, except those removed since. Each has the smaller
-    /// handle first; the order is unspecified.
+    /// Iterates over the pairs of the last update, except those removed since. In each pair the
+    /// smaller handle comes first; the order of the pairs is unspecified.
     pub fn pairs(&self) -> impl Iterator<Item = (ProxyHandle, ProxyHandle)> + '_ {
         let handle = |id: u32| self.handles.at(id);
         self.finder.pairs().iter().map(move |&(a, b)| (handle(a), handle(b)))

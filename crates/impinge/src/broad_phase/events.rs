@@ -190,8 +190,9 @@ impl PairEvents {
         look.trim(&mut self.events);
     }
 
-    /// Updates the pair table, and lists the events in canonical order. A pair that starts takes
-    /// the index of a pair that stops, so that no other pair moves.
+    /// Updates the pair table, and lists the events in canonical order. As long as there are pairs
+    /// of both kinds, a pair that starts takes the index of a pair that stops, so that no other
+    /// pair moves in the table.
     fn commit(&mut self, pairs: &mut PairTable, ended: &[u64]) {
         let Self { starting, stopped, events } = self;
         let mut started = 0;

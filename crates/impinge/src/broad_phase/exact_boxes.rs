@@ -21,11 +21,13 @@ pub(super) struct ExactBoxes<'a, N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> ExactBoxes<'_, N, D> {
-    /// Stores the waiting boxes as exact boxes. Lists in `outside` the objects whose exact box
-    /// leaves the loosened box, and those in no tree. Returns the number of listed objects.
+    /// Stores the waiting boxes as exact boxes. Lists in `outside` each object whose exact box
+    /// leaves the loosened box, and each object that is in no tree. Returns the number of listed
+    /// objects.
     ///
-    /// `waiting` is the part of the whole list of waiting boxes that begins at index `first_at`. An
-    /// object is listed by its index in the whole list. `outside` must be as long as `waiting`.
+    /// `waiting` is the part of the whole list of waiting boxes that begins at index `first_at`.
+    /// `outside` receives the index of each listed object's box in the whole list, and must be as
+    /// long as `waiting`.
     pub(super) fn write(
         self,
         bounds: &LooseBounds<'_, D>,
@@ -89,8 +91,8 @@ mod parallel {
     }
 
     impl<N: Real, const D: usize> ExactBoxes<'_, N, D> {
-        /// Halves the list recursively into parts of at most [`MAX_SERIAL`] boxes, which may run on
-        /// several threads. [`can_split`] must hold for the whole list.
+        /// Implements [`Self::write`] on several threads: halves the list recursively into parts of
+        /// at most [`MAX_SERIAL`] boxes. [`can_split`] must hold for the whole list.
         pub(super) fn write_parallel(
             self,
             bounds: &LooseBounds<'_, D>,

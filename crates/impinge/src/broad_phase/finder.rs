@@ -29,8 +29,8 @@ pub(crate) enum Container {
     Unbounded,
 }
 
-/// Mark of an object whose loosened box changed since the last update. Every object with
-/// [`REFILTER`] has it too.
+/// Mark of an object whose loosened box changed since the last update. Every object with the mark
+/// [`REFILTER`] has this mark, too.
 pub(super) const CHANGED: u8 = 1;
 /// Mark of an object whose pairs must all be filtered again.
 pub(super) const REFILTER: u8 = 2;
@@ -53,7 +53,8 @@ pub(super) struct Waiting<N: Real, const D: usize> {
 /// is tested against every object that changed.
 ///
 /// Arrays with one entry for each object are indexed by id. Objects that have not changed for a
-/// while move to a second tree, the tree of still objects. It is searched for changed objects only.
+/// while move to a second tree, the tree of still objects. An update searches that tree only for
+/// pairs with changed objects.
 pub struct PairFinder<N: Real, const D: usize> {
     margin: N,
     /// Exact boxes at the last update.
@@ -359,8 +360,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             Container::Unbounded if self.marks[index] & CHANGED != 0 => Some(self.previous[index]),
             Container::Unbounded => Some(self.loose[index]),
         };
-        // If all pairs must begin anew, the tree stores an empty box. An unbounded box would
-        // overlap an empty box, but overlaps no `NOWHERE`.
+        // If all pairs must begin anew, the tree stores the empty box. An unbounded box overlaps
+        // the empty box, but not [`Bounds::NOWHERE`].
         in_tree.filter(|before| *before != Bounds::EMPTY).unwrap_or(Bounds::NOWHERE)
     }
 

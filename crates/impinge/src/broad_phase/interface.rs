@@ -150,9 +150,9 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         or_panic(self.try_deferred_set_bounding_volume(handle, bv));
     }
 
-    /// Makes the next update filter all pairs of this object with objects that overlap it again.
-    /// Pairs that the filter now refuses stop, and pairs that it now allows start. A pair that
-    /// remains is not reported again.
+    /// Makes the next update filter again all pairs of this object with objects whose volumes
+    /// overlap its volume. Pairs that the filter now refuses stop, and pairs that it now allows
+    /// start. A pair that remains is not reported again.
     ///
     /// # Panics
     /// If the handle is stale.

@@ -46,8 +46,9 @@ impl RestPass {
 
 impl<N: Real, const D: usize> PairFinder<N, D> {
     /// Moves objects at rest to the tree of still objects, and performs one step of the maintenance
-    /// of both trees. The work is bounded by a constant plus a multiple of `changed`, the number of
-    /// changed objects. The result depends only on the sequence of calls.
+    /// of both trees. Unless the trees are swapped, the work is bounded by a constant plus a
+    /// multiple of `changed`, the number of changed objects. The result depends only on the
+    /// sequence of calls.
     pub(super) fn keep_order(&mut self, changed: usize) {
         let mut resting = core::mem::take(&mut self.resting);
         resting.clear();

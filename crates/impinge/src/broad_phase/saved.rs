@@ -14,7 +14,7 @@ use crate::generation::Generation;
 use crate::math::numbers::{Damage, NumberSource, Numbers, ensure};
 use crate::math::{Mapped, Real, Space};
 
-/// The record of a broad phase.
+/// The broad phase in the data of a saved world.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct BroadRecord<N: Real> {
@@ -30,7 +30,7 @@ pub(crate) struct BroadRecord<N: Real> {
     clock: u32,
 }
 
-/// The record of one object in the broad phase.
+/// An object of the broad phase in the data of a saved world.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct BoxRecord<N: Real> {

@@ -52,7 +52,8 @@ impl<const D: usize> Block<D> {
         nearest
     }
 
-    /// Returns, by lane, the least dot product of `along` with a point of the box.
+    /// Returns, by lane, the least dot product of `along`, a vector of any length, with a point of
+    /// the box.
     #[inline]
     pub(crate) fn lowest_along(&self, along: &[f32; D]) -> [f32; LANES] {
         let mut lowest = [0.0; LANES];

@@ -10,16 +10,17 @@
 //!  +------------+               / /
 //! ```
 //!
-//! The box of a patch is about as thick as the patch is wide, unless the surface is perpendicular
-//! to an axis. A slab is thin: its thickness is of the order of the squared width where the surface
-//! is smooth. Slab and box together are almost as tight as oriented boxes along any direction
-//! (Gottschalk, Lin and Manocha, "`OBBTree`", 1996).
+//! The box of a slanted patch of a surface is about as thick as the patch is wide. A slab is thin:
+//! where the surface is smooth, its thickness is of the order of the squared width. Slab and box
+//! together are almost as tight as oriented boxes along any direction (Gottschalk, Lin and Manocha,
+//! "`OBBTree`", 1996).
 
 use super::tree::small;
 use super::{Bounds, LANES, NONE, Tree};
 use crate::math::{Point, Real, Vector, filled, max, min, unit};
 
-/// A slab is used only if the box is at least `THINNER` times as thick along the slab's normal.
+/// A slab is used only if the box is at least `THINNER` times as thick as the slab, along the
+/// slab's normal.
 const THINNER: f64 = 4.0;
 /// Error bound of a dot product of the slab's normal and a corner, in rounding units of the tree's
 /// largest coordinate.
@@ -47,9 +48,10 @@ impl<const D: usize> BlockSlab<D> {
         Vector::from_fn(|axis, _| N::lit(self.across[axis].into()))
     }
 
-    /// Returns the slab perpendicular to a sum of normals. `extent` returns the extent of the
-    /// contents along a direction. `None` if the sum has no direction, or if the slab is not thin
-    /// compared with `bounds` (see [`THINNER`]).
+    /// Returns the slab around the contents of a block whose planes are perpendicular to `sum`, the
+    /// sum of the normals of its faces. `extent` returns the extent of the contents along a
+    /// direction. `None` if the sum has no direction, or if the slab is not thin compared with
+    /// `bounds` (see [`THINNER`]).
     fn around<N: Real>(
         sum: &Vector<N, D>,
         bounds: &Bounds<D>,
@@ -132,8 +134,7 @@ impl<const D: usize> Tree<D> {
         SlabBox { bounds: &self.layers[layer].bounds[block as usize], slab }
     }
 
-    /// Iterates over the children of block `above`. The children are blocks of `layer`, the layer
-    /// just below that block's.
+    /// Iterates over the children of block `above`; `layer` is the layer of the children.
     fn children(&self, layer: usize, above: u32) -> impl Iterator<Item = SlabBox<'_, D>> {
         let first = above * small(LANES);
         let blocks = (first..small(self.layers[layer].blocks.len())).take(LANES);

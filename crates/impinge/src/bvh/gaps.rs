@@ -7,7 +7,7 @@ use crate::bounding_volume::Aabb;
 use crate::math::{Mapped, Real, f32_above, f32_below};
 use fearless_simd::{Select, Simd, SimdBase, SimdMask, f32x16, mask32x16};
 
-/// The magnitude of coordinates, 2¹²⁵, from which on differences may overflow `f32`.
+/// Magnitude of coordinates, 2¹²⁵, at and above which differences may overflow `f32`.
 const LARGEST: f32 = f32::from_bits((125 + 127) << 23);
 
 /// Least value used for the largest coordinate, 2⁻¹²⁰, so that the unit has a finite reciprocal.

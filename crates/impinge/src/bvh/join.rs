@@ -71,9 +71,10 @@ pub(crate) struct Joiner<const D: usize> {
 /// Scratch lists for one chunk.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch<const D: usize> {
-    /// Pairs of a query and a block, or of a block of `second` and a slot of `first`.
+    /// In a search: pairs of a query and a block. In a join: pairs of a block of `second` and a
+    /// slot of `first`.
     pub(super) tasks: TaskList,
-    /// Pairs of a query and a block of the layer below.
+    /// In a search: pairs of a query and a block of the layer below.
     pub(super) next: TaskList,
     /// Swept box of each query of the chunk.
     pub(super) swept_slots: Vec<Bounds<D>>,
@@ -112,8 +113,8 @@ impl<const D: usize> Joiner<D> {
     }
 
     /// Appends the pairs within the tree that began or ended since the last [`Tree::commit_boxes`],
-    /// each once. The order depends on the calls alone. Some ended pairs of [`Tree::escaped`]
-    /// objects may be missing. The tree must be refitted.
+    /// each once. The same calls always give the same order of pairs. Some ended pairs of
+    /// [`Tree::escaped`] objects may be missing. The tree must be refitted.
     pub(crate) fn self_join(&mut self, tree: &Tree<D>, changes: &mut Changes) {
         let sides = JoinSides { first: tree, second: tree, is_self: true };
         if tree.changed * QUERIES_BELOW < tree.live {
@@ -143,7 +144,7 @@ impl<const D: usize> Joiner<D> {
         }
     }
 
-    /// Finds, by queries, the pairs that began or ended with a changed object of the first tree,
+    /// Finds, by queries, the pairs with a changed object of the first tree that began or ended,
     /// and appends them to `changes`.
     fn search_and_report(&mut self, sides: JoinSides<'_, D>, changes: &mut Changes) {
         self.search_changed(sides);
@@ -182,7 +183,7 @@ impl<const D: usize> Joiner<D> {
         self.slots = slots;
     }
 
-    /// Finds the pairs that began or ended by a join, layer by layer.
+    /// Runs the join, layer by layer, and lists the pairs of slots that began or ended in `found`.
     fn join(&mut self, sides: JoinSides<'_, D>) {
         let nothing_changed = sides.first.changed == 0 && sides.second.changed == 0;
         if nothing_changed || sides.first.live == 0 || sides.second.live == 0 {
@@ -313,7 +314,7 @@ fn expand<K: Kernel, const D: usize>(
     }
 }
 
-/// Appends the pairs of slots that began or ended between the leaf blocks of each pair.
+/// Appends, for each pair of leaf blocks, the pairs of their slots whose overlap began or ended.
 #[inline(always)]
 fn join_leaves<K: Kernel, const D: usize>(
     kernel: K,

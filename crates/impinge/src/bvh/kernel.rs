@@ -207,8 +207,8 @@ pub(super) trait Kernel: Copy {
 
     /// Returns the lanes whose squared distance may be at most `limit`, and writes the squares to
     /// `keys`, in squared units of the gaps. Keys have rounding errors ([`Gaps::distance`] allows
-    /// for them). The mask contains every lane within a limit of [`Gaps::limit`]; a finite limit
-    /// excludes empty lanes.
+    /// for them). If [`Gaps::limit`] converted a distance to `limit`, the mask contains every lane
+    /// within that distance. A finite limit excludes empty lanes.
     fn apart<const D: usize>(
         self,
         block: &Block<D>,

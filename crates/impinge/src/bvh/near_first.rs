@@ -234,7 +234,7 @@ impl<const D: usize> Tree<D> {
         with_kernel!(self.lanes, kernel => self.opened(kernel, gaps, layer, number, limit))
     }
 
-    /// Touches the cache lines of a leaf block.
+    /// Prefetches the first values of a leaf block: its boxes and its ids.
     #[inline(always)]
     fn touch_leaf(&self, block: u32) {
         let block = block as usize;

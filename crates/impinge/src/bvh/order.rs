@@ -8,7 +8,7 @@
 use super::tree::small;
 use super::{Bounds, LANES, NONE, Tree};
 
-/// Number of items from which on both parts are sorted in parallel.
+/// Least number of items whose two parts are sorted in parallel.
 #[cfg(feature = "parallel")]
 const PARALLEL_SORT: usize = 4096;
 

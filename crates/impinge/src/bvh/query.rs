@@ -52,7 +52,7 @@ pub(super) fn search<K: Kernel, const D: usize>(
     }
 }
 
-/// Returns the lanes of block `block` whose slots are above `slot`.
+/// Returns the lanes of block `block` whose slots are above `slot`, as a mask.
 #[inline(always)]
 fn later_lanes(slot: u32, block: u32) -> u32 {
     let own = slot / small(LANES);

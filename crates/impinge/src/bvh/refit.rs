@@ -16,7 +16,8 @@ const FAR_MOVED: f64 = 2.0;
 const PARALLEL_LEAVES: usize = 256;
 
 impl<const D: usize> Tree<D> {
-    /// Sorts new objects and updates the upper layers, which then enclose the lower ones exactly.
+    /// Sorts new objects and updates the upper layers, whose boxes are then exactly the unions of
+    /// the boxes below.
     pub(crate) fn refit(&mut self) {
         self.refit_from(&[]);
     }

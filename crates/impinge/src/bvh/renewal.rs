@@ -56,7 +56,7 @@ pub(super) struct Renewal<const D: usize> {
     other: Tree<D>,
     /// Objects inserted since the renewal began. Some may have been removed.
     late: Vec<u32>,
-    /// Work units added by changes since the last call.
+    /// Work units added by changes since the last call of [`Self::proceed`].
     owed_units: usize,
 }
 

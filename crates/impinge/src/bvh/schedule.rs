@@ -308,7 +308,7 @@ impl<const D: usize> Schedule<D> {
         self.late.clear();
     }
 
-    /// Clamps the slot indices to `end`, when there are no slots from `end` on.
+    /// Clamps the slot indices to `end`, after the slots from `end` on were dropped.
     pub(super) fn forget_slots_from(&mut self, end: usize) {
         (self.ordered, self.fresh) = (self.ordered.min(end), self.fresh.min(end));
     }

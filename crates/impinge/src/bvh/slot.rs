@@ -1,4 +1,4 @@
-//! The slot of a new object.
+//! The choice of a slot for a new object.
 
 use super::{Bounds, LANES, NONE, Tree};
 

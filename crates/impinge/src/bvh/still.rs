@@ -15,7 +15,7 @@ use crate::math::filled;
 const BINS: usize = 16;
 /// Greatest number of boxes that are sampled to choose a cut.
 const SAMPLE: usize = 512;
-/// Number of boxes from which both parts are sorted in parallel.
+/// Least number of boxes whose two parts are sorted in parallel.
 #[cfg(feature = "parallel")]
 const PARALLEL_SORT: usize = 4096;
 

@@ -1,4 +1,4 @@
-//! Rays against triangles, many together, in lockstep.
+//! Searches for the triangles that rays may cross, for many rays together, in lockstep.
 //!
 //! The next step of a single ray waits for loads and depends on unpredictable branches. So all rays
 //! that open a block do so one after another, then all rays at leaf blocks test triangles, then all

@@ -160,8 +160,9 @@ fn check_changes<const D: usize>(
     counts
 }
 
-/// Checks joins of two trees over 25 steps. In each step about one object in `rarity1` of the first
-/// tree and in `rarity2` of the second changes; moves go up to `max_move / 2` along each axis.
+/// Checks joins of two trees over 25 steps with [`check_changes`]. In each step about one object in
+/// `rarity1` of the first tree and in `rarity2` of the second changes; moves go up to `max_move /
+/// 2` along each axis, or anywhere if `max_move` is at least `2 * side`.
 fn check_joins<const D: usize>(side: u32, rarity1: u32, rarity2: u32, max_move: u32) {
     let mut state = u64::from(side * 100 + rarity1 * 10 + rarity2);
     let mut first = Twin::<D>::new(&mut state, 0, 700, side);
@@ -246,7 +247,8 @@ fn the_nearest_come_first() {
     }
 }
 
-/// A tree that is emptied and filled again three times keeps its invariants, and has no leftovers.
+/// Tests that a tree keeps its invariants, and has no leftovers, if it is emptied and filled again
+/// three times.
 #[test]
 fn emptied_and_filled() {
     let mut state = 5;

@@ -68,8 +68,8 @@ impl<const D: usize> Layer<D> {
 
 /// A packed tree over boxes with ids; see the module for the layout.
 ///
-/// Ids are small numbers of the caller, and index arrays of the tree. Boxes must be finite with `lo
-/// ≤ hi`.
+/// Ids are chosen by the caller. They should be small, because they index arrays of the tree. Boxes
+/// must be finite with `lo ≤ hi`.
 #[derive(Debug)]
 pub(crate) struct Tree<const D: usize> {
     pub(super) lanes: Lanes,

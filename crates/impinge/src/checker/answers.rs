@@ -14,7 +14,8 @@ use crate::math::simd::Level;
 use crate::math::{Real, Space, max};
 
 /// Angles up to `NEAR_ANGLE` radians are converted to `f32` without reduction. Angles above
-/// `FAR_ANGLE` radians are not reduced, since the rounding error of the `f64` would be too large.
+/// `FAR_ANGLE` radians become NaN, because the rounding error of the `f64` would be too large; the
+/// scan leaves such a configuration to the exact queries.
 const NEAR_ANGLE: f64 = 4.0;
 const FAR_ANGLE: f64 = 1e8;
 

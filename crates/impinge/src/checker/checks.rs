@@ -69,7 +69,8 @@ pub struct Checker<N: Real, const D: usize> {
     pub(super) hulls: BodyHulls<N, D>,
     pub(super) robot: RobotFilter<D>,
     pub(super) surroundings: Surroundings<D>,
-    /// The pairs `[body, obstacle]` that may touch, in ascending order.
+    /// The pairs `[body, obstacle]` that may touch, so that no query tests them, in ascending
+    /// order.
     ignored: Vec<[u32; 2]>,
 }
 
@@ -219,7 +220,7 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
     }
 
     /// Writes the first pair of each configuration that is within `clearance`; [`NO_PAIR`] if the
-    /// configuration is free.
+    /// configuration is free or not finite.
     ///
     /// # Errors
     /// [`BatchError::PartialRow`] or [`BatchError::Length`] if `configurations` does not have as

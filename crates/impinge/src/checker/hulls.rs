@@ -130,8 +130,8 @@ mod tests {
         Placed { pose: Pose::from_translation(position.into()), shape: shape.geometry() }
     }
 
-    /// Calls [`BodyHulls::are_beyond`] often enough for the hulls to be computed, and returns the
-    /// result of the last call.
+    /// Calls [`BodyHulls::are_beyond`] until the hulls have been computed, and returns the result
+    /// of the last call.
     fn last_of<const D: usize>(
         hulls: &BodyHulls<f64, D>,
         solids: [(&Placed<'_, f64, D>, Option<u32>); 2],

@@ -48,7 +48,7 @@ fn arm<N: Space<D>, const D: usize>(turn: fn(usize) -> Joint<N, D>) -> Checker<N
 }
 
 /// Returns the state of a search after a scan as text, and the number of configurations in which a
-/// pair certainly touches.
+/// pair is certainly within the distance 0.05; 0 unless `mode` is [`SearchMode::Any`].
 fn found<N: Space<D>, const D: usize>(
     (level, mode): (Level, SearchMode),
     checker: &Checker<N, D>,
@@ -77,7 +77,7 @@ fn agree<N: Space<D>, const D: usize>(checker: &Checker<N, D>) {
             hits += expected.1;
         }
     }
-    // Each of the three modes searches 200 packets of 8 configurations.
+    // Each mode searches 200 packets of 8 configurations; only the mode `Any` counts touching ones.
     assert!((480..4320).contains(&hits), "{hits} of 4800 configurations touch");
 }
 

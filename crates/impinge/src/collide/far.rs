@@ -1,4 +1,5 @@
-//! Rejects pairs of shapes that are certainly too far apart, before any rotation is computed.
+//! Rejects pairs of shapes that are certainly farther apart than a distance `limit`: by bounding
+//! balls, which need no rotation, or by bounding boxes.
 //!
 //! ```text
 //!     (  o1  ) - - - - between - - - - (   o2   )      balls around the origins hold the shapes
@@ -7,15 +8,16 @@
 //!       rejected if between² > (extent1 + extent2 + limit)² (1 + 2⁻⁶)
 //! ```
 //!
-//! A ball around the origin of its frame contains a solid at any rotation. The radii of the two
-//! balls cost little to read. Together with the difference of the positions they reject most pairs
-//! before a rotation, the canonical order or a feature is computed.
+//! Each solid lies in a ball around the origin of its frame, however it is rotated. The radii of
+//! the two balls cost little to read. Together with the difference of the positions they reject
+//! most pairs before a rotation, the canonical order or a feature is computed.
 //!
 //! A pair is rejected only if the algorithms for its shapes would also find it beyond `limit`. The
-//! errors of these algorithms are some hundred epsilons of the lengths of the pair. If the balls do
-//! not overlap, each of these lengths is at most twice the distance of the origins. Squares are
-//! compared with a factor of 1 + 2⁻⁶. So the balls of a rejected pair are farther apart than
-//! `limit` by 2⁻⁸ of the distance of the origins, which is 2¹⁵ epsilons of `f32`.
+//! errors of these algorithms are some hundred epsilons of the largest length that occurs in them:
+//! a bounding radius or a distance of points. If the balls do not overlap, each of these lengths is
+//! at most twice the distance of the origins. Squares are compared with a factor of 1 + 2⁻⁶. So the
+//! balls of a rejected pair are farther apart than `limit` by 2⁻⁸ of the distance of the origins,
+//! which is 2¹⁵ epsilons of `f32`.
 
 use crate::math::{Mapped, Pose, Real, Vector, max, max_component, min};
 use crate::shape::{Geometry, Kind, Shape};
@@ -75,8 +77,9 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
         self.shapes[0].extent() + self.shapes[1].extent()
     }
 
-    /// Returns whether the shapes stay certainly farther apart than `limit` from time zero to
-    /// `end`, both included, while the second moves with `velocity` relative to the first.
+    /// Returns whether the shapes certainly stay farther apart than `limit` from time zero to
+    /// `end`, both included, while the second moves with `velocity` relative to the first. `false`
+    /// proves nothing; it is also the result if the squared speed overflows or underflows.
     pub(crate) fn stays_beyond(&self, limit: N, velocity: &Vector<N, D>, end: N) -> bool {
         let (speed_squared, along) = (velocity.norm_squared(), self.between.dot(velocity));
         // If the squared speed overflows or underflows, the time of closest approach is unknown.
@@ -139,13 +142,12 @@ impl<N: Real, const D: usize> ReachBounds<N, D> {
         exceeds(between.norm_squared(), max_distance(self.extent + other.extent, limit))
     }
 
-    /// Returns whether the boxes are farther apart than `limit` along an axis of one of them, by
-    /// more than 2⁻⁸ of the lengths of the pair: 2¹⁵ epsilons of `f32`. These lengths are the radii
-    /// of both balls and the largest component of the translation. A negative `limit` counts as
-    /// zero. `pose12` is the pose of the other shape in the frame of this shape.
+    /// Returns whether the distance of the boxes along an axis of one of them exceeds `limit` by
+    /// more than 2⁻⁸ of the pair's size: 2¹⁵ epsilons of `f32`. The size is the sum of the radii of
+    /// both balls and the largest component of the translation. A negative `limit` counts as zero.
+    /// `pose12` is the pose of the other shape in the frame of this shape.
     ///
-    /// `false` proves nothing. It is also the result for NaN, and if the sum of the lengths is not
-    /// finite.
+    /// `false` proves nothing. It is also the result for NaN, and if the size is not finite.
     pub(crate) fn has_box_clear_of(&self, other: &Self, pose12: &Pose<N, D>, limit: N) -> bool {
         let turn = &pose12.rotation;
         let away = turn * other.middle + pose12.translation - self.middle;
@@ -166,7 +168,8 @@ impl<N: Real, const D: usize> ReachBounds<N, D> {
     }
 }
 
-/// Returns the largest distance of the origins at which the shapes can be within `limit`.
+/// Returns the largest distance of the origins at which the shapes can be within `limit`. `extents`
+/// is the sum of the radii of both balls.
 #[inline]
 fn max_distance<N: Real>(extents: N, limit: N) -> N {
     extents + max(limit, N::ZERO)
@@ -180,7 +183,8 @@ fn exceeds<N: Real>(squared: N, distance: N) -> bool {
     squared > distance * distance * N::lit(ROOM) && squared > N::MIN_POSITIVE
 }
 
-/// Calls [`Apart::is_beyond`] out of line.
+/// Calls [`Apart::is_beyond`]. Has no inline hint, so that the compiler need not copy the test to
+/// each caller of [`Apart::is_certainly_beyond`].
 pub(crate) fn are_beyond<N: Real, const D: usize>(apart: &Apart<'_, N, D>, limit: N) -> bool {
     apart.is_beyond(limit)
 }
@@ -255,9 +259,10 @@ mod tests {
         }
     }
 
-    /// Asserts that [`separation`] returns `None` for each pair that the balls, the boxes or a test
-    /// over time reject. The distance of the origins is 0.97 to 1.03 times the sum of the ball
-    /// radii and the limit; for the boxes it is then multiplied by 0.4 to 1.
+    /// Asserts that [`separation`] returns `None` for each pair that the balls or the boxes reject,
+    /// and at 17 times for each pair that [`Apart::stays_beyond`] rejects; and that each test
+    /// rejects some of the pairs, but not all. The distance of the origins is 0.97 to 1.03 times
+    /// the sum of the ball radii and the limit; for the boxes it is then multiplied by 0.4 to 1.
     fn rejects_no_more<N: Space<D>, const D: usize>(
         (draw, kinds): (Draw<N, D>, usize),
         turn: fn(&mut Random) -> Pose<N, D>,

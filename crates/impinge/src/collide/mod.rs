@@ -9,8 +9,8 @@
 //! - [`manifold`] computes contact points of two solids: supporting features, clipping, reduction,
 //!   ids;
 //! - [`batch`] computes separations and contact points of the most frequent pairs, 8 at a time;
-//! - [`parts`] finds the near pairs of parts of two shapes, at least one of them a composite, and
-//!   the separation of the nearest pair;
+//! - [`parts`] finds pairs of parts that are near each other, one part of each shape, if at least
+//!   one of two shapes is a composite; it also finds the separation of the nearest pair;
 //! - [`mesh`] builds the manifolds of a composite and another shape. It finds the near parts, culls
 //!   them in packets of 8 ([`packet`]), and computes the contact of each remaining part. It then
 //!   drops or corrects normals that the surface does not admit, and merges the contact points into

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //!   corners[c][axis][lane]     c: corner 0, 1, 2 of the part; a segment has its second end twice
-//!                              lane: part `tile * 8 + lane` of a list; spare lanes repeat the last
+//!                              lane: part `tile * 8 + lane` of a list; spare: copies of the last
 //! ```
 //!
 //! `mesh/part_cache.rs` keeps lists of packets, called tiles. `mesh/cull.rs`,

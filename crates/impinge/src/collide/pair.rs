@@ -95,9 +95,10 @@ impl<'a, N: Real, const D: usize> Placing<'a, N, D> for Placed<'a, N, D> {
 /// the arguments flips the result bit for bit. Kinds come in the order of
 /// [`crate::shape::ShapeKind`]. Solids of one kind are ordered by their world translations along an
 /// [`askew`] direction, then by all coordinates, then by rotation (balls are placed without one),
-/// then by the numbers that define them. Solids that agree in all of these are identical, so their
-/// order does not change the result. A user's support map is compared by its rounding radius and
-/// its support points along the axes and the diagonals. Composites are compared part by part.
+/// then by the numbers that define them. A user's support map is compared by its rounding radius
+/// and its support points along the axes and the diagonals; composites by their number of parts,
+/// then part by part. Except for user's support maps, solids that agree in all of these are
+/// identical, so their order does not change the result.
 #[inline]
 pub(crate) fn canonical<'a, N: Real, const D: usize>(
     pose1: &Pose<N, D>,
@@ -210,8 +211,8 @@ fn signed_distance<N: Real, const D: usize>(pose1: &Pose<N, D>, pose2: &Pose<N, 
     askew(&(pose2.translation - pose1.translation))
 }
 
-/// Compares solids of one kind whose signed distance is zero or NaN, by poses, then by defining
-/// numbers.
+/// Compares solids of one kind by poses, then by defining numbers. Needed only if their
+/// [`signed_distance`] is zero or NaN.
 #[cold]
 fn compare_at_length<N: Real, const D: usize>(
     pose1: &Pose<N, D>,
@@ -253,8 +254,9 @@ fn compare_parts<N: Real, const D: usize>(
     counts.then_with(|| orders.find(|order| order.is_ne()).unwrap_or(Ordering::Equal))
 }
 
-/// Compares two lists lexicographically. A pair with NaN, and zeros of different sign, are ordered
-/// by their bits.
+/// Compares two lists lexicographically. Zeros of different sign are ordered by their bits, and so
+/// are two numbers of which one is NaN. If one list begins with the other list, the shorter list
+/// comes first.
 fn compare_numbers<N: Real>(numbers1: &[N], numbers2: &[N]) -> Ordering {
     for (number1, number2) in numbers1.iter().zip(numbers2) {
         let by_value = number1.partial_cmp(number2).unwrap_or(Ordering::Equal);

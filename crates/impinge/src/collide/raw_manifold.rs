@@ -8,10 +8,10 @@
 //! ```
 //!
 //! The `code` of a point of a box pair identifies its features and its slot in a batch
-//! (`collide/batch/boxes/choose.rs`); 0 stands for neither. Code that creates a point of a convex
-//! pair, or changes its features, must set `code` to 0, because the batch kernels rely on it.
-//! Points of composite pieces (`mesh/scene.rs`) may keep a code that does not match their features;
-//! no kernel reads these codes.
+//! (`collide/batch/boxes/choose.rs`). A code of 0 says that both are unknown. Code that creates a
+//! point of a convex pair, or changes its features, must set `code` to 0, because the batch kernels
+//! rely on it. Points of composite pieces (`mesh/scene.rs`) may keep a code that does not match
+//! their features; no kernel reads these codes.
 
 use smallvec::SmallVec;
 
@@ -64,8 +64,9 @@ pub(crate) struct RawPoint<N: Real, const D: usize> {
 pub(crate) type RawPoints<N, const D: usize> = SmallVec<[RawPoint<N, D>; 32]>;
 
 impl<N: Real, const D: usize> RawPoint<N, D> {
-    /// Swaps the solids: moves the point to the frame of the second solid, in which the pose of the
-    /// first is `pose21`, and clears its code.
+    /// Swaps the solids: sets `point1` to the contact point on the second solid, in the frame of
+    /// the second solid, swaps the features and clears the code. `pose21` is the pose of the first
+    /// solid in that frame; `normal` still points from the first solid to the second.
     pub(crate) fn flip(&mut self, pose21: &Pose<N, D>, normal: &Vector<N, D>) {
         self.point1 = pose21.point(&(self.point1 + normal * self.distance));
         core::mem::swap(&mut self.feature1, &mut self.feature2);

@@ -6,9 +6,9 @@
 use crate::math::{Point, Real, Vector, min};
 use crate::shape::{Geometry, Kind, SupportMap};
 
-/// Returns the size of the smaller solid: half the diagonal of its local box or, for a ball, its
-/// radius and, for a capsule, half the length of its axis plus its radius. Infinite if both solids
-/// are half-spaces.
+/// Returns the smaller of the sizes of two solids. The size of a ball is its radius; of a capsule,
+/// its radius plus half the length of its axis; of a half-space, infinity; of any other solid, half
+/// the diagonal of its local box.
 ///
 /// The box is used, not the bounding radius around the local origin, because a part's vertices may
 /// lie far from its origin.

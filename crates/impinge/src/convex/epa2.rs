@@ -114,7 +114,8 @@ fn from_extent<N: Real>(difference: &dyn Difference<N, 2>) -> Result<EpaRing<N>,
     Err(locate(difference, &best_of(difference, &[left]), &ring))
 }
 
-/// Grows the polygon until its nearest side is on the boundary of the difference.
+/// Grows the polygon until its nearest side is on the boundary of the difference, for at most
+/// [`ROUNDS`] support points. Returns the separation with the best normal found.
 fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut EpaRing<N>) -> Separation<N, 2> {
     let mut best = SupportCandidate::along(difference, -ring[0].outward);
     for _ in 0..ROUNDS {

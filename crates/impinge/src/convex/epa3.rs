@@ -164,7 +164,8 @@ fn from_needle<N: Real>(difference: &dyn Difference<N, 3>, [a, b]: [Vertex<N, 3>
     Err(locate(difference, &best_of(difference, &[u, v]), &[a, b]))
 }
 
-/// Grows the hull until its nearest face is on the boundary of the difference.
+/// Grows the hull until its nearest face is on the boundary of the difference, for at most
+/// [`ROUNDS`] support points. Returns the separation with the best normal found.
 fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separation<N, 3> {
     let Some(first) = hull.nearest() else { return locate_any(difference, hull) };
     let mut best = SupportCandidate::along(difference, -hull.face(first).outward);

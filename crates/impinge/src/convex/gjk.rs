@@ -1,4 +1,4 @@
-//! Finds the point of a difference nearest to the origin.
+//! Finds the point of the difference of two cores that is nearest to the origin.
 //!
 //! ```text
 //!              difference                upper = |nearest point of the simplex|
@@ -33,11 +33,12 @@ const ROUNDS: usize = 64;
 /// far larger than rounding errors.
 const CLEAR: f64 = 1.0 / 1024.0;
 
-/// How a search ended.
+/// The reason why [`GjkSearch::run`] ended.
 enum Outcome {
     /// A plane separates the difference from the origin by more than the limit.
     Beyond,
-    /// The difference contains the origin, its distance is below the rounding error, or it is NaN.
+    /// The difference contains the origin or is nearer to it than the rounding error, or a
+    /// coordinate is NaN.
     Overlap,
     /// The nearest point is found, rounding prevents a nearer one, or the search has reached its
     /// cap.
@@ -57,11 +58,11 @@ struct GjkSearch<N: Real, const D: usize> {
     upper: N,
     /// Gap between upper and lower bound at which the search stops.
     gap: N,
-    /// Whether the lower bound used is the height of `last`, whose points face each other, not the
-    /// height of `best`.
+    /// Whether the search stops on the height of `last`, whose points face each other, instead of
+    /// on the height of `best`.
     for_points: bool,
     /// The search ends with [`Outcome::Near`] at a point whose distance from the origin is below
-    /// this value; zero for no such end.
+    /// this value; never if it is zero.
     near: N,
 }
 
@@ -199,10 +200,10 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         }
     }
 
-    /// Returns whether the inflated difference certainly contains a ball around the origin. For
-    /// solids that lie symmetrically, the search along the line of their centres ends with the
-    /// origin on a corner, edge or face of the simplex. A second search from a skew axis avoids
-    /// this case.
+    /// Returns whether the difference inflated by `radius` certainly contains the origin, by the
+    /// proofs of [`overlaps`]. For solids that lie symmetrically, the search along the line of
+    /// their centres ends with the origin on a corner, edge or face of the simplex, which proves
+    /// nothing. A second search from a skew axis avoids this case.
     fn clears(&self, difference: &impl Difference<N, D>, radius: N) -> bool {
         self.is_clear() || overlaps(difference, &skew_axis(), radius, N::ZERO)
     }
@@ -317,9 +318,10 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         is_apart.then(|| placed(&best, &mix, N::HALF))
     }
 
-    /// Returns the separation if the bounds agree. Of several valid normals, `last`, which belongs
-    /// to the nearest point, is taken only if no points were found that face each other along
-    /// `best`.
+    /// Returns the separation at the end of a search whose bounds agree, or whose best normal
+    /// separates the difference from the origin up to rounding. If no points were found that face
+    /// each other along `best`, the normal `last` of the nearest point replaces it, if it is
+    /// equally good up to rounding.
     fn final_separation(&self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
         let (mix, mut best) = (Mix::of(&self.simplex), self.best);
         if let Some(polished) = polish(difference, &mut best, self.simplex.vertices()) {

@@ -73,7 +73,7 @@ impl<N: Real> Hull<N> {
         &self.faces[index]
     }
 
-    /// Returns whether a vertex has exactly this point.
+    /// Returns whether a vertex of the hull equals the point of `vertex` exactly.
     pub(super) fn contains(&self, vertex: &Vertex<N, 3>) -> bool {
         self.vertices.iter().any(|known| known.point == vertex.point)
     }
@@ -95,8 +95,8 @@ impl<N: Real> Hull<N> {
         faces.map(|face| face.outward)
     }
 
-    /// Sets the offset of a face to `offset`, minus the height of the best normal known for it, and
-    /// marks the face as final.
+    /// Marks a face as final and sets its offset to `offset`: the height, with the opposite sign,
+    /// of the best normal known for the face.
     pub(super) fn finalize(&mut self, index: usize, offset: N) {
         self.faces[index].offset = offset;
         self.faces[index].is_final = true;

@@ -1,4 +1,5 @@
-//! Algorithms on convex sets given by their support points: no shapes, no pairs, no state.
+//! Algorithms on convex sets that are given by their support points. They depend on no kind of
+//! shape, know nothing of composites, and keep no state between calls.
 //!
 //! ```text
 //!         core 1                core 2             difference: all b - a
@@ -191,8 +192,9 @@ where
     distance_of_pair(&CorePair::new(a, b, pose12)?, [a.rounding(), b.rounding()], limit)
 }
 
-/// Returns the `distance` of [`flat_separation`] along the line of the centres, `None` if that is
-/// `None`, or zero if a certain overlap, as defined by [`overlap`], is found during the search.
+/// Returns the `distance` of [`flat_separation`], `None` if that is `None`, or zero if a certain
+/// overlap, as defined by [`overlap`], is found during the search. The search starts along the line
+/// of the centres.
 pub(crate) fn flat_distance<N, A, B, const D: usize>(
     a: &A,
     b: &B,

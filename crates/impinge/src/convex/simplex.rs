@@ -157,7 +157,7 @@ impl<N: Simplicial<D>, const D: usize> Simplex<N, D> {
         &self.weights[..self.len]
     }
 
-    /// Returns whether the simplex has exactly this point.
+    /// Returns whether one of the points equals the point of `vertex` exactly.
     pub(super) fn contains(&self, vertex: &Vertex<N, D>) -> bool {
         self.points().contains(&vertex.point)
     }

@@ -16,7 +16,7 @@ impl Color {
         Self { rgb: [red, green, blue], alpha: u8::MAX }
     }
 
-    /// Returns the colour with another opacity.
+    /// Returns the colour with the opacity `alpha`.
     #[must_use]
     pub const fn with_alpha(self, alpha: u8) -> Self {
         Self { alpha, ..self }

@@ -20,7 +20,7 @@ pub struct Style<N: Real> {
 }
 
 impl<N: Real> Style<N> {
-    /// Returns the style with another size.
+    /// Returns the style with the size `size`.
     #[must_use]
     pub const fn with_size(self, size: N) -> Self {
         Self { size, ..self }

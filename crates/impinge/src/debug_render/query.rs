@@ -156,8 +156,9 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         }
     }
 
-    /// Draws a moving shape at the start, at the hit and at the end of its path, and the impact
-    /// with its normal. If the path is infinite, its end is not drawn.
+    /// Draws a moving shape at the start, at the hit and at the end of its path, an arrow along the
+    /// path, and the impact with its normal. If the path is infinite, its end is not drawn, and the
+    /// arrow ends at the hit.
     pub fn cast(
         &mut self,
         sweep: &SweptShape<'_, N, D>,

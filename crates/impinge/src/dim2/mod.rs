@@ -214,7 +214,7 @@ pub mod query {
     pub type ClosestPoints<N> = crate::query::ClosestPoints<N, 2>;
     /// The nearest points of two shapes with their parts and features.
     pub type Witness<N> = crate::query::Witness<N, 2>;
-    /// A point where two solids touch.
+    /// A point at which two solids touch, or are within the prediction of a query.
     pub type Contact<N> = crate::query::Contact<N, 2>;
     /// A solid that moves along a straight line.
     pub type Moving<'a, N> = crate::query::Moving<'a, N, 2>;

@@ -102,7 +102,7 @@ impl<N: Real> Numbers<N> {
     }
 
     /// Returns the isometry with these numbers, without normalisation, so its rotation need not
-    /// have unit length. Returns a defect for a wrong number of numbers.
+    /// have unit length. Returns a defect unless the list has as many numbers as an isometry.
     pub(crate) fn isometry<const D: usize>(&self) -> Result<N::Isometry, Damage>
     where
         N: Space<D>,

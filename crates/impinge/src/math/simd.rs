@@ -30,8 +30,8 @@ use super::halves::Halves;
 /// The instruction set of a kernel. It never changes a result.
 ///
 /// On x86 this is AVX2; without AVX2, kernels with interacting lanes use SSE2. Instruction sets
-/// between these two bring little, 8 lanes gain nothing from wider registers, and each instruction
-/// set adds one more copy of all kernels.
+/// between these two are hardly faster than SSE2, registers wider than 8 lanes are of no use, and
+/// each instruction set adds one more copy of all kernels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Level {
     Wide(Vectors),

@@ -1,4 +1,4 @@
-//! Iterator over all contacts of pairs with composites, read in place.
+//! Iterator over all manifolds of pairs with composites, read in place.
 
 use core::iter;
 use core::ops::Range;
@@ -67,8 +67,8 @@ impl<'a, N: Space<D>, const D: usize> CompositeViews<'a, N, D> {
         core::hint::black_box(loaded);
     }
 
-    /// Iterates over all contacts. Builds the manifolds of pairs that cannot be read in place; see
-    /// [`ObjectTable::needs_built_manifolds`].
+    /// Iterates over all manifolds with at least one contact, and builds those that cannot be read
+    /// in place; see [`ObjectTable::needs_built_manifolds`].
     pub(super) fn with_built(mut self) -> impl Iterator<Item = View<'a, N, D>> + Send {
         let next = move || {
             self.next_pair()?;

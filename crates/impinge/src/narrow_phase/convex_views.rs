@@ -1,4 +1,4 @@
-//! Iterator over all contacts of pairs of convex solids, read in place.
+//! Iterator over all manifolds of pairs of convex solids, read in place.
 
 use core::ops::Range;
 use core::{iter, slice};
@@ -83,8 +83,8 @@ impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
         Some((group, take_row(self.word, &mut self.flags)))
     }
 
-    /// Iterates over all contacts. Builds the manifolds of pairs that cannot be read in place; see
-    /// [`ObjectTable::needs_built_manifolds`].
+    /// Iterates over all manifolds with at least one contact, and builds those that cannot be read
+    /// in place; see [`ObjectTable::needs_built_manifolds`].
     pub(super) fn with_built(mut self) -> impl Iterator<Item = View<'a, N, D>> + Send {
         let next = move || {
             let (group, row) = self.next_pair()?;

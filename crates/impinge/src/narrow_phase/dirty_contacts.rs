@@ -10,7 +10,7 @@ use crate::collide::{KeptPairs, PairQuestion, RawManifold, Solid, update_pairs2,
 use crate::math::Space;
 use crate::query::ContactManifold;
 
-/// Rows of some pairs of convex solids.
+/// The rows of some pairs of convex solids, with all of their columns.
 pub(super) type ContactRows<'a, N, const D: usize> = Rows<
     'a,
     ContactEntry<N, ContactState<N, D>>,

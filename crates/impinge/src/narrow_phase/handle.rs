@@ -54,7 +54,7 @@ impl CollisionObjectHandle {
         self.index as usize
     }
 
-    /// Returns the index in the handle table, as stored.
+    /// Returns the index in the handle table as the `u32` that the handle stores.
     #[inline]
     pub(crate) const fn index(self) -> u32 {
         self.index

@@ -18,7 +18,7 @@ use crate::shape::{Geometry, Kind};
 /// a core keeps in flight.
 const PAIRS: usize = 8;
 
-/// Rows of some pairs with composites.
+/// The rows of some pairs with composites, with all of their columns.
 pub(super) type CompositeRows<'a, N, const D: usize> = Rows<
     'a,
     ContactEntry<N, CompositeState<N, D>>,

@@ -51,8 +51,8 @@ pub enum GeometricQueryType<N: Real> {
 pub struct ContactQuery<N: Real> {
     /// The object's contribution to the distance up to which there are contact points.
     pub prediction: N,
-    /// The object's contribution, in radians, to the angle by which the solids may rotate to come
-    /// within that distance.
+    /// The object's contribution, in radians, to the angle up to which rotations of the solids are
+    /// predicted: points that would come within that distance are contact points too.
     pub angular_prediction: N,
 }
 

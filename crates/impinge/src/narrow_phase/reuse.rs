@@ -58,8 +58,8 @@ pub(super) fn usable_tolerance<N: Real>(tolerance: N) -> Result<N, ReuseError> {
 pub(crate) struct Reference<N: Real, const D: usize> {
     /// Pose of the solid in whose frame contacts are stored, relative to the other solid.
     pub(super) pose21: Pose<N, D>,
-    /// Upper bound of the distance of the relevant points of the solid in whose frame contacts are
-    /// stored from the origin of that solid; infinite if the contacts cannot be reused.
+    /// Largest distance from the origin, in the frame in which contacts are stored, of the points
+    /// whose motion matters. Infinite if the contacts cannot be reused.
     pub(super) reach: N,
     /// Number of further updates in which the reference is neither compared nor set, because the
     /// pair is fast.
@@ -112,8 +112,8 @@ impl<N: Space<D>, const D: usize> Reference<N, D> {
     }
 
     /// Stores the relative pose and the distances of the contacts, which were just computed, as the
-    /// reference. `reaches` returns the bounding radius of each solid, first that of the solid in
-    /// whose frame contacts are stored.
+    /// reference; does nothing during a pause. `reaches` returns the bounding radii of the solids,
+    /// first of the solid in whose frame contacts are stored.
     #[inline]
     pub(super) fn note<S: KeptPoints<N, D>>(
         &mut self,
@@ -133,8 +133,8 @@ impl<N: Space<D>, const D: usize> Reference<N, D> {
         state.each_point(|_, distance, _| self.distances.push(*distance));
     }
 
-    /// Returns an upper bound of the motion of a point of the first solid relative to the second;
-    /// NaN or infinite if there is no bound.
+    /// Returns an upper bound of the motion, since the last query and relative to the other solid,
+    /// of a point within `reach` of the origin; NaN or infinite if there is no bound.
     fn motion(&self, pose21: &Pose<N, D>) -> N {
         // The Frobenius norm of a difference of rotations bounds its spectral norm.
         let rotation_change = (pose21.rotation - self.pose21.rotation).norm();
@@ -175,7 +175,7 @@ pub(super) struct Reuse<'t, N: Space<D>, const D: usize> {
     pub(super) tolerance: N,
 }
 
-/// Slices over pairs of one group with built-in contacts.
+/// The rows of some pairs of one group with built-in contacts, with all of their columns.
 type KeptRows<'a, N, S, V, const D: usize> =
     Rows<'a, ContactEntry<N, S>, ContactView<V>, Reference<N, D>>;
 

@@ -18,7 +18,7 @@ use crate::shape::{Geometry, Kind, Shape};
 use crate::tables::ByDimension;
 use crate::tables::entries;
 
-/// Two solids placed in the world, with their bounds.
+/// The input of an update of a pair: two solids placed in the world, with their bounds.
 #[derive(Clone, Copy)]
 pub(crate) struct Posed<'a, N: Real, const D: usize> {
     pub(crate) pose1: &'a Pose<N, D>,
@@ -63,7 +63,8 @@ impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
     }
 }
 
-/// Returns two placed solids as a pair, with the solid first in whose frame contacts are stored.
+/// Returns two placed solids as a pair, whose first solid is the one in whose frame contacts are
+/// stored.
 fn ordered_pair<'a, N: Real, const D: usize>(
     placed: &[Placed<'a, N, D>; 2],
     is_swapped: bool,
@@ -81,7 +82,7 @@ pub(crate) fn has_composite<N: Real, const D: usize>(
     is_composite(shape1) || is_composite(shape2)
 }
 
-/// The stored contact points of a pair.
+/// The stored contact points of a pair, as contact reuse reads and measures them.
 pub(crate) trait KeptPoints<N: Real, const D: usize> {
     /// Returns the number of contact points.
     fn len(&self) -> usize;
@@ -94,7 +95,7 @@ pub(crate) trait KeptPoints<N: Real, const D: usize> {
     fn each_point(&mut self, each: impl FnMut(&Vector<N, D>, &mut N, &Point<N, D>));
 }
 
-/// Contacts of a pair, kept from update to update.
+/// Contacts of a pair by the library's own algorithm, kept from update to update.
 pub(crate) trait KeptContacts<N: Real, const D: usize>: KeptPoints<N, D> + Default {
     /// The representation of the contacts in the public interface.
     type Manifolds: Default;

@@ -1,17 +1,18 @@
-//! All contacts of an update in two dense lists, each contact with its index in the previous lists.
+//! All contacts of a world in two dense lists. Each contact has its index in the lists of the
+//! previous fill.
 //!
 //! ```text
 //! manifolds   [pair 7 | 0..4]  [pair 9 | 4..6]  [pair 3 | 6..10] ...         in memory order
 //! points       7 7 7 7  9 9  3 3 3 3 ...        world1 | depth | number | previous
 //!                       │ │
-//! old points   7 7 7 7  │ │  3 3 3 3 ...        the lists of the fill before
+//! old points   7 7 7 7  │ │  3 3 3 3 ...        the lists of the previous fill
 //!                       └─┴── previous is None: pair 9 is new
 //! ```
 //!
-//! Memory order changes little between updates, so a pair is searched among the next [`WINDOW`] old
-//! pairs. A pair that is not among them, such as a pair that filled the gap of a removed pair, is
-//! searched in a sorted list of the old pairs that no pair has matched. A fill without such pairs
-//! takes linear time.
+//! Memory order changes little between updates, so a pair is searched among the [`WINDOW`] old
+//! pairs behind the last match. A pair that is not among them, such as a pair that filled the gap
+//! of a removed pair, is searched in a sorted list of the old pairs without a match. If all pairs
+//! are found among the [`WINDOW`] next pairs, a fill takes linear time.
 
 use core::num::NonZeroU32;
 use core::ops::Range;
@@ -20,7 +21,7 @@ use super::CollisionObjectHandle;
 use crate::math::{Point, Real, Space, Unit, Vector};
 use crate::query::{ContactId, ManifoldView};
 
-/// Number of old pairs, from the first unmatched one, among which a pair is searched.
+/// Number of old pairs, from the one behind the last match, among which a pair is searched.
 const WINDOW: usize = 16;
 
 /// A contact point in a [`ContactStream`].
@@ -31,16 +32,16 @@ pub struct StreamPoint<N: Real, const D: usize> {
     pub world1: Point<N, D>,
     /// The penetration depth along the normal; minus the distance if the solids are apart.
     pub depth: N,
-    /// The second half of the contact's id.
+    /// The part of the contact's id that is unique within the pair.
     number: u32,
-    /// One more than the index of the contact in the points of the fill before; `None` for a new
+    /// One more than the index of the contact in the points of the previous fill; `None` for a new
     /// contact.
     previous: Option<NonZeroU32>,
 }
 
 impl<N: Real, const D: usize> StreamPoint<N, D> {
-    /// Returns the index of this contact in the points of the fill before; `None` if the contact
-    /// was not among them.
+    /// Returns the index of this contact in the points of the previous fill; `None` if that fill
+    /// did not have the contact.
     #[inline]
     #[must_use]
     pub const fn previous(&self) -> Option<usize> {
@@ -58,16 +59,16 @@ pub struct StreamManifold<N: Real, const D: usize> {
     pub object1: CollisionObjectHandle,
     /// The object with the larger handle.
     pub object2: CollisionObjectHandle,
-    /// The unit vector from the first object to the second, in the world frame.
+    /// The unit contact normal in the world frame; it points from the first object to the second.
     pub normal: Unit<Vector<N, D>>,
-    /// The first half of the ids of the contacts.
+    /// The part of the contact ids that identifies the pair; equal for all points of the manifold.
     pair: u64,
     start: u32,
     end: u32,
 }
 
 impl<N: Real, const D: usize> StreamManifold<N, D> {
-    /// Returns the indices of the manifold's points in [`ContactStream::points`]; at least one.
+    /// Returns the range of the manifold's points in [`ContactStream::points`]; never empty.
     #[inline]
     #[must_use]
     pub const fn range(&self) -> Range<usize> {
@@ -83,18 +84,18 @@ impl<N: Real, const D: usize> StreamManifold<N, D> {
 
 /// All contacts of a world in two dense lists, for readers of all of them: solvers, recorders.
 ///
-/// [`CollisionWorld::read_contacts`] fills the stream after an update. Each point knows its index
-/// in the lists of the fill before, so a solver keeps its impulses in a list parallel to
-/// [`Self::points`] and starts from the old ones without a hash map. For a pile of 9261 boxes in 3D
-/// with 435 440 contacts, filling, reading and fetching the old impulses takes 12 ms, where
+/// [`CollisionWorld::read_contacts`] fills the stream after an update. Each point has its index in
+/// the points of the previous fill. So a solver can keep its impulses in a list parallel to
+/// [`Self::points`], and start from the old impulses without a hash map. For a pile of 9261 boxes
+/// in 3D with 435 440 contacts, filling, reading and fetching the old impulses takes 12 ms, where
 /// [`CollisionWorld::contact_views`] with a `HashMap` by id takes 60 to 90 ms. Without ids, the
-/// views alone are read in 7 ms. A stream keeps its memory.
+/// views alone are read in 7 ms. A stream keeps its memory between fills.
 ///
 /// Features, parts and kinematics are not in the stream: read them by
 /// [`CollisionWorld::contact_pair`].
 ///
 /// After [`CollisionWorld::rewind`], or to read another world, call [`Self::clear`]: contact ids
-/// are unique in one history of one world only.
+/// are unique only within one world, and only until it is rewound.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -113,7 +114,7 @@ impl<N: Real, const D: usize> StreamManifold<N, D> {
 /// for step in 0..2 {
 ///     world.update();
 ///     world.read_contacts(&mut stream);
-///     // The impulse of the step before, or zero for a new contact.
+///     // The impulse of the previous step, or zero for a new contact.
 ///     let old = |point: &StreamPoint<f32>| point.previous().map_or(0.0, |index| impulses[index]);
 ///     let mut now: Vec<_> = stream.points().iter().map(old).collect();
 ///     for manifold in stream.manifolds() {
@@ -137,9 +138,9 @@ impl<N: Real, const D: usize> StreamManifold<N, D> {
 pub struct ContactStream<N: Real, const D: usize> {
     now: Lists<N, D>,
     old: Lists<N, D>,
-    /// Scratch of a fill: the pairs that were not found in the window, and, in the next field, the
-    /// old pairs that no pair has matched.
+    /// Scratch of a fill: the new pairs that have no match in the window.
     missed: Vec<PairRange>,
+    /// Scratch of a fill: the old pairs that match no new pair, sorted by id.
     left: Vec<PairRange>,
 }
 
@@ -154,8 +155,8 @@ struct Lists<N: Real, const D: usize> {
     points: Vec<StreamPoint<N, D>>,
 }
 
-/// The manifolds of a pair, which are consecutive: the first half of its contact ids, and the range
-/// of its points.
+/// A pair in [`Lists`]: its id, which all its contact ids contain, and the range of its points. The
+/// manifolds of a pair are consecutive, and so are its points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct PairRange {
     pair: u64,
@@ -183,8 +184,8 @@ impl<N: Real, const D: usize> ContactStream<N, D> {
         Self { now, old, missed: Vec::new(), left: Vec::new() }
     }
 
-    /// Returns the manifolds, those of a pair one after the other. The order of pairs is
-    /// unspecified, but equal for equal histories, on every machine.
+    /// Returns the manifolds; those of a pair are consecutive. The order of the pairs is
+    /// unspecified, but the same calls on a world lead to the same order on every machine.
     #[must_use]
     pub fn manifolds(&self) -> &[StreamManifold<N, D>] {
         &self.now.manifolds
@@ -196,7 +197,7 @@ impl<N: Real, const D: usize> ContactStream<N, D> {
         &self.now.points
     }
 
-    /// Removes all contacts: every contact of the next fill is new.
+    /// Removes all contacts. For the next fill, every contact is new.
     pub fn clear(&mut self) {
         for lists in [&mut self.now, &mut self.old] {
             lists.manifolds.clear();
@@ -242,12 +243,12 @@ impl<N: Space<D>, const D: usize> ContactStream<N, D> {
     }
 }
 
-/// Replaces the pair identifier of an old pair that was found again; no pair has this identifier.
+/// Replaces the id of an old pair that has a match. No pair has this id.
 const TAKEN: u64 = ContactId::NULL.pair;
 
 impl<N: Space<D>, const D: usize> Lists<N, D> {
-    /// Appends a manifold. A manifold of a custom algorithm may have contacts of several pair
-    /// numbers, and is cut between them.
+    /// Appends a manifold. A manifold of a custom algorithm may have contacts with different pair
+    /// ids; it is split where the pair id changes.
     #[inline(always)]
     fn push(
         &mut self,
@@ -273,8 +274,8 @@ impl<N: Space<D>, const D: usize> Lists<N, D> {
 }
 
 impl<N: Real, const D: usize> Lists<N, D> {
-    /// Returns the pair whose manifolds begin at `next`, and advances `next` behind them; `None` at
-    /// the end of the list.
+    /// Returns the pair whose manifolds begin at index `next`, and advances `next` behind them;
+    /// `None` at the end of the manifolds.
     #[inline]
     fn pair_at(&self, next: &mut usize) -> Option<PairRange> {
         let first = self.manifolds.get(*next)?;
@@ -288,14 +289,14 @@ impl<N: Real, const D: usize> Lists<N, D> {
         Some(range)
     }
 
-    /// Iterates over the pairs.
+    /// Iterates over all pairs, in the order of their manifolds.
     fn pairs(&self) -> impl Iterator<Item = PairRange> {
         let mut next = 0;
         core::iter::from_fn(move || self.pair_at(&mut next))
     }
 
-    /// Searches a pair among the [`WINDOW`] pairs from `next`. If it is there, marks it as
-    /// [`TAKEN`], advances `next` behind it and returns it; else returns `None`.
+    /// Searches the pair with the id `pair` among the [`WINDOW`] pairs from index `next`. If it is
+    /// there, marks it as [`TAKEN`], advances `next` behind it and returns it; else returns `None`.
     #[inline]
     fn take(&mut self, pair: u64, next: &mut usize) -> Option<PairRange> {
         let mut after = *next;
@@ -312,15 +313,16 @@ impl<N: Real, const D: usize> Lists<N, D> {
     }
 }
 
-/// Converts an index to the type in which lists store it.
+/// Converts an index to the type in which [`Lists`] store it.
 fn position(index: usize) -> u32 {
     u32::try_from(index).expect("fewer than 2^32 contacts fit in memory")
 }
 
-/// Sets [`StreamPoint::previous`] of the points of a pair, which had the points `before`.
+/// Sets [`StreamPoint::previous`] of the points of `pair`. `before` is this pair in the previous
+/// fill, and `old` has all points of that fill.
 ///
-/// Contacts mostly keep their order. Ids grow, so that a point with a larger id than all old points
-/// is known to be new without a search.
+/// The search begins behind the last match, since contacts mostly keep their order. Numbers of
+/// contacts increase, so a point with a larger number than all old points of the pair is new.
 #[inline]
 fn link<N: Real, const D: usize>(
     pair: PairRange,

@@ -127,8 +127,8 @@ pub trait ContactManifoldGenerator<N: Space<D>, const D: usize>: Send + Sync {
 /// assert_eq!(algorithm.num_contacts(), 2);
 /// ```
 pub trait ContactDispatcher<N: Space<D>, const D: usize>: Send + Sync {
-    /// Returns a new algorithm for the contacts of `a` with `b`; `None` if the pair has no
-    /// contacts.
+    /// Returns a new algorithm for the contacts of `a` with `b`; `None` if no contacts are to be
+    /// computed for the pair.
     fn get_contact_algorithm(
         &self,
         a: &dyn Shape<N, D>,

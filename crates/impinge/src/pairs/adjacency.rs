@@ -84,7 +84,7 @@ impl Head {
     }
 }
 
-/// Eight links in a cache line.
+/// A cache line of a run, with eight links.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(64))]
 struct Line {
@@ -158,7 +158,8 @@ impl Adjacency {
         self.head_index(object).map_or(&Head::EMPTY, |at| &self.heads[at])
     }
 
-    /// Returns the number of links of the object; 0 for an object that has never had any.
+    /// Returns the number of links of the object; 0 also for an index that the table has never
+    /// seen.
     #[inline]
     pub(super) fn count(&self, object: u32) -> usize {
         self.head(object).count() as usize
@@ -234,7 +235,7 @@ impl Adjacency {
     }
 
     /// Returns the index of the pair of `a` and `b` in the dense array; `None` if it is not there.
-    /// Searches the object with fewer links.
+    /// Searches the links of the object that has fewer.
     #[inline]
     pub(super) fn pair_of(&self, a: u32, b: u32) -> Option<usize> {
         let a_is_lighter = self.count(a) <= self.count(b);

@@ -6,7 +6,7 @@
 
 use crate::memory::clone_fields;
 
-/// The `index` of an entry without a key.
+/// The `index` that marks a slot as free.
 const FREE: u32 = u32::MAX;
 /// Minimum number of slots of a table that is not empty.
 const MIN_LENGTH: usize = 256;

@@ -185,7 +185,7 @@ impl PairTable {
         Removed { index, moved_from: (!was_last).then_some(self.pairs.len()) }
     }
 
-    /// Updates the links of the pair at `index` to that index.
+    /// Writes `index` to both links of the pair at `index`, which has moved there.
     fn relink(&mut self, index: usize) {
         let ((low, high), pair) = (self.pairs[index], small(index));
         self.adjacency.set_pair(low, Link { partner: high, pair });

@@ -81,7 +81,7 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
     /// Builds a tree over `boxes`, which may be empty; each is identified by its index.
     ///
     /// # Errors
-    /// If a box is inverted or has a NaN, or the number of boxes does not fit in 32 bits. [`Aabb`] rejects such boxes,
+    /// If a box is inverted or has a NaN, or if there are more than 2³² − 2 boxes. [`Aabb`] rejects such boxes,
     /// but arithmetic on boxes can produce them.
     pub fn try_from_boxes(boxes: &[Aabb<N, D>]) -> Result<Self, BoxTreeError> {
         Self::try_from_vec(boxes.to_vec())

@@ -85,8 +85,8 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
 
     /// Calls `found` with the id of each object whose box the moving box touches at or before
     /// `limit`, and the first time of contact, in ascending order of (time, id). `found` returns
-    /// the new limit, which must not increase. Nothing is found if the velocity is not finite or
-    /// the moving box has no finite point, such as the box of a ray with an infinite origin.
+    /// the new limit, which must not increase. Finds nothing if the velocity is not finite or the
+    /// moving box has no finite point, such as the box of a ray with an infinite origin.
     pub(crate) fn by_time(&self, sweep: &Sweep<N, D>, limit: N, found: impl FnMut(u32, N) -> N) {
         let Sweep { aabb, velocity } = sweep;
         if !aabb.holds_finite_point() || !velocity.iter().all(|x| x.is_finite_number()) {
@@ -147,8 +147,8 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         });
     }
 
-    /// Calls `found` with the objects that the moving box may touch by `limit`, in groups, each
-    /// with a lower bound of the time; earlier objects roughly first. `found` returns the new
+    /// Calls `found` with groups of the objects that the moving box may touch by `limit`, roughly
+    /// by ascending time. Each object comes with a lower bound of its time. `found` returns the new
     /// limit; a limit above the previous one has no effect. The exact boxes are not tested: for
     /// callers that test the objects themselves.
     pub(crate) fn groups_by_time(
@@ -167,9 +167,9 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         });
     }
 
-    /// Calls `found` with the objects that may be at most `limit` from `aabb`, in groups, each with
-    /// a lower bound of the distance; nearer objects roughly first. `found` returns the new limit;
-    /// a limit above the previous one has no effect. The exact boxes are not tested.
+    /// Calls `found` with groups of the objects that may be at most `limit` from `aabb`, roughly by
+    /// ascending distance. Each object comes with a lower bound of its distance. `found` returns
+    /// the new limit; a limit above the previous one has no effect. The exact boxes are not tested.
     pub(crate) fn groups_by_distance(
         &self,
         aabb: &Aabb<N, D>,
@@ -189,8 +189,8 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         });
     }
 
-    /// Calls `found` with groups of the unbounded objects, each with lower bound zero; returns the
-    /// new limit.
+    /// Calls `found` with groups of the unbounded objects, with zero as the lower bound of each
+    /// object. Returns the new limit.
     fn first_unbounded(&self, limit: N, found: &mut impl FnMut(&[(u32, N)]) -> N) -> N {
         self.unbounded.chunks(GROUP).fold(limit, |limit, ids| {
             let mut group = [(0, N::ZERO); GROUP];
@@ -227,7 +227,8 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         }
     }
 
-    /// Returns the largest magnitude of a coordinate in the trees.
+    /// Returns the largest magnitude of a coordinate in the trees, which scales the rounding
+    /// errors.
     fn size(&self) -> f32 {
         self.trees.iter().map(|tree| tree.size()).fold(0.0, f32::max)
     }

@@ -4,7 +4,7 @@ use core::f64::consts::FRAC_PI_2;
 
 use crate::math::{Real, Vector};
 
-/// The minimum number of subdivisions of a full turn: fewer enclose no area.
+/// The minimum number of subdivisions of a full turn: one or two corners enclose no area.
 pub const MIN_SUBDIVISIONS: u32 = 3;
 
 /// The maximum number of subdivisions of a full turn. The gap to a ball of radius 1 is then 4e-8,

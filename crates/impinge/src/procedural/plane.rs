@@ -28,7 +28,8 @@ pub fn ball<N: Real>(ball: &Ball<N>, subdivisions: u32) -> Outline<N> {
     Outline { points: (0..count).map(corner).collect() }
 }
 
-/// Returns the polygon of [`ball`] scaled along the axes: `n = subdivisions` corners.
+/// Returns a polygon of `n = subdivisions` corners inscribed in an ellipse: the polygon of [`ball`]
+/// for radius 1, scaled by the half axes.
 ///
 /// The gap is at most `(1 − cos(π / n))` times the longer half axis.
 #[must_use]
@@ -66,13 +67,14 @@ pub fn capsule<N: Real>(capsule: &Capsule<N, 2>, subdivisions: u32) -> Outline<N
     Outline { points: around_b.chain(around_a).collect() }
 }
 
-/// Returns an arc around each end, joined by the two sides.
+/// Returns a polygon inscribed in the outline: an arc around each end, joined by the two straight
+/// sides.
 ///
-/// The `n = subdivisions` directions are evenly spaced, starting on the right of the segment. A
-/// direction in which the ball around an end lies on the surface gives a corner on it; with the
-/// four ends of the sides there are at most `n + 4` corners. The gap is at most `(1 − cos(π / n))`
-/// times the larger radius. If one ball contains the other, the outline is that of the larger ball,
-/// with `n` corners.
+/// The `n = subdivisions` directions are evenly spaced, starting on the right of the segment. Each
+/// direction gives at most one corner, where it is the normal of an arc; with the four ends of the
+/// sides there are at most `n + 4` corners. The gap is at most `(1 − cos(π / n))` times the larger
+/// radius. If one ball contains the other, the outline is the polygon of `n` corners of the larger
+/// ball.
 #[must_use]
 pub fn tapered_capsule<N: Real>(capsule: &TaperedCapsule<N, 2>, subdivisions: u32) -> Outline<N> {
     let count = parts_of_turn(subdivisions);
@@ -91,9 +93,10 @@ pub fn tapered_capsule<N: Real>(capsule: &TaperedCapsule<N, 2>, subdivisions: u3
     };
     let [right_side, left_side] =
         [taper.cosine, -taper.cosine].map(|away| placed(Vector::<N, 2>::new(away, taper.sine)));
-    // The directions of an end may wrap around the end of the list of all directions. The second
-    // end's directions start with the last ones below the first direction, the first end's after
-    // the highest.
+    // The arc of an end may pass from the last direction to direction 0, so it is collected from
+    // two ranges. Index `lowest` is the first direction past straight backwards: no arc around the
+    // second end starts earlier. Index `highest` is the first direction not before straight
+    // forwards: no arc around the first end starts earlier.
     let (highest, lowest) = (count.div_ceil(4), 3 * count / 4 + 1);
     let mut points = vec![corner(1, right_side)];
     points.extend(facing(1, lowest..count));

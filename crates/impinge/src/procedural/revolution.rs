@@ -4,8 +4,8 @@ use super::TriangleSurface;
 use super::circle::direction;
 use crate::math::{Point, Real, Vector, cross, orthonormal_basis};
 
-/// A circle around the axis that the surface passes through; the first and the last stop of a
-/// profile are points on the axis, and their `radius` is ignored.
+/// A circle on a surface of revolution, in a plane perpendicular to the axis. The first and the
+/// last stop of a profile are points on the axis, and their `radius` is ignored.
 ///
 /// Normals are (away from the axis, along the axis). At a crease the normals on the two sides of
 /// the circle differ.
@@ -35,7 +35,7 @@ pub(super) struct RevolutionFrame<N: Real> {
 }
 
 impl<N: Real> RevolutionFrame<N> {
-    /// Returns a frame around a unit vector.
+    /// Returns a frame whose second vector is the unit vector `axis`.
     pub(super) fn around(axis: Vector<N, 3>) -> Self {
         let (across, _) = orthonormal_basis(&axis);
         Self { across, axis, third: cross(&across, &axis) }
@@ -52,8 +52,9 @@ impl<N: Real> RevolutionFrame<N> {
     }
 }
 
-/// Returns the surface of a profile, rotated in `count` parts. The profile starts at the far end of
-/// the axis, towards which the axis points.
+/// Returns the surface that results from the rotation of a profile around the axis in `count` equal
+/// steps. The stops of the profile follow each other along the axis, from the end towards which it
+/// points to the other end.
 pub(super) fn revolve<N: Real>(
     frame: &RevolutionFrame<N>,
     count: u32,
@@ -84,8 +85,8 @@ struct Bands<'a, N: Real> {
 impl<N: Real> Bands<'_, N> {
     /// Adds the band between the stops `row` and `row + 1`.
     ///
-    /// Seen from outside, with the far end of the axis up, directions run to the left: the third
-    /// vector of the frame, the axis and the first are right-handed.
+    /// Seen from outside, with the far end of the axis up, directions run to the left: they turn
+    /// from the frame's first vector to its third, and the frame is right-handed.
     fn push(&mut self, row: u32, is_last: bool, stops: &[Stop<N>]) {
         let count = u32::try_from(self.directions.len()).expect("a turn has few parts");
         let ring = |row: u32, column: u32| 1 + (row - 1) * count + column;
@@ -109,8 +110,8 @@ impl<N: Real> Bands<'_, N> {
         }
     }
 
-    /// Returns the normals at two neighbouring columns; at a pole, twice the normal midway between
-    /// the columns.
+    /// Returns the normals at two neighbouring columns. At a pole both are the normal midway
+    /// between the columns.
     fn normals(
         &self,
         profile: &Vector<N, 2>,

@@ -27,8 +27,9 @@ use crate::shape::{
 #[must_use]
 pub fn ball<N: Real>(ball: &Ball<N>, subdivisions: u32) -> TriangleSurface<N> {
     // Quadrilaterals between meridians and parallels are flat trapezoids inscribed in the sphere. A
-    // quadrilateral across the equator would be the nearest to the centre: its middle is at cos(π /
-    // n) · cos(π / 4k) of the radius, which is at least cos²(π / n).
+    // quadrilateral across the equator, which does not occur because the equator is a parallel,
+    // would be nearest to the centre: at cos(π / n) · cos(π / 4k) of the radius, which is at least
+    // cos²(π / n).
     let count = parts_of_turn(subdivisions);
     let quarter = count.div_ceil(4);
     let sphere =
@@ -88,8 +89,8 @@ pub fn ellipsoid<N: Real>(ellipsoid: &Ellipsoid<N, 3>, subdivisions: u32) -> Tri
 ///
 /// There are at most `2 + n (2 k + 1)` vertices, with `k = ⌈n / 4⌉`; the first vertex is the pole
 /// beyond the second end of the segment, the last vertex the pole beyond the first end. The gap is
-/// at most `sin²(π / n)` times the larger radius. If one ball contains the other, the surface is
-/// that of the larger ball.
+/// at most `sin²(π / n)` times the larger radius. If one ball contains the other, the result is the
+/// surface of the larger ball.
 #[must_use]
 pub fn tapered_capsule<N: Real>(
     capsule: &TaperedCapsule<N, 3>,
@@ -209,8 +210,8 @@ pub fn cuboid<N: Real>(cuboid: &Cuboid<N, 3>) -> TriangleSurface<N> {
     surface
 }
 
-/// Returns the faces of a convex hull, each divided into triangles that meet at its first vertex,
-/// in order.
+/// Returns the faces of a convex hull in their order, each divided into triangles that meet at the
+/// face's first vertex.
 ///
 /// Vertex `i` is the hull's `Vertex(i)`. A hull of `v` vertices gives `2 v − 4` triangles.
 #[must_use]
@@ -254,7 +255,7 @@ fn up<N: Real>() -> Vector<N, 3> {
     Vector::<N, 3>::new(N::ZERO, N::ONE, N::ZERO)
 }
 
-/// Returns a point of the y axis.
+/// Returns the point of the y axis at height `y`.
 fn on_axis<N: Real>(y: N) -> Point<N, 3> {
     Point::<N, 3>::new(N::ZERO, y, N::ZERO)
 }

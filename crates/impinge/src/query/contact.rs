@@ -6,7 +6,8 @@ use crate::math::{AbstractRotation, Isometry, IsometryRef, Point, Real, Space, U
 use crate::shape::Shape;
 use crate::tables::entries;
 
-/// Where two solids touch, overlap or come close, in the world frame.
+/// The nearest or deepest points of two solids that touch, overlap or are close, with the normal
+/// and the depth, in the world frame.
 ///
 /// `world2 = world1 − depth · normal` up to rounding.
 ///
@@ -64,8 +65,8 @@ impl<N: Real, const D: usize> Contact<N, D> {
 ///
 /// For a composite the result is the deepest contact of its manifolds: the contact of a part, with
 /// a normal of the whole surface ([`Surface`](crate::shape::Surface)). A one-sided surface has no
-/// contacts from behind. The cost is that of [`distance`](crate::query::distance()), plus that of
-/// the contacts of all parts that overlap.
+/// contacts from behind. The cost is the cost of [`distance`](crate::query::distance()) plus the
+/// cost of the contacts of all parts that overlap.
 ///
 /// ```
 /// use impinge::math::{Isometry3, Vector};

@@ -38,7 +38,7 @@ pub enum NeighborhoodGeometry<N: Real, const D: usize> {
     Plane(Vector<N, D>),
 }
 
-/// How the normal of a moved contact is computed.
+/// The rule by which the normal of a moved contact is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum NormalRule<N: Real, const D: usize> {
     /// The normal rotates with the first solid, one of whose faces defines it.
@@ -48,8 +48,8 @@ enum NormalRule<N: Real, const D: usize> {
     /// The points and lines of the contact define the normal: it is perpendicular to the lines, or
     /// along the connection of the points.
     Geometry,
-    /// The normal is perpendicular to an edge of either solid, each in its own frame: the two edges
-    /// whose crossing defines the manifold's normal.
+    /// The normal is perpendicular to two edges, one of each solid, whose crossing defines the
+    /// manifold's normal. The values are their unit directions, each in the frame of its solid.
     Edges(Vector<N, D>, Vector<N, D>),
 }
 
@@ -142,9 +142,9 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     /// nearest point on the plane or line of the other solid. Two crossing lines give their nearest
     /// points; two points, or a point and a line, give the shortest connection. If the connection
     /// vanishes, and for nearly parallel lines, the points and the normal at the last update move
-    /// with their solids. The deepest contact on a round rim has errors of second order in distance
-    /// and normal, of first order in position; the other contacts on that rim follow it. If a pose
-    /// is not finite, the result is not finite.
+    /// with their solids. A contact on a round rim is fixed to its point of the rim: for the
+    /// deepest contact the errors are of second order in distance and normal, of first order in
+    /// position. If a pose is not finite, the result is not finite.
     #[must_use]
     pub fn contact<R: AbstractRotation<N, D>>(
         &self,
@@ -362,7 +362,7 @@ impl<'a, N: Real, const D: usize> KinematicSides<'a, N, D> {
 }
 
 /// Returns an edge of each solid, in its own frame, whose crossing defines the manifold's normal;
-/// `None` if there are no such edges.
+/// `None` if a solid has no edge perpendicular to it, or the two edges are nearly parallel.
 fn perpendicular_edges<N: Real, const D: usize>(
     side1: &KinematicSide<N, D>,
     side2: &KinematicSide<N, D>,

@@ -8,11 +8,11 @@ use crate::math::{Point, Pose, Real, Unit, Vector};
 /// The id of a contact, unique among all contacts of a world at all times.
 ///
 /// A contact that moved between two updates keeps its id if it is on the same features. It also
-/// keeps its id if it has moved by no more than 1/16 of the size of the smaller solid (half the
-/// diagonal of its box), on either solid, while the normal rotated by less than 45°. Two crossing
-/// edges are treated as the same features up to a movement of half of that size. The id has no
-/// other meaning; ids of one pair are ordered by creation. [`ContactId::NULL`], which is also the
-/// default, is the id of no contact, for empty slots of a cache.
+/// keeps its id if, in the frame of one of the solids, it has moved by no more than 1/16 of the
+/// size of the smaller solid (half the diagonal of its box), while the normal rotated by less than
+/// 45°. Two crossing edges are treated as the same features up to a movement of half of that size.
+/// The id has no other meaning; ids of one pair are ordered by creation. [`ContactId::NULL`], which
+/// is also the default, is the id of no contact, for empty slots of a cache.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -251,7 +251,7 @@ pub(crate) struct Placement<'a, N: Real, const D: usize> {
 impl<N: Real, const D: usize> Placement<'_, N, D> {
     /// Calls `each` with the id of a contact of a raw manifold, its point on the user's first solid
     /// in the world frame, and its depth; `own` is the normal of that manifold. The values are
-    /// bitwise equal to those of [`placed`].
+    /// bitwise equal to the values that [`placed`] computes.
     #[inline(always)]
     pub(super) fn place(
         &self,

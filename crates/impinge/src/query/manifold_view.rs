@@ -1,6 +1,7 @@
 //! Views of manifolds, which read the stored contacts in place.
 //!
-//! The contacts of a view are bitwise equal to those of the manifold that it converts to.
+//! The contacts of a view are bitwise equal to the contacts of the manifold to which the view
+//! converts.
 
 use crate::tables::entries;
 use core::fmt;
@@ -72,7 +73,8 @@ impl<N: Real, const D: usize> ContactPoint<N, D> {
 ///
 /// A view reads the narrow phase's storage. Each contact is placed in the world on access, and
 /// nothing is stored. Reading every contact of a world once, as a solver does, moves a fifth of the
-/// memory that a [`ContactManifold`] for each pair would. A view has at least one contact.
+/// memory that it would move with a [`ContactManifold`] for each pair. A view has at least one
+/// contact.
 ///
 /// | to read | use |
 /// |---|---|

@@ -42,8 +42,8 @@ impl Proximity {
 ///
 /// Touching solids intersect, and a distance equal to `margin` is within it. A negative or NaN
 /// `margin` is treated as zero. Two half-spaces with an unbounded overlap intersect. The result is
-/// [`Proximity::Disjoint`] if a pose is not finite. For composites the nearest parts decide; the
-/// search ends at the first two parts that touch.
+/// [`Proximity::Disjoint`] if a pose is not finite. The proximity of composites is the proximity of
+/// their nearest parts; the search ends at the first two parts that touch.
 pub fn proximity<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,

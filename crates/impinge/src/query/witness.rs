@@ -82,10 +82,10 @@ impl<N: Real, const D: usize> Witness<N, D> {
 /// the shapes are farther apart, if `max_distance` is NaN or a pose is not finite, for a composite
 /// without parts, and for two half-spaces with an unbounded overlap.
 ///
-/// The cost for two convex solids is that of their distance; a composite is searched for the parts
-/// near the other shape. Of two composites, the parts of the one with fewer parts each search the
-/// other, except parts that are too far away: O(n log m) at most. A half-space not aligned with an
-/// axis is tested against every part.
+/// The cost for two convex solids is the cost of their distance; a composite is searched for the
+/// parts near the other shape. Of two composites with n and m parts, n ≤ m, the larger one is
+/// searched for each part of the smaller one that is not too far away: at most n searches of O(log
+/// m). A half-space not aligned with an axis is tested against every part.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Point, Vector};

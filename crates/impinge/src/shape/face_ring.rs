@@ -130,7 +130,8 @@ mod tests {
             let direction = |prime: usize| (at * prime % 201) as f64 / 100.0 - 1.0;
             let direction =
                 Vector::<f64, 3>::new(direction(7), direction(11), direction(13)).normalize();
-            // Every second direction is close to a face normal.
+            // The power makes every second direction nearly parallel to an axis, and so to a face
+            // normal of the boxes.
             let direction =
                 if at % 2 == 0 { direction } else { direction.map(|x| x.powi(41)).normalize() };
             for half in solids {

@@ -8,8 +8,9 @@ use crate::math::{Point, Real, Vector};
 /// The id of a feature of a solid's surface.
 ///
 /// In 2D a polygon has vertices and faces (its sides), no edges. Curved surfaces are faces too,
-/// with one exception: the round side of a capsule is `Edge(0)`, also in 2D, as its core is a
-/// segment. Each shape documents its numbering.
+/// except on capsules and tapered capsules: there the round ends are vertices and the side is
+/// `Edge(0)`, also in 2D. A rounded solid has the features of the solid inside. Each shape
+/// documents its numbering.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -57,10 +58,10 @@ impl FeatureId {
     }
 }
 
-/// The supporting feature of a core for some direction: a point, a segment or a flat convex
-/// polygon.
+/// The supporting feature, for some direction, of a solid's core (the solid without its radius): a
+/// point, a segment or a flat convex polygon.
 ///
-/// Coordinates are in the local frame of the solid, for the core without its radius.
+/// Coordinates are in the local frame of the solid.
 ///
 /// ```
 /// use impinge::dim3::math::Vector;

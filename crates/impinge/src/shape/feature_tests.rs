@@ -1,4 +1,4 @@
-//! Tests of the features of every solid, for each scalar and dimension.
+//! Tests of the features of boxes, triangles, segments, capsules, cylinders and cones.
 
 use crate::math::{Point, Real, Vector, cross, max, perp, unit};
 use crate::shape::{
@@ -42,8 +42,8 @@ fn tolerance<N: Real, const D: usize, S: SupportMap<N, D> + ?Sized>(solid: &S) -
     N::lit(16.0) * N::EPSILON * max(solid.reach(), N::MIN_POSITIVE)
 }
 
-/// Returns the core feature for `direction`. Checks that it contains the support point, that its
-/// lists have matching lengths, and that its points belong to the solid.
+/// Returns the core feature for `direction`. Checks that its lists have matching lengths, and that
+/// its farthest vertex is as far along `direction` as the support point, within the tolerance.
 fn faces<N: Real, const D: usize>(
     solid: &dyn SupportMap<N, D>,
     direction: &Vector<N, D>,
@@ -80,8 +80,9 @@ fn holds_what_touches<N: Real, const D: usize>(
     }
 }
 
-/// Checks that the vertices of the face run counter-clockwise about its normal, and that the solid
-/// lies behind the face. Returns false for a face without a normal.
+/// Checks that the normal of the face is unit and equals the normal for its id, that its vertices
+/// run counter-clockwise about it, that the ids give the same vertices and sides, and that the
+/// solid lies behind the face. Returns false for a face without a normal.
 fn face3<N: Real>(solid: &dyn ConvexPolyhedron<N, 3>, id: FeatureId) -> bool {
     let mut face = Feature::default();
     solid.face(id, &mut face);
@@ -104,8 +105,8 @@ fn face3<N: Real>(solid: &dyn ConvexPolyhedron<N, 3>, id: FeatureId) -> bool {
     true
 }
 
-/// Checks that the solid lies on the left of the side, and that the normal points away from the
-/// solid.
+/// Checks that the normal of the side is on its right, that the solid lies behind the side, and
+/// that the ids of its ends give the same vertices in the same order.
 fn face2<N: Real>(solid: &dyn ConvexPolyhedron<N, 2>, id: FeatureId) {
     let mut face = Feature::default();
     solid.face(id, &mut face);

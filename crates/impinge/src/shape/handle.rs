@@ -25,7 +25,7 @@ impl<N: Real, const D: usize> Clone for ShapeHandle<N, D> {
         Self(Arc::clone(&self.0))
     }
 
-    /// Does not touch the reference count if both handles already share the shape.
+    /// Leaves the reference count unchanged if both handles already share the shape.
     fn clone_from(&mut self, source: &Self) {
         if !self.is_same(source) {
             *self = source.clone();

@@ -110,7 +110,8 @@ use crate::math::{Pose, Real, Vector};
 )]
 pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
     /// Returns how queries treat the solid: [`Geometry::support_map`] for a convex solid of your
-    /// own, or the geometry of a built-in shape that represents it.
+    /// own, [`Geometry::composite`] for a union of solids, or the geometry of a built-in shape that
+    /// represents the solid.
     fn geometry(&self) -> Geometry<'_, N, D>;
 
     /// Returns an axis-aligned box that contains the solid, in the frame of the solid. The box is
@@ -131,9 +132,10 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
     /// this only for the two factors across their axis. The axis of a cone cannot be reversed, and
     /// a compound cannot be sheared.
     ///
-    /// Parts and features keep their indices, unless an odd number of factors is negative. Then a
-    /// polygon indexes its vertices in the opposite order, a hull renumbers its edges, and
-    /// triangles of meshes and segments of polylines are reversed.
+    /// Parts and features keep their indices if all factors are positive. A negative factor
+    /// exchanges the features on opposite sides of a box or a cylinder. If an odd number of factors
+    /// is negative, a polygon indexes its vertices in the opposite order, a hull renumbers its
+    /// edges, and triangles of meshes and segments of polylines are reversed.
     ///
     /// # Errors
     /// If a factor is zero or not finite, no shape of the library can represent the scaled solid,
@@ -192,7 +194,7 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
 /// ```
 pub const MAX_NESTING: u32 = 64;
 
-/// Downcasts, for custom dispatchers that handle a type of their own.
+/// Paths to parts, and downcasts for custom dispatchers that handle a type of their own.
 ///
 /// ```
 /// use impinge::dim2::shape::{Ball, Cuboid, ShapeHandle};

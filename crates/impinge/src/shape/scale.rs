@@ -27,13 +27,14 @@ pub enum ScaleError {
         /// The factor along that axis.
         value: f64,
     },
-    /// No shape of the library can represent the scaled solid: the solid would have to be sheared,
-    /// or its circular section would become an ellipse.
+    /// No shape of the library can represent the scaled solid: the solid would be sheared, its
+    /// circular section would become an ellipse, or a cone would be reversed.
     NotSuch {
         /// The condition that the factors must meet.
         needs: &'static str,
     },
-    /// The scaled coordinates exceed the range of the scalar type.
+    /// The scaled coordinates exceed the range of the scalar type: they overflow, or a solid would
+    /// lose its extent along an axis, or a half-space its normal.
     OutOfRange,
     /// A child of a compound cannot be scaled by these factors, because of its shape or its
     /// rotation.

@@ -136,7 +136,8 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
     /// In 2D the sides at the vertex are the faces. So the two crossing edges of an edge-edge
     /// contact are found as edges or as sides of the returned faces. The rule depends on angles
     /// only and treats mirrored directions alike. Near its limits both alternatives contain the
-    /// touching part. No regular polyhedron, and no regular prism on an edge, is at a limit.
+    /// touching part. No regular polyhedron, and no regular prism that stands on an edge, has a
+    /// feature at a limit.
     ///
     /// A flat round cap is returned as an inscribed polygon with a vertex towards `direction`, a
     /// round side as its generating segment. The default returns the support point alone with the

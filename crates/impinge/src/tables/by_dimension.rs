@@ -155,11 +155,11 @@ pub trait ByDimension<N: Real, const D: usize>:
     /// in 2D, for a thin triangle, and where `tolerance` leaves the region uncertain.
     fn over(triangle: &Triangle<N, D>, center: &Point<N, D>, tolerance: N) -> Option<FeatureId>;
 
-    /// Returns the interval of times in which the line of a ray is inside a solid; `None` if the
-    /// line misses the solid.
+    /// Returns the interval of times in which the line of a ray is inside a solid. `None` if the
+    /// line misses the solid, and possibly if only times before zero hit it.
     fn ray_span(solid: Kind<'_, N, D>, ray: &Ray<N, D>) -> Option<Span<N, D>>;
 
-    /// Returns the first hit of a ray on a mesh.
+    /// Returns the first hit of a ray on a mesh; `None` if there is none by the maximum time.
     fn first_on_mesh(
         mesh: &TriMesh<N, D>,
         question: &RayQuestion<N, D>,

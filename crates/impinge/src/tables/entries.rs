@@ -88,8 +88,7 @@ compiled! {
         options: &ImpactOptions<N>,
     ) -> Option<Impact<N, D>> = impact_of_flight;
 
-    /// Returns the interval of times in which the line of a ray is inside a solid; `None` if the
-    /// line misses the solid.
+    /// Computes [`ByDimension::ray_span`].
     fn ray_span(solid: Kind<'_, N, D>, ray: &Ray<N, D>) -> Option<Span<N, D>> =
         <Here as ByDimension<N, D>>::ray_span;
 
@@ -97,8 +96,8 @@ compiled! {
     fn surface_point(solid: Kind<'_, N, D>, point: &Point<N, D>) -> SurfacePoint<N, D> =
         <Here as ByDimension<N, D>>::surface_point;
 
-    /// Returns the part of a composite that is nearest to a point. If `touching` is true, any part
-    /// that contains the point may be returned.
+    /// Returns the part of a composite that is nearest to a point; `None` if there are no parts. If
+    /// `touching` is true, any part that contains the point may be returned.
     fn nearest_part(
         parts: &dyn CompositeShape<N, D>,
         point: &Point<N, D>,
@@ -149,13 +148,13 @@ compiled! {
         old: Vec<ContactManifold<N, D>>,
     ) -> Vec<ContactManifold<N, D>> = CompositeState::manifolds;
 
-    /// Returns contact `index` of a manifold view, with its kinematic.
     /// Converts a view to a manifold that owns its data, in the memory of `old`.
     fn manifold_of_view(
         view: &ManifoldView<'_, N, D>,
         old: ContactManifold<N, D>,
     ) -> ContactManifold<N, D> = ManifoldView::manifold_in;
 
+    /// Returns contact `index` of a manifold view, with its kinematic.
     fn tracked_contact(view: &ManifoldView<'_, N, D>, index: usize) -> TrackedContact<N, D> =
         ManifoldView::tracked;
 
@@ -259,7 +258,8 @@ compiled! {
         shape: &'a dyn Shape<N, D>,
     ) -> Moving<'a, N, D> = Moving::at;
 
-    /// Returns the first hit of a ray, in the frame of the shape.
+    /// Returns the first hit of a ray at or before `max_time`, in the frame of the shape; `None` if
+    /// there is none.
     fn cast_on(
         shape: Geometry<'_, N, D>,
         ray: &Ray<N, D>,

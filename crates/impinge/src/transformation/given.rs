@@ -3,8 +3,9 @@
 use crate::math::{Point, Real, Vector, max, max_component};
 use crate::shape::{ConvexHull, ShapeError};
 
-/// The centre of a face may lie up to this many epsilon of the largest coordinate below the hull.
-/// This is the error of a flat face with rounded corners.
+/// The largest permitted depth of a given face below the surface of the hull, measured at the mean
+/// of its corners, in epsilons of the largest coordinate. It allows for flat faces whose corners
+/// are rounded.
 const SLACK: f64 = 64.0;
 
 impl<N: Real> ConvexHull<N> {
@@ -26,10 +27,12 @@ impl<N: Real> ConvexHull<N> {
     ///
     /// The hull is computed from the points, as by [`Self::try_from_points`]: coplanar faces become
     /// one, and points that are not corners are left out, so vertices and faces get new indices.
-    /// The given faces are only checked: the centre of each must lie on the hull, within 64 epsilon
-    /// of the largest coordinate, and each side must belong to exactly two faces.
+    /// The given faces are only checked: the mean of the corners of each given face must lie on the
+    /// hull, within 64 epsilon of the largest coordinate, and each side must belong to exactly two
+    /// faces.
     ///
-    /// The cost is the cost of the hull, plus one test of all its faces for each given face.
+    /// The cost is the cost of the hull, plus one pass over all faces of the hull for each given
+    /// face.
     ///
     /// ```
     /// use impinge::dim3::math::Point;

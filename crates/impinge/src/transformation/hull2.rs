@@ -7,7 +7,8 @@ use crate::math::{Point, Real};
 use crate::shape::ShapeError;
 
 /// Returns the convex hull of some points: the indices of its corners, counter-clockwise, starting
-/// at the corner with the smallest x; among several such corners, at the one with the smallest y.
+/// at the corner with the smallest x, and of several such corners at the corner with the smallest
+/// y.
 ///
 /// Uses the first of coinciding points; points on a side are left out. A corner within
 /// `4 · N::EPSILON · max |x|` of the line between its neighbours is treated as a point on a side.
@@ -31,7 +32,7 @@ pub fn convex_hull2<N: Real>(points: &[Point<N, 2>]) -> Result<Vec<usize>, Shape
     let order = distinct(&scaled.points);
     let mut ring = chain(&scaled.points, order.iter().copied());
     let upper = chain(&scaled.points, order.iter().rev().copied());
-    // The last point of each chain is the first of the other.
+    // The last point of each chain is the first point of the other chain.
     ring.pop();
     ring.extend_from_slice(&upper[..upper.len() - 1]);
     let ring = thinned(&scaled.points, ring, scaled.flat());
@@ -51,8 +52,8 @@ fn distinct(points: &[Point<f64, 2>]) -> Vec<usize> {
     order
 }
 
-/// Returns one side of the hull, from the first point of `order` to the last: every corner turns
-/// left.
+/// Returns one chain of the hull, from the first point of `order` to the last: the lower chain if
+/// `order` ascends, the upper chain if it descends. Every corner turns left.
 ///
 /// Andrew, "Another Efficient Algorithm for Convex Hulls in Two Dimensions" (1979).
 fn chain(points: &[Point<f64, 2>], order: impl Iterator<Item = usize>) -> Vec<usize> {

@@ -28,7 +28,8 @@ pub struct IndexedHull<N: Real> {
 }
 
 /// The maximum number of rounds in which redundant vertices are removed; a round never removes two
-/// adjacent vertices. Vertices that remain after the last round are valid, but flat.
+/// adjacent vertices. Redundant vertices that remain after the last round do no harm: the surface
+/// is almost flat there.
 const ROUNDS: usize = 8;
 
 /// Returns the convex hull of some points.
@@ -69,15 +70,15 @@ pub fn convex_hull3<N: Real>(points: &[Point<N, 3>]) -> Result<IndexedHull<N>, S
     Ok(IndexedHull { faces: faces.rings().map(ring).collect(), normals, vertices: point_indices })
 }
 
-/// A hull whose faces refer to its own vertices.
+/// A hull whose faces contain indices into its own list of vertices.
 struct HullFaces {
     /// For each vertex, the index of its point, in ascending order.
     point_indices: Vec<usize>,
     faces: FaceRings,
 }
 
-/// Computes the hull, and removes redundant vertices until there are none, or too few would be
-/// left.
+/// Computes the hull, and removes redundant vertices in rounds. Ends when there are none, when the
+/// remaining vertices would span no volume, or after [`ROUNDS`] rounds.
 ///
 /// # Errors
 /// If the points span no volume.
@@ -136,7 +137,7 @@ impl Grown {
 }
 
 /// Returns the used vertices in ascending order, and for each old vertex its index among the used
-/// vertices.
+/// vertices; 0 if it is unused.
 fn numbered(count: usize, corners: impl Iterator<Item = u32>) -> (Vec<usize>, Vec<u32>) {
     let (mut new_indices, mut used) = (vec![0; count], Vec::with_capacity(count));
     corners.for_each(|corner| new_indices[at(corner)] = 1);

@@ -52,8 +52,8 @@ pub(super) fn redundant(facets: &[Facet], scaled: &Scaled<3>) -> Vec<u32> {
     redundant
 }
 
-/// Returns the vertices adjacent to a vertex, in ascending order, starting the walk at the facet
-/// `first`.
+/// Returns the vertices adjacent to `vertex`, in ascending order of index. The walk around the
+/// vertex starts at the facet `first`, which must have it as a corner.
 fn ring_around(vertex: u32, first: u32, facets: &[Facet]) -> Vec<u32> {
     let (mut ring, mut facet) = (Vec::new(), first);
     loop {
@@ -83,9 +83,9 @@ fn is_inside(vertex: &P3, neighbors: &[P3], flat: f64) -> bool {
         || widest_normal(vertex, pairs).is_some_and(is_amid)
 }
 
-/// Returns whether the projection along `normal` has neighbors on both sides of each line from the
-/// vertex to a neighbor. False at the rim of a solid that is almost as thin as rounding errors: all
-/// neighbors lie in one plane, but on one side of the vertex.
+/// Returns whether, projected along `normal`, every line through the vertex and a neighbor has
+/// other neighbors strictly on both sides. False at the rim of a solid that is almost as thin as
+/// rounding errors: all neighbors lie in one plane, but on one side of the vertex.
 fn is_surrounded(vertex: &P3, neighbors: &[P3], normal: &Vector<f64, 3>) -> bool {
     neighbors.iter().all(|to| {
         let across = normal.cross(&(to - vertex));
@@ -106,7 +106,7 @@ fn widest_normal<'a>(
     direction(&widest).map(|(normal, _)| normal)
 }
 
-/// The faces of a hull, stored in common lists.
+/// The faces of a hull. The vertices of all faces are in one list.
 #[derive(Default)]
 pub(super) struct FaceRings {
     /// For each face, the outward unit normal of its largest triangle. The hull has no point in
@@ -131,7 +131,7 @@ impl FaceRings {
         let points = &scaled.points;
         let exact = || area_vector(seed.corners.mapped(|corner| &points[at(corner)]));
         let is_coarse = scaled.unit > DOUBT;
-        // Adding zero makes zeros positive.
+        // Adding zero replaces −0 by 0.
         let normal = if is_coarse { seed.normal.add_scalar(0.0) } else { exact().normalize() };
         self.normals.push(normal);
         let first = (1..ring.len()).fold(0, |first, candidate| {
@@ -149,10 +149,11 @@ impl FaceRings {
         starts.zip(&self.ends).map(|(start, &end)| &self.corners[start..end])
     }
 
-    /// Removes each vertex that only two faces share, if it lies on a straight line between its
-    /// neighbors in both. Returns `false` if such a vertex is not on a straight line or one of its
-    /// faces is a triangle, or if the faces no longer close: a vertex with two sides is invalid.
-    /// This occurs at a closed seam between two nearly coplanar faces.
+    /// Removes each vertex that exactly two faces share, since a vertex of a solid needs three.
+    /// Returns `false`, with the faces unusable, if such a vertex does not lie on the segment
+    /// between its neighbors in both faces, if one of its faces is a triangle, or if the remaining
+    /// faces do not close. This failure occurs where two nearly coplanar faces meet along a closed
+    /// loop.
     fn straighten(&mut self, scaled: &Scaled<3>) -> bool {
         let mut uses = vec![(0_u32, [0; 2]); scaled.points.len()];
         for (face, ring) in self.rings().enumerate() {
@@ -206,7 +207,7 @@ fn is_straight(ring: &[u32], vertex: u32, scaled: &Scaled<3>) -> bool {
 /// Merges triangles within the tolerance of one plane into faces.
 ///
 /// Each side of a face is, reversed, a side of the triangle beyond, and so of the face that
-/// contains that triangle. Only `straighten` can break this; then the triangles are used as faces.
+/// contains that triangle. Only `straighten` can break this; then each triangle becomes a face.
 pub(super) fn faces(facets: &[Facet], scaled: &Scaled<3>) -> FaceRings {
     let mut faces = Merger::new(facets, scaled).merged();
     if !faces.straighten(scaled) {
@@ -223,7 +224,8 @@ struct Merger<'a> {
     scaled: &'a Scaled<3>,
     /// For each facet, whether a face already contains it.
     is_taken: Vec<bool>,
-    /// For each vertex, one more than the seed of the last face that contains it.
+    /// For each vertex, one more than the index of the seed facet of the last face that contains
+    /// it; 0 for none.
     in_face_of: Vec<u32>,
     /// The vertices of the face under construction.
     ring: Vec<u32>,

@@ -18,10 +18,10 @@ const HALF: u32 = 63;
 /// 2⁶³, the weight of the upper half of a minor.
 const PER_HALF: f64 = (1_u64 << HALF) as f64;
 
-/// Rounds a number to a multiple of 2⁻⁶⁰.
+/// Rounds a number to the nearest multiple of 2⁻⁶⁰.
 pub(super) fn rounded(x: f64) -> f64 {
-    // The sum lies between 2⁻⁸ and 2⁻⁷, where doubles are 2⁻⁶⁰ apart, so the addition rounds.
-    // Larger numbers are multiples already.
+    // The magnitude of the sum lies between 2⁻⁸ and 2⁻⁷, where doubles are 2⁻⁶⁰ apart, so the
+    // addition rounds. Larger numbers are multiples already.
     let rounder = (1.0_f64 / 256.0).copysign(x);
     if x.abs() < 1.0 / 256.0 { (x + rounder) - rounder } else { x }
 }
@@ -69,8 +69,9 @@ fn exact_area(a: &P2, b: &P2, c: &P2) -> f64 {
     area_of(minor(ux, uy, vx, vy))
 }
 
-/// Returns the normal of the triangle on the side from which it appears counter-clockwise, with the
-/// length of twice its area. Each coordinate is the double nearest to the exact value.
+/// Returns the normal of the triangle on the side from which its corners run counter-clockwise. The
+/// length of the normal is twice the area. Each coordinate is the double nearest to the exact
+/// value.
 pub(super) fn area_vector([a, b, c]: [&P3; 3]) -> Vector<f64, 3> {
     Vector::from(minors(offset(b, a), offset(c, a)).mapped(area_of))
 }
@@ -132,8 +133,8 @@ mod tests {
         }
     }
 
-    /// Compares signs and magnitudes with expansions, for random points and for points in planes
-    /// and beside them.
+    /// Volumes, area vectors and the signs of 2D areas agree with exact expansions, for random
+    /// points and for points in the plane of the triangle up to rounding.
     #[test]
     fn volumes_are_those_of_expansions() {
         let mut next = numbers();

@@ -1,8 +1,8 @@
 //! Convex hulls and convex outlines of points.
 //!
 //! Every visibility decision is exact, so that no input, however degenerate, breaks the algorithms.
-//! The tolerance, a few epsilon of the largest coordinate, only removes points whose effect is
-//! below the rounding error of the coordinates.
+//! The tolerance is a few epsilon of the largest coordinate. It only removes points whose effect is
+//! about as small as the rounding error of the coordinates.
 
 mod given;
 mod hull2;

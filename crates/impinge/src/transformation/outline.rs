@@ -35,7 +35,8 @@ pub(super) fn thinned(points: &[P2], ring: Vec<usize>, tolerance: f64) -> Vec<us
     kept
 }
 
-/// Converts points in either order to a convex outline, counter-clockwise.
+/// Returns the indices of the corners of a convex outline, counter-clockwise. The points are given
+/// in order along the outline, in either direction.
 ///
 /// Checks that every corner turns left and the outline goes around once: its upward sides form one
 /// unbroken run.

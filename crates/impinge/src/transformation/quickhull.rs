@@ -36,9 +36,10 @@ pub(super) struct Facet {
     offset: f64,
     /// Twice the facet's area; six times a volume divided by it is a height.
     pub(super) doubled_area: f64,
-    /// The first point of the facet's list of outside points.
+    /// The first point of the facet's list of outside points; [`NONE`] if the list is empty.
     waiting: u32,
-    /// The index of the last search that visited the facet, or [`GONE`].
+    /// The number of the last search that found the facet visible; 0 if none has, [`GONE`] if the
+    /// facet was removed.
     visited: u32,
 }
 
@@ -48,9 +49,9 @@ impl Facet {
         let [a, b, c] = corner_points;
         let (u, v) = (b - a, c - a);
         let mut across = u.cross(&v);
-        // The cross product has a rounding error of 2⁻⁵⁰ times the product of the two lengths. This
-        // error is at most 2⁻⁴⁵ of the length of the cross product if that length is at least 1/32
-        // of the product of the two lengths. A shorter cross product is recomputed exactly.
+        // The cross product has a rounding error of 2⁻⁵⁰ times the product of the lengths of `u`
+        // and `v`. This error is at most 2⁻⁴⁵ of the length of the cross product if that length is
+        // at least 1/32 of the product. A shorter cross product is recomputed exactly.
         if across.norm_squared() * 1024.0 < u.norm_squared() * v.norm_squared() {
             across = area_vector(corner_points);
         }
@@ -60,12 +61,13 @@ impl Facet {
         Self { corners, neighbors, normal, offset, doubled_area, waiting: NONE, visited: 0 }
     }
 
-    /// Returns the height of a point in front of the facet, within [`DOUBT`].
+    /// Returns the height of a point over the facet, positive in front, with an error below
+    /// [`DOUBT`].
     fn rough_height(&self, point: &P3) -> f64 {
         self.normal.dot(&point.coords) - self.offset
     }
 
-    /// Returns the height of a point in front of the facet; the sign is exact.
+    /// Returns the height of a point over the facet, positive in front; the sign is exact.
     pub(super) fn height(&self, points: &[P3], point: u32) -> f64 {
         let point = &points[at(point)];
         let height = self.rough_height(point);
@@ -87,7 +89,8 @@ struct WaitingPoint {
     next: u32,
 }
 
-/// A side between a visible and an invisible facet.
+/// A side between a visible and an invisible facet: its vertices in the order of the visible facet,
+/// and the invisible facet `beyond`.
 #[derive(Clone, Copy)]
 struct HorizonSide {
     from: u32,
@@ -98,10 +101,10 @@ struct HorizonSide {
 /// The surface under construction.
 pub(super) struct HullSurface<'a> {
     points: &'a [P3],
-    /// Points no higher than this over every facet are not added.
+    /// Points that are outside the surface by no more than this are not added.
     tolerance: f64,
     facets: Vec<Facet>,
-    /// For each point, its entry in a facet's list.
+    /// The list entry of each point. Valid only for points in the list of some facet.
     waiting: Vec<WaitingPoint>,
     searches: u32,
     /// The facets that the last search found visible.
@@ -256,8 +259,8 @@ impl<'a> HullSurface<'a> {
         pending.extend(first..index_of(self.facets.len()));
     }
 
-    /// Finds the facets visible from a point, starting from the visible facet `first` (they are
-    /// connected), and their border. Writes them to `visible` and `horizon`.
+    /// Finds the facets visible from a point, and their border. Writes them to `visible` and
+    /// `horizon`. The visible facets are connected, so the search starts from one of them, `first`.
     fn look(&mut self, point: u32, first: u32) {
         self.searches += 1;
         self.visible.clear();
@@ -328,9 +331,10 @@ impl<'a> HullSurface<'a> {
     }
 
     /// Returns the facet over which a point is highest, and how far the point is outside: its
-    /// height over this facet, or, if that is within the tolerance, at least its distance from the
-    /// surface. The search starts from the facet `first`, which the point is in front of. Near the
-    /// rim of a thin solid no facet has a large height.
+    /// height over this facet or, if that is within the tolerance, the larger of that height and
+    /// the distance from the visible facets. Beside the rim of a thin solid, a distant point has
+    /// only small heights. The search starts from the facet `first`, which the point must be in
+    /// front of.
     fn farthest_outside(&mut self, point: u32, first: u32) -> (u32, f64) {
         self.look(point, first);
         let mut best = (first, 0.0);

@@ -1,4 +1,4 @@
-//! The span of points: checks and scales their coordinates, and finds a first simplex.
+//! Checks and scales the coordinates of points, and finds a first simplex of the hull.
 
 use super::lattice::rounded;
 use crate::math::{Point, Real, Vector, max};
@@ -6,10 +6,11 @@ use crate::shape::ShapeError;
 
 /// Points as doubles between −2 and 2, with the rounding unit of their coordinates.
 pub(super) struct Scaled<const D: usize> {
-    /// The points divided by a power of two, which is exact, and rounded to multiples of 2⁻⁶⁰,
-    /// which is at most 1/512 of `unit`.
+    /// The points divided by a power of two, which is exact, and rounded to multiples of 2⁻⁶⁰, with
+    /// an error of at most 1/512 of `unit`.
     pub(super) points: Vec<Point<f64, D>>,
-    /// One rounding unit of the original scalar at the largest coordinate.
+    /// The rounding unit of the original scalar at the largest coordinate: epsilon times its
+    /// magnitude.
     pub(super) unit: f64,
 }
 
@@ -52,14 +53,15 @@ pub(super) fn direction<const D: usize>(v: &Vector<f64, D>) -> Option<(Vector<f6
     (length > 0.0).then(|| (v / length, length))
 }
 
-/// Returns whether `a` comes before `b` by the first coordinate that differs. Among points equally
-/// far along some direction, the last in this order is a corner of the hull, never in the interior
-/// of an edge or a face.
+/// Returns whether `a` comes before `b` by the first coordinate that differs. Among the points that
+/// are farthest in some direction, the last in this order is a corner of the hull, never in the
+/// interior of an edge or a face.
 pub(super) fn precedes<const D: usize>(a: &Point<f64, D>, b: &Point<f64, D>) -> bool {
     (0..D).find(|&axis| a[axis] != b[axis]).is_some_and(|axis| a[axis] < b[axis])
 }
 
-/// Returns the index of the last point, in order of coordinates, whose measure is at least `tied`.
+/// Returns the index of the last point, in order of coordinates, whose measure is at least `tied`;
+/// 0 if there is none.
 fn last<const D: usize>(points: &[Point<f64, D>], measures: &[f64], tied: f64) -> usize {
     let mut last = None;
     for (index, &measure) in measures.iter().enumerate() {
@@ -111,7 +113,8 @@ pub(super) fn distance_from_segment<const D: usize>(
     (point - nearest).norm()
 }
 
-/// Returns three points that span a nearly widest triangle, found in one pass.
+/// Returns the points of [`first_two`] and the point farthest from the line through them. Of points
+/// within one rounding unit of the largest distance, the last in order of coordinates is taken.
 ///
 /// # Errors
 /// [`ShapeError::Degenerate`] with the dimension 0 or 1 if the points coincide or lie on a line,
@@ -136,7 +139,9 @@ pub(super) fn first_three<const D: usize>(scaled: &Scaled<D>) -> Result<[usize; 
     Ok([first, second, last(&scaled.points, &squares, tied)])
 }
 
-/// Returns four points that span a nearly largest tetrahedron, found in one pass.
+/// Returns the points of [`first_three`] and the point farthest from their plane. Of points on its
+/// side within one rounding unit of the largest distance, the last in order of coordinates is
+/// taken.
 ///
 /// # Errors
 /// [`ShapeError::Degenerate`] if the points coincide or lie on a line or in a plane, within

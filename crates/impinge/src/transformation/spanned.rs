@@ -36,8 +36,8 @@ pub fn convex_shape2<N: Real>(points: &[Point<N, 2>]) -> Result<ShapeHandle<N, 2
 
 /// Returns the convex hull of at least one point: a [`ConvexHull`]. If all points lie in a plane
 /// within rounding, as in [`convex_hull3`](super::convex_hull3), returns a [`Triangle`] or, for
-/// more corners, the [`TriMesh`] of a flat polygon with two sides. If all points lie on a line,
-/// returns a [`Segment`], without length if they coincide.
+/// more than three corners, a two-sided [`TriMesh`] of the flat polygon. If all points lie on a
+/// line, returns a [`Segment`], without length if they coincide.
 ///
 /// # Errors
 /// If there are no points, or a coordinate is not finite.
@@ -79,7 +79,7 @@ fn without_volume(error: ShapeError) -> Result<(), ShapeError> {
 }
 
 /// Returns the segment between the points that are farthest apart along the axis of the largest
-/// spread.
+/// spread; a segment without length, at the first point, if all points coincide.
 fn segment<N: Real, const D: usize>(
     scaled: &Scaled<D>,
     points: &[Point<N, D>],

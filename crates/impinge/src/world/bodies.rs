@@ -122,7 +122,7 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         self.state & FIXED != 0
     }
 
-    /// Returns `true` unless both objects are fixed, or the groups do not allow the pair.
+    /// Returns `true` if at most one of the objects is fixed and their groups allow the pair.
     #[inline]
     pub(crate) const fn can_interact(&self, other: &Self) -> bool {
         self.state & other.state & FIXED == 0 && self.groups.can_interact_with_groups(&other.groups)
@@ -134,7 +134,7 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         self.groups.can_interact_with_self() && self.shape.geometry().as_composite().is_some()
     }
 
-    /// Returns the exact box of the shape at the object's present pose.
+    /// Returns the box of the shape at the object's present pose; see [`Self::aabb_at`].
     pub(crate) fn aabb(&self) -> Aabb<N, D> {
         self.aabb_at(&N::pose(&self.isometry))
     }
@@ -145,8 +145,8 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         usable(self.solid.aabb(&self.shape, pose))
     }
 
-    /// Returns the prediction or margin by which the broad phase grows the object's box; see
-    /// [`GeometricQueryType::query_limit`].
+    /// Returns the prediction or margin of the object's query type. The broad phase grows the
+    /// object's box by this length plus the skin; see [`GeometricQueryType::query_limit`].
     pub(crate) fn query_limit(&self) -> N {
         self.query.get().query_limit()
     }
@@ -175,7 +175,7 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         self.state |= PREDICTED;
     }
 
-    /// Returns the row of the object for the narrow phase.
+    /// Returns the object's row for the object table of the narrow phase.
     pub(crate) fn row(&self) -> ObjectRow<N, D> {
         ObjectRow {
             handle: self.handle,
@@ -267,16 +267,18 @@ pub(super) fn aabb_at<N: Real, const D: usize>(
     usable(shape.aabb(pose))
 }
 
-/// Returns the box, or the unbounded box if a minimum exceeds its maximum or is NaN.
+/// Returns `aabb`; the unbounded box if on any axis the minimum exceeds the maximum or one of them
+/// is NaN.
 fn usable<N: Real, const D: usize>(aabb: Aabb<N, D>) -> Aabb<N, D> {
     let is_usable = (0..D).all(|axis| aabb.mins()[axis] <= aabb.maxs()[axis]);
     if is_usable { aabb } else { Aabb::unbounded() }
 }
 
-/// Returns the box grown by `limit` and by a slack for rounding: a few units in the last place of
-/// `limit` or of the largest finite coordinate, whichever is larger. Two grown boxes overlap
-/// whenever the distance of the solids is at most the sum of both limits. The slack covers the
-/// rounding of the boxes, of the sum, and of the compared distance.
+/// Returns the box grown on every side by `limit` plus a slack for rounding. The slack is a few
+/// units in the last place of `limit` or of the largest absolute value of a finite coordinate,
+/// whichever is larger. It covers the rounding of the boxes, of the sum and of the computed
+/// distance, so two grown boxes overlap whenever the computed distance of the solids is at most the
+/// sum of both limits.
 pub(super) fn grown<N: Real, const D: usize>(aabb: &Aabb<N, D>, limit: N) -> Aabb<N, D> {
     let mut largest = limit;
     for axis in 0..D {

@@ -42,7 +42,7 @@ pub(crate) struct BodyEntry<N: Real, const D: usize> {
     /// Handle index, or [`GONE`] if the object was removed.
     index: u32,
     changes: BodyChanges,
-    /// Exact box of the shape at the present pose. The unbounded box, which is not read, if
+    /// Exact box of the shape at the present pose. It is the unbounded box, and is not read, if
     /// `changes.volume` is `false`.
     aabb: Aabb<N, D>,
 }
@@ -58,7 +58,8 @@ pub(crate) struct ChangeList<N: Space<D>, const D: usize> {
     /// By handle index, up to the last object with a skin: the skin, which is the distance outside
     /// the surface at which contacts are measured.
     skins: Vec<N>,
-    /// Tree of the dirty boxes, which the first query builds.
+    /// Tree in which queries find the dirty objects. Empty until the first query after a change
+    /// builds it.
     dirty: OnceLock<DirtyTree<D>>,
     /// Scratch: handle indices of the changed objects, sorted.
     order: Vec<u32>,
@@ -175,8 +176,8 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         self.dirty_indices().count()
     }
 
-    /// Iterates over the boxes of the dirty objects, grown by the slack for rounding. Each comes
-    /// with its index in this list.
+    /// Iterates over the dirty objects: the index of the entry in this list, and the object's box,
+    /// grown by the slack for rounding.
     pub(crate) fn dirty_boxes(&self) -> impl Iterator<Item = (u32, Aabb<N, D>)> {
         self.dirty_indices().map(|change_index| (change_index, self.box_at(change_index)))
     }
@@ -202,8 +203,9 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         grown(&self.entries[change_index as usize].aabb, N::ZERO)
     }
 
-    /// Returns the tree that queries search in addition to the broad phase, or instead of it. The
-    /// first call after an update builds the tree with `make`. `None` if no object changed.
+    /// Returns the tree that queries search in addition to the broad phase, or instead of the broad
+    /// phase if the tree has the boxes of all objects. If there is no tree, builds it with `make`.
+    /// `None` if no object changed since the last update.
     pub(crate) fn dirty_tree(&self, make: impl FnOnce() -> DirtyTree<D>) -> Option<&DirtyTree<D>> {
         if self.entries.is_empty() {
             return None;
@@ -217,7 +219,8 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         Some(self.dirty.get_or_init(|| made))
     }
 
-    /// Returns the tree of dirty objects; `None` if no query has built it since the last update.
+    /// Returns the tree of dirty objects. `None` if no query has built it since the last update, or
+    /// since changes made it need a rebuild.
     pub(crate) fn existing_dirty_tree(&self) -> Option<&DirtyTree<D>> {
         self.dirty.get()
     }
@@ -228,8 +231,8 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         if tree.has_all() { id } else { self.entries[id as usize].index }
     }
 
-    /// Takes the sorted list of the handle indices of the changed objects. [`Self::clear`] takes
-    /// the list back and reuses its memory.
+    /// Collects the handle indices of the changed objects that still exist, sorted. The list reuses
+    /// the memory of the last one; pass it to [`Self::clear`] afterwards.
     pub(crate) fn take_order(&mut self) -> Vec<u32> {
         let mut order = core::mem::take(&mut self.order);
         order.extend(self.entries.iter().map(|entry| entry.index).filter(|&index| index != GONE));
@@ -237,7 +240,8 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         order
     }
 
-    /// Writes the changes of an object to the targets, and marks the object as unchanged.
+    /// Writes the changes of an object to the targets, and marks the object as unchanged. Does
+    /// nothing if the object is not in the list.
     pub(crate) fn flush(
         &mut self,
         body: &mut WorldBody<N, D>,
@@ -269,7 +273,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
     }
 
     /// Clears all changes, except the list of objects whose pair with themselves begins or ends.
-    /// `order` is the list of [`Self::take_order`].
+    /// `order` is the list from [`Self::take_order`], whose memory the next call reuses.
     pub(crate) fn clear(&mut self, mut order: Vec<u32>) {
         order.clear();
         self.order = order;
@@ -277,8 +281,8 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         self.dirty.take();
     }
 
-    /// Takes the handle indices of the objects whose pair with themselves begins or ends, as of the
-    /// last flush.
+    /// Takes the handle indices of the objects whose pair with themselves begins or ends, as
+    /// collected by [`Self::flush`] since the last call.
     pub(crate) fn take_self_changed(&mut self) -> Vec<u32> {
         core::mem::take(&mut self.self_changed)
     }

@@ -29,7 +29,8 @@ use crate::shape::ShapeHandle;
 /// and events are those of the last update.
 ///
 /// `T` is the user's data, which the world stores and never accesses. It need not be `Send` or
-/// `Sync`; the world is `Send` or `Sync` if `T` is. All orders are canonical, by handle.
+/// `Sync`; the world is `Send` or `Sync` if `T` is. Results come in canonical order, which is the
+/// order of the handles, unless a method describes another order.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -55,9 +56,9 @@ pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
     pub(super) objects: CollisionObjects<N, D, T>,
     pub(super) broad_phase: Box<WorldBroadPhase<N, D>>,
     pub(super) narrow_phase: Box<dyn WorldsNarrowPhase<N, D, T>>,
-    /// The broad phase and, in the next field, the narrow phase that take over at the next update;
-    /// `None` for a phase that is not replaced.
+    /// The broad phase that replaces the present one at the next update; `None` if there is none.
     pub(super) next_broad_phase: Option<Box<WorldBroadPhase<N, D>>>,
+    /// The narrow phase that replaces the present one at the next update; `None` if there is none.
     pub(super) next_narrow_phase: Option<Box<dyn WorldsNarrowPhase<N, D, T>>>,
     pub(super) filters: Filters<N, D, T>,
     /// The events of the last update.
@@ -83,9 +84,9 @@ pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Creates an empty world.
     ///
-    /// `margin` is the distance by which the broad phase loosens each box on every side. An object
-    /// costs little while its box stays within the loosened box. A fiftieth of the size of a
-    /// typical object is a good value. The margin never affects exact results.
+    /// `margin` is the distance by which the broad phase loosens each box on every side. An update
+    /// spends little time on an object whose box stays within its loosened box. A fiftieth of the
+    /// size of a typical object is a good value. The margin never affects exact results.
     ///
     /// # Panics
     /// If the margin is negative or not finite; [`Self::try_new`] returns an error instead.
@@ -296,8 +297,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         Ok(())
     }
 
-    /// Replaces the groups of an object. Queries use the new groups at once; pairs start and stop
-    /// accordingly at the next update.
+    /// Replaces the groups of an object. Queries use the new groups at once. At the next update,
+    /// pairs that the groups now allow start, and pairs that they now forbid stop.
     ///
     /// # Panics
     /// If the handle is stale; [`Self::try_set_collision_groups`] returns an error instead.
@@ -320,8 +321,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         Ok(())
     }
 
-    /// Changes the query type of an object. Its pairs are computed accordingly from the next update
-    /// on.
+    /// Changes the query type of an object. From the next update on, its pairs are computed with
+    /// the new query type.
     ///
     /// # Panics
     /// If the handle is stale, or a number of the query type is negative or not finite;

@@ -65,9 +65,11 @@ type PairRule<'a, N, const D: usize, T> =
     dyn Fn(&CollisionObject<N, D, T>, &CollisionObject<N, D, T>) -> bool + 'a;
 
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Checks the invariants, and that the narrow phase has every pair that groups and filters
-    /// allow and whose volumes overlap. The volume of an object is its box grown by query limit and
-    /// skin. Tests every pair of objects, so it is slow. Valid right after an update.
+    /// Checks the invariants and the set of pairs: the narrow phase must have every pair that fixed
+    /// marks, groups and filters allow and whose volumes overlap, no pair that they forbid, and no
+    /// pair twice. The volume of an object is its box grown by query limit and skin. Tests every
+    /// pair of objects, so it is slow. Call it right after an update, since later changes wait for
+    /// the next one.
     ///
     /// # Errors
     /// Returns a sentence that names the violated invariant.
@@ -102,9 +104,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
     }
 
-    /// Returns the pairs that must exist: each object with itself if it has that pair, and every
-    /// two objects that groups and filters allow and whose volumes overlap. Volumes do not include
-    /// the margin of the broad phase.
+    /// Returns the pairs that must exist: every two objects that fixed marks, groups and filters
+    /// allow and whose volumes overlap, and each object with itself if the flag for its self-pair
+    /// is set. Volumes do not include the margin of the broad phase.
     fn expected_pairs(
         &self,
         update_filter: &PairRule<'_, N, D, T>,
@@ -124,8 +126,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         pairs
     }
 
-    /// Returns `true` if fixed marks, groups and filters allow the pair. For an object with itself,
-    /// returns [`WorldBody::wants_self_pair`].
+    /// Returns `true` if at most one of the objects is fixed, and groups and filters allow the
+    /// pair. For an object with itself, returns [`WorldBody::wants_self_pair`]. `false` for a stale
+    /// handle.
     fn is_allowed(
         &self,
         handle1: CollisionObjectHandle,

@@ -10,11 +10,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Changes a copy of an object's shape, which must be of type `S`, and returns the result of
     /// `change`.
     ///
-    /// The object gets the copy as its new shape. Other objects that share the old shape keep it,
-    /// and so do the contacts of the last update, which can be read until the next update. Queries
-    /// use the new shape at once, and pairs follow at the next update, as after
-    /// [`Self::set_shape`]. Contacts whose features or positions stay the same keep their ids.
-    /// Costs a copy of the shape, and the call of `change`.
+    /// The object gets the copy as its new shape, and other objects that share the old shape keep
+    /// it. The contacts of the last update remain those of the old shape, until the next update
+    /// replaces them. Queries use the new shape at once, and pairs follow at the next update, as
+    /// after [`Self::set_shape`]. Contacts whose features or positions stay the same keep their
+    /// ids. Costs a copy of the shape, and the call of `change`.
     ///
     /// # Panics
     /// If the handle is stale or the shape is of another type; [`Self::try_deform`] returns an

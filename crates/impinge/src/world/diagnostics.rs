@@ -7,7 +7,7 @@ use crate::bounding_volume::Aabb;
 use crate::math::Space;
 use crate::narrow_phase::CollisionObjectHandle;
 
-/// Explanations of pairs. An update tests boxes first, then
+/// Explanations of pairs. An update tests loosened boxes first, then fixed marks and
 /// [`CollisionGroups`](super::CollisionGroups), then filters.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns the names, sorted, of the pair filters that refuse two objects. Empty for an object

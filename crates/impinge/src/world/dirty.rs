@@ -4,8 +4,8 @@
 //! each change costs the path from a leaf block to the root. Changes degrade the order: after
 //! `max(32, n / 4)` changes, a tree of `n` boxes is dropped, and the next query builds a new one.
 //! So a change costs amortised O(log n), whether queries come after each change or after many. A
-//! search costs as much as in the broad phase, plus one block for every 16 boxes that were added
-//! since the tree was built.
+//! search costs about as much as a search of the broad phase, plus one block for every 16 boxes
+//! that were added since the tree was built.
 //!
 //! Searching two trees costs more than searching one tree of all boxes. If at least a quarter of
 //! the objects are dirty, this tree also has the boxes of all other objects (`has_all`), and
@@ -36,8 +36,8 @@ pub(crate) struct DirtyTree<const D: usize> {
     changes_left: usize,
 }
 
-/// Receives a group of ids, each with a lower bound of its key (a time or a distance), and returns
-/// the new limit of keys.
+/// Receives a group of ids, each with a lower bound of its key (a time or a distance). Returns the
+/// new limit: the search skips boxes whose keys exceed it.
 pub(crate) type DirtyVisitor<'a, N> = dyn FnMut(&[(u32, N)]) -> N + 'a;
 
 impl<const D: usize> DirtyTree<D> {
@@ -71,7 +71,7 @@ impl<const D: usize> DirtyTree<D> {
         if self.has_all { Some(body.index()) } else { body.change_index() }
     }
 
-    /// Sets the box with this id, which may be new.
+    /// Inserts or replaces the box with this id, and counts the change towards the next rebuild.
     pub(crate) fn put<N: Real>(&mut self, id: u32, aabb: &Aabb<N, D>) {
         let bounds = Bounds::enclosing(aabb);
         if !self.tree.contains(id) || !bounds.is_finite() {
@@ -210,8 +210,8 @@ mod tests {
     fn searches_among_many_changes_look_at_few_blocks() {
         let [[few_new, few], [many_new, many]] =
             [512, 8192].map(|count| opened_on_average(count, &mut 9));
-        // Boxes that were added since the tree was built, on average an eighth of all boxes, are in
-        // blocks in order of insertion.
+        // Boxes that were added since the tree was built fill blocks in order of insertion, which a
+        // search cannot skip. On average they are an eighth of all boxes.
         let unsorted = |count: f64| count / 8.0 / 16.0;
         for (count, opened) in [(512.0, few_new), (8192.0, many_new)] {
             assert!(opened < 8.0 + unsorted(count), "{opened} blocks of {count} boxes");

@@ -85,7 +85,7 @@ compiled! {
         found: &mut DirtyVisitor<'_, N>,
     ) = DirtyTree::by_distance;
 
-    /// Casts a ray against an object; see `WorldBody::cast_ray`.
+    /// Casts a ray against an object; `None` without a hit. See `WorldBody::cast_ray`.
     fn cast_ray(
         body: &WorldBody<N, D>,
         ray: &Ray<N, D>,
@@ -93,7 +93,8 @@ compiled! {
         solid: bool,
     ) -> Option<RayIntersection<N, D>> = WorldBody::cast_ray;
 
-    /// Returns the projection of `point` on an object, and its distance; see `WorldBody::project`.
+    /// Returns the projection of `point` on an object, and its distance; `None` if the shape is
+    /// empty, and possibly if the distance exceeds `farthest`. See `WorldBody::project`.
     fn project(
         body: &WorldBody<N, D>,
         point: &Point<N, D>,

@@ -6,8 +6,8 @@ use super::WorldMark;
 use crate::math::{Pose, Real, Space, is_unit};
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
 
-/// The reason why a world refused an operation, which then has changed nothing. Values are
-/// converted to `f64` exactly.
+/// The reason why a world refused an operation, which then has changed nothing. Each `value` is the
+/// rejected number, converted to `f64` exactly.
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;
@@ -60,7 +60,7 @@ pub enum WorldError {
         /// The rejected value.
         value: f64,
     },
-    /// The shape of the object is not of the type that is to be deformed.
+    /// The shape of the object is not of the type that the caller of `deform` expects.
     ShapeType(CollisionObjectHandle),
     /// The mark has ended, or belongs to another world.
     MarkGone(WorldMark),

@@ -11,11 +11,11 @@ use crate::narrow_phase::CollisionObjectHandle;
 
 /// Decides which pairs may exist.
 ///
-/// An update calls a filter only for pairs whose boxes overlap and that fixed marks and groups
-/// allow: when the boxes begin to overlap, and when the pair is filtered again. All filters of a
-/// world must return `true` for the pair to exist. The result for a pair must not change until the
-/// filter is registered again or the pairs are filtered again
-/// ([`CollisionWorld::refilter_pairs_of`]).
+/// An update calls a filter only for a pair whose loosened boxes overlap, whose groups allow it and
+/// of which at most one object is fixed. It calls the filter when the boxes begin to overlap, and
+/// when the pair is filtered again. All filters of a world must return `true` for the pair to
+/// exist. The result for a pair must not change until the filter is registered again or the pairs
+/// are filtered again ([`CollisionWorld::refilter_pairs_of`]).
 ///
 /// Implement the trait of the same name in [`crate::dim2::world`] or [`crate::dim3::world`], which
 /// fixes the dimension. Closures over two references to objects implement these traits.

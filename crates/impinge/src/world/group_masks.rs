@@ -29,7 +29,7 @@ impl CollisionGroups {
         Self::of_masks(0, 0, 0)
     }
 
-    /// Returns these groups with another membership.
+    /// Returns these groups with the membership replaced by `groups`.
     ///
     /// ```
     /// use impinge::world::CollisionGroups;
@@ -48,7 +48,7 @@ impl CollisionGroups {
         self
     }
 
-    /// Returns these groups with another whitelist.
+    /// Returns these groups with the whitelist replaced by `groups`.
     ///
     /// # Panics
     /// If a group is above 29; [`Self::try_set_whitelist`] returns an error instead.
@@ -59,7 +59,7 @@ impl CollisionGroups {
         self
     }
 
-    /// Returns these groups with another blacklist.
+    /// Returns these groups with the blacklist replaced by `groups`.
     ///
     /// # Panics
     /// If a group is above 29; [`Self::try_set_blacklist`] returns an error instead.
@@ -76,7 +76,7 @@ impl CollisionGroups {
     /// The mask of all groups, 0 to 29.
     pub const ALL: u32 = ALL_GROUPS;
 
-    /// Returns these groups with another membership, given as a mask.
+    /// Returns these groups with the membership replaced by the groups in `mask`.
     ///
     /// ```
     /// use impinge::world::{CollisionGroups, GroupError};
@@ -101,7 +101,7 @@ impl CollisionGroups {
         or_panic(self.try_with_membership_by_mask(mask))
     }
 
-    /// Returns these groups with another membership, given as a mask.
+    /// Returns these groups with the membership replaced by the groups in `mask`.
     ///
     /// # Errors
     /// If the mask has bit 30 or 31; the error has the lower of these bits.
@@ -112,7 +112,7 @@ impl CollisionGroups {
         Ok(groups)
     }
 
-    /// Returns these groups with another whitelist, given as a mask.
+    /// Returns these groups with the whitelist replaced by the groups in `mask`.
     ///
     /// # Panics
     /// If the mask has bit 30 or 31; [`Self::try_with_whitelist_by_mask`] returns an error instead.
@@ -122,7 +122,7 @@ impl CollisionGroups {
         or_panic(self.try_with_whitelist_by_mask(mask))
     }
 
-    /// Returns these groups with another whitelist, given as a mask.
+    /// Returns these groups with the whitelist replaced by the groups in `mask`.
     ///
     /// # Errors
     /// If the mask has bit 30 or 31; the error has the lower of these bits.
@@ -133,7 +133,7 @@ impl CollisionGroups {
         Ok(groups)
     }
 
-    /// Returns these groups with another blacklist, given as a mask.
+    /// Returns these groups with the blacklist replaced by the groups in `mask`.
     ///
     /// # Panics
     /// If the mask has bit 30 or 31; [`Self::try_with_blacklist_by_mask`] returns an error instead.
@@ -143,7 +143,7 @@ impl CollisionGroups {
         or_panic(self.try_with_blacklist_by_mask(mask))
     }
 
-    /// Returns these groups with another blacklist, given as a mask.
+    /// Returns these groups with the blacklist replaced by the groups in `mask`.
     ///
     /// # Errors
     /// If the mask has bit 30 or 31; the error has the lower of these bits.

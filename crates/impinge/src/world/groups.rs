@@ -113,13 +113,13 @@ fn bit(group: usize) -> Result<u32, GroupError> {
     if group > LAST_GROUP { Err(GroupError(group)) } else { Ok(1 << group) }
 }
 
-/// Returns the mask of several groups. It is computed before anything changes, so an error has no
-/// side effect.
+/// Returns the mask of several groups; an error for a group above 29. Callers compute the mask
+/// before they change anything, so an error leaves their groups unchanged.
 fn mask(groups: &[usize]) -> Result<u32, GroupError> {
     groups.iter().try_fold(0, |mask, &group| Ok(mask | bit(group)?))
 }
 
-/// Returns `mask` with one group set or cleared.
+/// Returns `mask` with one group set or cleared; an error for a group above 29.
 fn with_group(mask: u32, group: usize, present: bool) -> Result<u32, GroupError> {
     let bit = bit(group)?;
     Ok(if present { mask | bit } else { mask & !bit })

@@ -2,7 +2,8 @@
 //!
 //! The world connects the broad phase and the narrow phase. It has one record for each object:
 //! pose, shape, groups and query type as the user last set them (`bodies`), and the user's data.
-//! The two phases have copies of these as of the last update:
+//! The broad phase has a copy of the boxes, and the narrow phase of the poses, shapes and query
+//! types, as of the last update:
 //!
 //! ```text
 //! CollisionWorld

@@ -18,8 +18,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// fixed start. A fixed object can still be moved. It has pairs with all objects that are not
     /// fixed, and with itself if its groups enable that
     /// ([`CollisionGroups::enable_self_collision`]); queries treat it like any other object. The
-    /// mark is tested before groups and filters, once, when the boxes of two objects begin to
-    /// overlap.
+    /// mark is tested before groups and filters, when the boxes of two objects begin to overlap and
+    /// when their pair is filtered again.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Vector};
@@ -132,7 +132,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Returns the position that [`Self::set_position_with_prediction`] predicted. `None` for a
-    /// stale handle, and if the object was moved without a prediction since.
+    /// stale handle, for an object that never had a prediction, and if the object was moved without
+    /// a prediction since.
     #[must_use]
     pub fn predicted_position(&self, handle: CollisionObjectHandle) -> Option<&N::Isometry> {
         let object = self.objects.get(handle)?;

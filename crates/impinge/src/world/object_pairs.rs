@@ -44,8 +44,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         partners.into_iter().flatten().filter_map(|other| self.objects.get(other))
     }
 
-    /// Iterates over the contact points of an object with all other objects, each with the other
-    /// object.
+    /// Iterates over the contact points of an object, each with the other object of its pair.
     ///
     /// The object is the first solid of each contact, whatever the order of the handles: `world1`,
     /// `feature1` and `part1` are on it, and the normal points from it to the other object. If an
@@ -84,9 +83,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         })
     }
 
-    /// Iterates over the objects near this object, with their proximity: the pairs whose query is
-    /// for proximity. Omits disjoint pairs, since their presence depends on the margin. Empty for a
-    /// stale handle.
+    /// Iterates over the objects that touch this object or are within the margin, each with its
+    /// proximity, for pairs whose query is for proximity. Omits disjoint pairs, since their
+    /// presence depends on the margin of the world. Empty for a stale handle.
     ///
     /// ```
     /// use impinge::dim3::events::Proximity;

@@ -37,8 +37,9 @@ pub struct CollisionObjects<N: Space<D>, const D: usize, T> {
     /// Generation of the first object at each index.
     pub(super) first: Generation,
     pub(super) slots: Vec<Slot>,
-    /// The objects, without gaps and in unspecified order. Whether a handle is stale depends on its
-    /// slot alone, so code that only forwards references does not wait for these records to load.
+    /// The objects, without gaps and in unspecified order. The check for a stale handle reads only
+    /// the slot, so code that merely passes on a reference does not wait for the record to be
+    /// loaded.
     pub(super) records: Vec<CollisionObject<N, D, T>>,
     /// Free handle indices; the last one in the list is used next.
     pub(super) free: Vec<u32>,
@@ -53,7 +54,7 @@ clone_fields!([N: Space<D>, const D: usize, T: Clone] CollisionObjects<N, D, T> 
     first, slots, records, free, changes, table, journal, cloned,
 });
 
-/// A function that clones an object.
+/// A function that clones an object, for worlds with marks.
 type CloneObject<N, const D: usize, T> = fn(&CollisionObject<N, D, T>) -> CollisionObject<N, D, T>;
 
 /// Handle slot: the generation and the record of one handle index.
@@ -156,7 +157,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     }
 
     /// Iterates over the boxes of all objects, with their handle indices, if `has_all`; else over
-    /// the dirty boxes, with their indices in the list of changes.
+    /// the dirty boxes, with their indices in the list of changes. The box of an object that is not
+    /// dirty is its volume in the broad phase.
     fn boxes<'a>(
         &'a self,
         has_all: bool,
@@ -172,7 +174,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }))
     }
 
-    /// Returns the object with id `id` in the dirty tree.
+    /// Returns the object with id `id` in the dirty tree; `None` if it has been removed.
     #[inline]
     pub(super) fn dirty_object(
         &self,
@@ -182,9 +184,9 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.object_at(self.changes.dirty_index(tree, id))
     }
 
-    /// Returns the object whose proxy has the uid `uid`; `None` if a direct look-up does not find
-    /// it. While no object has been removed, records and proxies have the same order; afterwards
-    /// the look-up by handle index succeeds where handle and proxy have the same index.
+    /// Returns the object whose proxy has the uid `uid`, found without a search. Tries the record
+    /// at index `uid`, which is right while no object has been removed, then the object with handle
+    /// index `uid`. `None` if neither has this proxy.
     #[inline]
     pub(super) fn object_of_proxy(&self, uid: usize) -> Option<&CollisionObject<N, D, T>> {
         let has_proxy = |object: &&CollisionObject<N, D, T>| object.body.proxy.uid() == uid;
@@ -192,8 +194,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         in_order.or_else(|| self.object_at(u32::try_from(uid).ok()?).filter(has_proxy))
     }
 
-    /// Returns `true` unless both objects are fixed, the groups do not allow the pair, or an index
-    /// is free.
+    /// Returns `true` if both indices are in use, at most one of the objects is fixed and the
+    /// groups allow the pair.
     #[inline]
     pub(super) fn can_interact(&self, index1: u32, index2: u32) -> bool {
         let both = self.body(index1).zip(self.body(index2));
@@ -273,7 +275,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         Ok(CollisionObjectHandle::new(index.ok_or(WorldError::Full)?, self.first))
     }
 
-    /// Stores an object under `handle`, which must be the next handle.
+    /// Stores an object under `handle`, which must be the next handle. `proxy` registers the
+    /// object's volume in the broad phase and returns the proxy's handle.
     pub(super) fn insert(
         &mut self,
         handle: CollisionObjectHandle,

@@ -14,8 +14,9 @@ type Object<N, const D: usize, T> = CollisionObject<N, D, T>;
 type PairView<'a, N, const D: usize, T> =
     (&'a Object<N, D, T>, &'a Object<N, D, T>, ManifoldView<'a, N, D>);
 
-/// Iterator over manifolds with their objects. It is not built of adapters, because the closure of
-/// an adapter is not inlined and costs a call for each manifold.
+/// Iterator over manifolds with their objects, without manifolds of removed objects. It is a type
+/// of its own, because the closure of an adapter such as `filter_map` is not inlined here and costs
+/// a call for each manifold.
 struct PairViews<'a, N: Space<D>, const D: usize, T, I> {
     objects: &'a CollisionObjects<N, D, T>,
     views: I,
@@ -121,8 +122,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Iterates over all manifolds with at least one contact, read in place if possible; see
     /// [`ManifoldView`].
     ///
-    /// Manifolds come in memory order. It is unspecified, but equal for equal histories, on every
-    /// machine and with any number of threads.
+    /// Manifolds come in memory order. The order is unspecified, but the same sequence of calls
+    /// gives the same order on every machine and with any number of threads.
     ///
     /// ```
     /// use impinge::math::{Isometry2, Vector};
@@ -157,7 +158,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// another thread.
     ///
     /// The cuts depend only on `pieces` and the pairs. Pairs that touch a mesh cost more than
-    /// others. With four pieces for each thread, idle threads can take over work.
+    /// others, so some pieces take longer. With four pieces for each thread, idle threads can take
+    /// over work.
     ///
     /// ```
     /// use impinge::math::{Isometry3, Vector};
@@ -199,8 +201,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Replaces the contents of `stream` by all contacts of the last update, in dense lists. Each
-    /// contact has its index in the lists that `stream` had before the call. The contacts and their
-    /// order are those of [`Self::contact_views`]; see [`ContactStream`] for an example.
+    /// contact also has the index at which `stream` had it before the call, if it had it. The
+    /// contacts and their order are those of [`Self::contact_views`]; see [`ContactStream`] for an
+    /// example.
     pub fn read_contacts(&self, stream: &mut ContactStream<N, D>) {
         self.narrow_phase.read_contacts(&self.objects, stream);
     }

@@ -42,7 +42,7 @@ impl<N: Space<D>, const D: usize, T> RemovedObjects<N, D, T> {
         }
     }
 
-    /// Drops the objects whose handle is in no event of the new batch.
+    /// Starts a new set of handles, and drops the objects whose handles are in none of `events`.
     pub(super) fn keep_referenced(&mut self, events: &Events) {
         self.referenced.clear();
         self.num_read = [(0, 0); 2];

@@ -40,7 +40,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// To call the filter again, call [`Self::refilter_pairs`] or [`Self::refilter_pairs_of`]
     /// before the update: pairs that the filter refuses then stop, with their events, and pairs
     /// that it allows start. After a change of registered filters, groups or fixed marks the
-    /// affected pairs are filtered again too, and after a change of the broad phase all pairs are.
+    /// affected pairs are filtered again too, and after the replacement of a phase all pairs are.
     /// Pairs of an object with itself are not filtered. If the filter panics, the next update calls
     /// it again.
     ///
@@ -94,8 +94,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
     }
 
-    /// Begins the batch of events of an update, behind the last batch if that is kept. Drops the
-    /// removed objects whose handle is in no event any more.
+    /// Begins the batch of events of an update with the queued events. The batch follows the last
+    /// one if that is kept, else replaces it. Drops the removed objects whose handles are in no
+    /// event any more.
     fn begin_events(&mut self) {
         if !core::mem::take(&mut self.keeps_events) {
             self.events.clear();
@@ -357,7 +358,8 @@ fn push_differences(
     }
 }
 
-/// Pushes the events for the change from one status of a pair to another.
+/// Pushes the events for the change from one status of a pair to another. `None` is the status of a
+/// pair that is disjoint or does not exist.
 fn push_change(
     pair: HandlePair,
     before: Option<StepStatus>,

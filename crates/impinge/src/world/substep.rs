@@ -19,10 +19,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// positions, and every other pair as of the last update. Shapes, query types and groups are
     /// those of the last update.
     ///
-    /// If the pair began or ceased to touch, the event is queued. The next update delivers it
-    /// first, together with the events of removals, in the order in which they occurred for the
-    /// pair. Each `Started` still has one `Stopped`: if a pair touches in a substep and has
-    /// separated by the update, both events are delivered.
+    /// If the pair began or ceased to touch, or its proximity changed, the event is queued. The
+    /// next update delivers it first, together with the events of removals, in the order in which
+    /// they occurred for the pair. Each `Started` still has one `Stopped`: if a pair touches in a
+    /// substep and has separated by the update, both events are delivered.
     ///
     /// Costs one query and two look-ups. A custom narrow phase must implement
     /// [`NarrowPhase::update_pair`](super::NarrowPhase::update_pair).

@@ -126,7 +126,8 @@ fn warm(manifolds: &mut [ContactManifold], old: &[Warmth]) {
     }
 }
 
-/// Replaces the contacts of a pair by those of this step, in the memory of the old ones.
+/// Replaces the manifolds of a pair by those of this step, and reuses the memory of the old
+/// manifolds.
 struct Rewriting<'m> {
     position1: Vec2,
     manifolds: &'m mut Vec<ContactManifold>,
@@ -150,7 +151,7 @@ impl<'m> Rewriting<'m> {
         manifold.points.extend(touches.map(|touch| point(&touch, self.position1)));
     }
 
-    /// Removes the old manifolds that are left.
+    /// Removes the old manifolds that were not replaced.
     fn end(self) {
         self.manifolds.truncate(self.count);
     }

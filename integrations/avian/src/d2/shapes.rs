@@ -36,13 +36,13 @@ impl Collider {
         Self::new(bevy_impinge::d2::Collider::circle(radius))
     }
 
-    /// Creates an ellipse centred at the origin, with its half lengths.
+    /// Creates an ellipse centred at the origin, with these half lengths along the axes.
     #[must_use]
     pub fn ellipse(half_width: f32, half_height: f32) -> Self {
         Self::new(bevy_impinge::d2::Collider::ellipse(half_width, half_height))
     }
 
-    /// Creates a rectangle centred at the origin, with its full lengths.
+    /// Creates a rectangle centred at the origin, with these full lengths.
     #[must_use]
     pub fn rectangle(x_length: f32, y_length: f32) -> Self {
         Self::new(bevy_impinge::d2::Collider::rectangle(x_length, y_length))
@@ -74,7 +74,7 @@ impl Collider {
     }
 
     /// Creates the convex hull of points; `None` if there are none, or if one is not finite. For
-    /// points on a line it is a segment.
+    /// points on a line the result is a segment.
     #[must_use]
     pub fn convex_hull(vertices: Vec<Vec2>) -> Option<Self> {
         convex_shape(&points::<2>(vertices)).ok().map(Self::from_handle)

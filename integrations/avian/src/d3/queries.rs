@@ -71,8 +71,9 @@ pub struct PointHit {
 }
 
 impl SpatialQuery<'_, '_> {
-    /// Returns the first hit of a ray within `max_distance`. If `solid`, a ray that starts inside a
-    /// collider hits it at distance 0; otherwise it hits where it leaves.
+    /// Returns the first hit of a ray within `max_distance`. If `solid` is `true`, a ray that
+    /// starts inside a collider hits it at distance 0; otherwise the ray hits the surface where it
+    /// leaves the collider.
     #[must_use]
     pub fn cast_ray(
         &self,
@@ -172,8 +173,9 @@ impl SpatialQuery<'_, '_> {
         nearest
     }
 
-    /// Returns the nearest point of all colliders; `None` if there is no collider. If `solid`, a
-    /// point inside a collider is its own nearest point.
+    /// Returns the nearest point of all colliders that the filter accepts; `None` if there is no
+    /// such collider. If `solid` is `true`, a point inside a collider is its own nearest point;
+    /// otherwise the nearest point lies on the surface.
     #[must_use]
     pub fn project_point(
         &self,
@@ -235,7 +237,8 @@ impl SpatialQuery<'_, '_> {
         found
     }
 
-    /// Returns the collider of a leaf of a tree; `None` if the filter rejects it.
+    /// Returns the collider of a leaf of a tree; `None` if the filter rejects it, or if the entity
+    /// no longer has a collider.
     fn placed(
         &self,
         tree: &ColliderTree,

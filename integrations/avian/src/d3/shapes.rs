@@ -35,13 +35,13 @@ impl Collider {
         Self::new(bevy_impinge::d3::Collider::sphere(radius))
     }
 
-    /// Creates an ellipsoid centred at the origin, with its half lengths.
+    /// Creates an ellipsoid centred at the origin, with these half lengths along the axes.
     #[must_use]
     pub fn ellipsoid(half_axes: Vec3) -> Self {
         Self::new(bevy_impinge::d3::Collider::ellipsoid(half_axes))
     }
 
-    /// Creates a box centred at the origin, with its full lengths.
+    /// Creates a box centred at the origin, with these full lengths.
     #[must_use]
     pub fn cuboid(x_length: f32, y_length: f32, z_length: f32) -> Self {
         Self::new(bevy_impinge::d3::Collider::cuboid(x_length, y_length, z_length))
@@ -74,7 +74,7 @@ impl Collider {
     }
 
     /// Creates the convex hull of points; `None` if there are none, or if one is not finite. For
-    /// points in a plane it is a flat polygon.
+    /// points in a plane the result is a flat polygon.
     #[must_use]
     pub fn convex_hull(vertices: Vec<Vec3>) -> Option<Self> {
         convex_shape(&points::<3>(vertices)).ok().map(Self::from_handle)

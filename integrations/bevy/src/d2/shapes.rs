@@ -19,13 +19,14 @@ impl Collider {
         Self::ball(radius)
     }
 
-    /// Creates a rectangle centred at the origin, with its full lengths.
+    /// Creates a rectangle centred at the origin, with these full lengths.
     #[must_use]
     pub fn rectangle(x_length: f32, y_length: f32) -> Self {
         Self::made(Cuboid::try_new(Vector::new(x_length, y_length) / 2.0))
     }
 
-    /// Creates an ellipse centred at the origin, with its half lengths, as Bevy's `Ellipse`.
+    /// Creates an ellipse centred at the origin, with these half lengths along the axes, as Bevy's
+    /// `Ellipse`.
     #[must_use]
     pub fn ellipse(half_width: f32, half_height: f32) -> Self {
         Self::made(Ellipse::try_new(Vector::new(half_width, half_height)))

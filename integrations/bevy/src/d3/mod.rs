@@ -20,9 +20,9 @@ pub type CollisionStarted<W = DefaultWorld> = crate::CollisionStarted<3, W>;
 pub type CollisionEnded<W = DefaultWorld> = crate::CollisionEnded<3, W>;
 /// The entities that an entity touches; see [`crate::CollidingEntities`].
 pub type CollidingEntities<W = DefaultWorld> = crate::CollidingEntities<3, W>;
-/// The reason why an entity is not followed; see [`crate::ColliderProblem`].
+/// The reason why a collider is not in the world or is outdated; see [`crate::ColliderProblem`].
 pub type ColliderProblem<W = DefaultWorld> = crate::ColliderProblem<3, W>;
-/// An entity could not be followed; see [`crate::ColliderFailed`].
+/// A collider is not in the world or is outdated; see [`crate::ColliderFailed`].
 pub type ColliderFailed<W = DefaultWorld> = crate::ColliderFailed<3, W>;
 /// Two entities in contact; see [`crate::ContactPair`].
 pub type ContactPair = crate::ContactPair<3>;

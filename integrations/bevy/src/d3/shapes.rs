@@ -21,7 +21,7 @@ impl Collider {
         Self::ball(radius)
     }
 
-    /// Creates a box centred at the origin, with its full lengths.
+    /// Creates a box centred at the origin, with these full lengths.
     #[must_use]
     pub fn cuboid(x_length: f32, y_length: f32, z_length: f32) -> Self {
         Self::made(Cuboid::try_new(Vector::new(x_length, y_length, z_length) / 2.0))
@@ -40,7 +40,7 @@ impl Collider {
         Self::made(Cone::try_new(height / 2.0, radius))
     }
 
-    /// Creates an ellipsoid centred at the origin, with its half lengths.
+    /// Creates an ellipsoid centred at the origin, with these half lengths along the axes.
     #[must_use]
     pub fn ellipsoid(half_axes: Vec3) -> Self {
         Self::made(Ellipsoid::try_new(Vector::new(half_axes.x, half_axes.y, half_axes.z)))

@@ -1,4 +1,4 @@
-//! A robot arm that checks for collisions with itself and with obstacles.
+//! A robot arm that collides with itself and with obstacles, or avoids these collisions.
 
 use impinge::math::Real;
 use impinge::world::{BroadPhasePairFilter, CollisionObject};
@@ -6,7 +6,7 @@ use impinge_record::Registry;
 
 use crate::prelude::*;
 
-/// The number of links. Each link is a capsule whose joints are at distance 1.
+/// The number of links. Each link is a capsule with a joint at either end of its axis, of length 1.
 const LINKS: usize = 5;
 const RADIUS: f32 = 0.15;
 
@@ -19,7 +19,7 @@ pub(crate) struct Arm<const D: usize> {
     phase: f32,
     /// `true` while the phase decreases.
     is_back: bool,
-    /// The labels of the pairs that touch.
+    /// The labels of both objects of each pair that has contacts and contains a link.
     hits: Vec<[String; 2]>,
 }
 
@@ -50,7 +50,7 @@ where
 
 /// Returns the poses of the links at a phase. Each joint oscillates with its own frequency.
 fn poses<const D: usize>(phase: f32) -> [Pose<f32, D>; LINKS] {
-    // Each joint is in the frame of the joint before it.
+    // Each joint rotates in the frame of the previous joint.
     let mut joint = Pose::<f32, D>::identity();
     std::array::from_fn(|n| {
         let angle = 1.4 * Real::sine_cosine(phase * (1.0 + 0.37 * number(n)) + number(n)).0;
@@ -66,15 +66,15 @@ impl<const D: usize> Arm<D>
 where
     f32: Dimension<D>,
 {
-    /// Returns `true` if the arm would collide at a phase: with an obstacle, by a query of the
-    /// world, or with itself.
+    /// Returns `true` if the arm would collide at a phase, with an obstacle or with itself.
+    /// Obstacles are found by a query of the world, without moving the arm.
     fn would_hit(&self, world: &World<D>, phase: f32) -> bool {
         let (capsule, poses) = (Capsule::new(0.5, RADIUS), poses::<D>(phase));
         let is_obstacle = |object: &CollisionObject<f32, D, String>| link(object.data()).is_none();
         let obstacles = QueryFilter::new().predicate(&is_obstacle);
         let hits_obstacle =
             poses.iter().any(|pose| world.overlaps_any(&f32::isometry(pose), &capsule, &obstacles));
-        // Links with a common joint are excluded, as in the filter of the world.
+        // Links with a common joint are excluded, as by the pair filter of the world.
         let touch = |a: usize, b: usize| {
             distance(&isometry(&poses[a]), &capsule, &isometry(&poses[b]), &capsule) <= 0.0
         };
@@ -115,8 +115,8 @@ where
         Ok(())
     }
 
-    /// Tests whether the next pose collides before the arm moves. The contacts of the update
-    /// confirm the result.
+    /// Moves the arm to its next pose. With "it turns back", the arm reverses its motion instead if
+    /// it would collide there.
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
         let pace = panel.value("speed") * TIME_STEP;
         let next = self.phase + if self.is_back { -pace } else { pace };
@@ -130,8 +130,8 @@ where
         Ok(world.set_positions(&moved)?)
     }
 
-    /// Collects all contacts except those between obstacles. A pair may have several manifolds, but
-    /// is listed once.
+    /// Collects the pairs that have contacts, except pairs of two obstacles. A pair may have
+    /// several manifolds, which are consecutive, but is listed once.
     fn updated(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         let hits = world.contact_views().map(|(one, two, _)| [one, two].map(|o| o.data().clone()));
         self.hits =

@@ -8,7 +8,8 @@ const RADIUS: f32 = 0.05;
 const HALF: f32 = 0.01;
 /// Half the width of the room.
 const ROOM: f32 = 5.0;
-/// The maximum number of reflections of a bullet in a step. After these it waits for the next step.
+/// The maximum number of reflections of a bullet in a step. After them the bullet stops until the
+/// next step.
 const MAX_BOUNCES: usize = 64;
 
 /// A bullet, with the path of its last step.
@@ -33,8 +34,8 @@ impl<const D: usize> Bullet<D>
 where
     f32: Dimension<D>,
 {
-    /// Moves the bullet along a path of length `length` with a reflection at each hit. Returns the
-    /// number of reflections.
+    /// Computes the path of a step, of length `length` with a reflection at each hit, and the
+    /// direction at its end. Returns the number of reflections.
     fn fly(&mut self, world: &World<D>, mut length: f32) -> usize {
         let mut pose = pose_of(world, self.object);
         let (ball, walls) = (Ball::new(RADIUS), wall_groups());
@@ -60,8 +61,8 @@ where
     }
 }
 
-/// Returns groups that interact only with walls. Walls are in group 1 and bullets in group 2, so
-/// that bullets do not collide with each other.
+/// Returns groups that interact only with walls, which are in group 1. Bullets are in group 2, so
+/// they do not collide with each other.
 fn wall_groups() -> CollisionGroups {
     let mut groups = CollisionGroups::new();
     groups.set_whitelist(&[1]);
@@ -72,8 +73,8 @@ impl<const D: usize> Bullets<D>
 where
     f32: Dimension<D>,
 {
-    /// Adds two walls for each axis, and a wall in the middle that is perpendicular to the first
-    /// axis.
+    /// Adds two outer walls for each axis, and a wall in the middle that is perpendicular to the
+    /// first axis.
     fn add_walls(world: &mut World<D>) -> Result<(), SampleError> {
         let mut groups = CollisionGroups::new();
         groups.set_membership(&[1]);

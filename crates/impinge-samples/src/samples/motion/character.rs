@@ -2,7 +2,7 @@
 
 use crate::prelude::*;
 
-/// The distance that is kept from obstacles, so that no cast starts in contact.
+/// The distance that the character keeps from obstacles, so that no cast starts in contact.
 const SKIN: f32 = 0.02;
 /// The radius of the capsule.
 const RADIUS: f32 = 0.3;
@@ -28,8 +28,9 @@ impl<const D: usize> Character<D>
 where
     f32: Dimension<D>,
 {
-    /// Moves the capsule until its distance from an obstacle is [`SKIN`], and then along that
-    /// obstacle. It makes at most four casts.
+    /// Returns the pose of the capsule after a motion from `pose`. The capsule moves until its
+    /// distance from an obstacle is [`SKIN`], and then along that obstacle. Makes at most four
+    /// casts; the motion that remains after them is dropped.
     fn slide(
         &mut self,
         world: &World<D>,
@@ -104,7 +105,7 @@ where
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
         let Some(body) = self.body else { return Ok(()) };
         self.heading += panel.value("turn") * TIME_STEP;
-        // The motion of a step if no obstacle is in the way.
+        // The motion of a step along x, if no obstacle is in the way; the heading rotates it.
         let ahead = vector([panel.value("speed") * TIME_STEP, 0.0, 0.0]);
         let pose = pose_of(world, body);
         let pose = self.slide(world, pose, turn::<D>([0, 1], self.heading) * ahead);
@@ -123,8 +124,8 @@ where
         }
     }
 
-    /// Returns the distance to the nearest object, and the number of hits. A predicate excludes the
-    /// character itself.
+    /// Returns the distance to the nearest object within 100, and the number of hits. A predicate
+    /// excludes the character itself.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let pose = self.body.map(|body| f32::isometry(&pose_of(world, body)));
         let capsule = Capsule::new(0.3, RADIUS);

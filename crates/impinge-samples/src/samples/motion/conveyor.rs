@@ -16,17 +16,17 @@ pub(crate) struct Conveyor {
     goods: Vec<CollisionObjectHandle>,
     /// The sensors in the order of [`KINDS`].
     sensors: Vec<CollisionObjectHandle>,
-    /// For each kind, the number of times that a piece has entered its sensor.
+    /// For each kind, the number of times that a piece has entered the sensor for this kind.
     entered: [usize; KINDS.len()],
-    /// The number of pieces that are in a sensor now.
+    /// The number of pairs of a sensor and a piece in it, as of the last update.
     within: usize,
     /// The distance that the belt has moved.
     way: f32,
 }
 
 impl Conveyor {
-    /// Returns the position of a piece, which moves to the start of the belt when it passes the
-    /// end.
+    /// Returns the position of the piece with this index. A piece that passes the end of the belt
+    /// moves to the start.
     fn position<const D: usize>(&self, index: usize) -> Isometry<D>
     where
         f32: Dimension<D>,
@@ -59,7 +59,7 @@ impl Conveyor {
         for (kind, name) in KINDS.iter().enumerate() {
             let mut groups = CollisionGroups::new();
             groups.set_membership(&[KINDS.len()]);
-            // The whitelist of the sensor alone excludes pieces of other kinds.
+            // The whitelist of the sensor excludes pieces of other kinds. Pieces exclude nothing.
             groups.set_whitelist(&[kind]);
             let gate = ShapeHandle::new(Cuboid::new(vector([0.1, 1.0, 1.0])));
             let (position, query) =
@@ -99,7 +99,8 @@ where
         Ok(())
     }
 
-    /// Counts each entry into a sensor once, since events are changes since the last update.
+    /// Counts the entries into sensors. Each entry has one event, in the update in which the pair
+    /// begins to intersect.
     fn updated(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         for event in world.proximity_events() {
             if let Some(sensor) = self.sensor(event)

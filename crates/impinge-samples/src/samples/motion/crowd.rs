@@ -2,8 +2,9 @@
 
 use crate::prelude::*;
 
-/// The distance up to which a person avoids other people. At most [`NEIGHBORS`] people are avoided.
+/// The distance up to which a person avoids other people.
 const SIGHT: f32 = 1.2;
+/// The maximum number of people whom a person avoids, the nearest first.
 const NEIGHBORS: usize = 4;
 
 /// A person who walks to the opposite point of a circle and back.
@@ -39,8 +40,8 @@ where
             let away = unit_or(&(here - place), none);
             // A component to the side lets two people who meet head-on pass each other.
             let side = turn::<D>([0, 1], TAU / 4.0) * away;
-            // The weight grows from 0 at distance `SIGHT` to 1 in contact. It is squared below, so
-            // that the influence of near people dominates.
+            // The weight grows from 0 at distance `SIGHT` to 1 in contact. Its square makes the
+            // influence of near people dominate.
             let weight = 1.0 - near.distance / SIGHT;
             velocity + (away * 1.5 + side * 0.5) * (weight * weight)
         });
@@ -95,7 +96,7 @@ where
         for person in &mut self.people {
             let mut pose = pose_of(world, person.object);
             pose.translation += person.velocity(world) * length;
-            // A person near its goal turns back.
+            // A person who is near the goal turns back.
             if (person.goal - pose.translation).norm() < 0.5 {
                 person.goal = -person.goal;
             }

@@ -2,9 +2,9 @@
 
 use crate::prelude::*;
 
-/// The distance of an open finger from the middle. `SPEED` is the distance that a finger moves in a
-/// step.
+/// The distance of an open finger's centre from the middle.
 const OPEN: f32 = 2.0;
+/// The distance that a finger moves in a step.
 const SPEED: f32 = 0.02;
 /// The number of steps of a cycle, in which the fingers close, hold and open.
 const STEPS: usize = 320;
@@ -30,8 +30,8 @@ impl<const D: usize> Gripper<D>
 where
     f32: Dimension<D>,
 {
-    /// Moves a finger inwards by a step, or less if it would penetrate the object. Returns its new
-    /// pose.
+    /// Returns the pose of a finger after a step inwards, which is shorter if the finger would
+    /// penetrate the object.
     fn close(&mut self, world: &World<D>, mut pose: Pose<f32, D>) -> Pose<f32, D> {
         let inward = vector([-SPEED.copysign(pose.translation[0]), 0.0, 0.0]);
         // The casts ignore both fingers, so that only the object can stop a finger.
@@ -90,8 +90,8 @@ where
         self.rebuild(world, panel)
     }
 
-    /// Closes the fingers and holds in the first two thirds of the cycle, and opens them in the
-    /// rest.
+    /// Closes the fingers and holds the object in the first two thirds of a cycle, and opens the
+    /// fingers in the last third.
     fn advance(&mut self, world: &mut World<D>, _: &mut Panel) -> Result<(), SampleError> {
         self.step += 1;
         self.hits.clear();
@@ -117,8 +117,8 @@ where
         }
     }
 
-    /// Returns the distance between the inner sides of the fingers, which is 0.3 less than that of
-    /// their centres, and the number of fingers that hit the object.
+    /// Returns the distance between the inner sides of the fingers, and the number of fingers that
+    /// hit the object in the last step. The distance of the centres is larger by 0.3.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let xs = self.fingers.iter().map(|finger| pose_of(world, *finger).translation[0].abs());
         vec![

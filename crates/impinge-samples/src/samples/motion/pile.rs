@@ -21,8 +21,8 @@ impl<const D: usize> Pile<D>
 where
     f32: Dimension<D>,
 {
-    /// Adds a solid at `height` above the floor. Its horizontal position, kind and size depend on
-    /// its index.
+    /// Adds a solid at `height` above the floor. Its horizontal position, angle, kind and size
+    /// depend on its index.
     fn drop_one(&mut self, world: &mut World<D>, height: f32) -> Result<(), SampleError> {
         let n = self.dropped;
         self.dropped += 1;
@@ -70,7 +70,7 @@ where
         Ok(())
     }
 
-    /// Rebuilds the pile. It is called for the count only, since the button is applied in
+    /// Rebuilds the pile with the changed number of solids. The button is not applied here but in
     /// `advance`.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         self.rebuild(world, panel)
@@ -83,8 +83,8 @@ where
         self.bodies.advance(world)
     }
 
-    /// Returns counts and extremes. At rest the deepest contact is about as deep as the slop of the
-    /// solver.
+    /// Returns the number of manifolds, the depth of the deepest contact and the largest speed. At
+    /// rest, the deepest contact is about as deep as the solver tolerates.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let deepest = world.contact_views().map(|(_, _, manifold)| manifold.deepest_contact());
         let depth = deepest.map(|point| point.contact.depth).reduce(max);

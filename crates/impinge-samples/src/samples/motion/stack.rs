@@ -3,7 +3,7 @@
 use crate::bodies::Bodies;
 use crate::prelude::*;
 
-/// A stack of boxes of size 1, with gaps of 0.005 between them at the start.
+/// A stack of boxes of size 1. At the start there is a gap of 0.005 below each box.
 #[derive(Debug, Default)]
 pub(crate) struct Stack<const D: usize> {
     /// The bodies of the boxes.
@@ -58,8 +58,8 @@ where
         self.bodies.advance(world)
     }
 
-    /// Returns the number of contact points, read from the manifolds without a copy, and the
-    /// largest speed.
+    /// Returns the number of contact points and the largest speed of the boxes. The points are
+    /// counted without copying the manifolds.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let points = world.contact_views().map(|(_, _, manifold)| manifold.len()).sum::<usize>();
         vec![

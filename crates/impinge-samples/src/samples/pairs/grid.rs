@@ -1,4 +1,4 @@
-//! A contact of every pair of kinds of solids.
+//! Contacts of every pair of kinds of solids.
 
 use crate::prelude::*;
 
@@ -16,9 +16,10 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    /// Returns the position of the second solid of a pair. It is moved from the upper right towards
-    /// the first solid until they touch, and then further by `depth`. Parallel segments cannot
-    /// overlap, and stay where they touch. `None` if the cast does not hit.
+    /// Returns the position of the second solid of a pair. The solid is moved from the upper right
+    /// until it touches the first solid, and then by `depth` against the normal. If the solids do
+    /// not overlap after that, as parallel segments, it stays where they touch. `None` if the cast
+    /// does not hit.
     fn touching<const D: usize>(
         &self,
         world: &World<D>,
@@ -48,7 +49,7 @@ impl Grid {
         Some(f32::isometry(if has_depth { &deeper } else { &pose2 }))
     }
 
-    /// Moves all second solids in one call.
+    /// Moves the second solids of all pairs in one call.
     fn place<const D: usize>(&self, world: &mut World<D>, depth: f32) -> Result<(), SampleError>
     where
         f32: Dimension<D>,
@@ -105,7 +106,8 @@ where
         self.place(world, panel.value("depth"))
     }
 
-    /// Returns counts of pairs and points. A pair is looked up by its handles in either order.
+    /// Returns the numbers of pairs and of pairs with contacts, and the largest number of points of
+    /// a manifold. `contact_pair` takes the handles of a pair in either order.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let touching = self.pairs.iter().filter(|[a, b]| {
             world.contact_pair(*a, *b).is_some_and(|pair| pair.num_contacts() > 0)

@@ -1,4 +1,4 @@
-//! Shapes of user types: a convex one by its support map, and a composite.
+//! Shapes of user types: a convex shape with a support map, and a composite.
 
 use impinge::bounding_volume::Aabb;
 use impinge::math::Real;
@@ -13,7 +13,7 @@ use crate::prelude::*;
 struct Lens {
     /// The radius of both balls.
     radius: f32,
-    /// The distance of their centres from the centre of the lens.
+    /// The distance of the centres of the balls from the centre of the lens.
     offset: f32,
 }
 
@@ -28,7 +28,8 @@ impl<const D: usize> SupportMap<f32, D> for Lens
 where
     f32: Space<D>,
 {
-    /// Returns the support point of a direction, on one of the two curved sides or on the rim.
+    /// Returns the support point for a direction, on one of the two curved sides or on the rim; the
+    /// centre of the lens for a direction of length zero.
     fn core_support(&self, direction: &Vector<f32, D>) -> Point<f32, D> {
         let Some((toward, _)) = unit(direction) else { return Point::origin() };
         // The upper side belongs to the lower ball, and the lower side to the upper ball.
@@ -58,7 +59,7 @@ where
     }
 }
 
-/// A row of balls of equal radius.
+/// Balls of equal radius.
 #[derive(Debug)]
 struct Beads<const D: usize> {
     /// The shape of each bead.
@@ -95,8 +96,8 @@ where
         Part { pose, solid: PartSolid::Shape(&self.bead) }
     }
 
-    /// Returns the search for parts, here by the tree. A composite may also implement its own
-    /// search.
+    /// Returns the tree, by which queries find the parts. A composite may also implement a search
+    /// of its own.
     fn search(&self) -> &dyn PartSearch<f32, D> {
         &self.tree
     }
@@ -115,7 +116,7 @@ where
     }
 }
 
-/// A lens that rolls over a row of beads.
+/// A lens that rolls over a ring of beads.
 #[derive(Debug)]
 pub(crate) struct OwnShapes<const D: usize>
 where
@@ -188,8 +189,8 @@ where
         Ok(world.set_position(lens, position)?)
     }
 
-    /// Returns the indices of the beads that touch. A contact of a composite contains the index of
-    /// its part.
+    /// Returns the index of the bead for each contact. A contact of a composite contains the index
+    /// of the part that it belongs to.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let &[beads, _] = self.objects.as_slice() else { return Vec::new() };
         let touched: Vec<_> =

@@ -1,11 +1,11 @@
-//! Two shapes of any kind, and the results of all queries about two shapes.
+//! Two shapes of any kind, and the results of the library's queries on two shapes.
 
 use impinge::query::{closest_points, proximity};
 
 use crate::prelude::*;
 
-/// The limit of all queries: the prediction of contacts, the largest distance of closest points,
-/// and the maximum time of the cast.
+/// The limit of three queries: the prediction of the contact, the largest distance of the closest
+/// points, and the maximum time of the cast.
 const MARGIN: f32 = 10.0;
 
 /// Two shapes. The second shape moves past the first until the user drags it.
@@ -39,8 +39,8 @@ impl Playground {
         Some([placed(first)?, placed(second)?])
     }
 
-    /// Returns the position of the second shape on a line above the first shape, low enough to
-    /// touch it.
+    /// Returns the position of the second shape on its path, a line above the centre of the first
+    /// shape at which the shapes touch with the initial controls.
     fn path<const D: usize>(&self, panel: &Panel) -> Isometry<D>
     where
         f32: Dimension<D>,
@@ -72,8 +72,8 @@ where
     impact(&still, &moving, &ImpactOptions::new().with_max_time(MARGIN))
 }
 
-/// Returns the contact of both shapes. Separate shapes within [`MARGIN`] have a contact with a
-/// negative depth.
+/// Returns the contact of both shapes, whose depth is negative if the shapes are apart; `None` if
+/// their distance exceeds [`MARGIN`].
 fn nearest_contact<const D: usize>([first, second]: &[Placed<D>; 2]) -> Option<Contact<f32, D>>
 where
     f32: Dimension<D>,
@@ -98,8 +98,7 @@ where
             .number("prediction", "Contacts up to", 0.1, [0.0, 1.0, 0.01])
     }
 
-    /// Adds both shapes to the world, which computes their manifold. All other queries need no
-    /// world.
+    /// Adds both shapes to the world, which computes their manifolds. The queries need no world.
     fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         *self = Self::default();
         let (groups, query) =
@@ -116,8 +115,7 @@ where
     /// Replaces the shapes and query types of the objects, whose handles stay valid.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let &[first, second] = self.objects.as_slice() else { return Ok(()) };
-        // Both shapes are set whichever control changed. A shape of equal size gives equal
-        // contacts.
+        // Both shapes are set for a change of any control. An equal shape has equal contacts.
         world.set_shape(first, solid(panel.chosen("first"), panel.value("size")))?;
         world.set_shape(second, solid(panel.chosen("second"), panel.value("size2")))?;
         let pose = Pose {
@@ -140,7 +138,7 @@ where
         Ok(())
     }
 
-    /// Moves the object. The second shape then stays where the user leaves it.
+    /// Moves the dragged object. From then on, the second shape no longer moves by itself.
     fn dragged(
         &mut self,
         world: &mut World<D>,
@@ -170,7 +168,7 @@ where
         canvas.drawing.cast(&sweep, time_of_impact(&pair, panel).as_ref(), canvas.renderer);
     }
 
-    /// Returns the results of all queries about the two shapes, and the number of contact points in
+    /// Returns the results of the queries on the two shapes, and the number of contact points in
     /// the world.
     fn readouts(&self, world: &World<D>, panel: &Panel) -> Vec<Readout> {
         let Some(pair) = self.placed(world) else { return Vec::new() };
@@ -192,8 +190,8 @@ where
             readouts.push(Readout::new("Point 1", format!("{:.3?}", points[0].as_slice())));
             readouts.push(Readout::new("Point 2", format!("{:.3?}", points[1].as_slice())));
         }
-        // The manifold of the world has several points for two flat sides, and one point for a
-        // round side.
+        // A manifold of the world may have several points, for instance for two parallel sides. The
+        // query above returns a single contact.
         let contacts = world.contact_views().map(|(_, _, manifold)| manifold.len()).sum::<usize>();
         readouts.push(Readout::new("Contact points", contacts));
         let time = time_of_impact(&pair, panel).map(|hit| hit.toi);

@@ -4,13 +4,13 @@ use impinge::query::{RigidMotion, nonlinear_time_of_impact};
 
 use crate::prelude::*;
 
-/// The maximum time of the impact. `PAUSE` is the time after the impact before the motion starts
-/// again, both in seconds.
+/// The maximum time of the impact, in seconds.
 const SECONDS: f32 = 4.0;
+/// The time after the impact before the motion starts again, in seconds.
 const PAUSE: f32 = 1.0;
 
 /// Two rotating bars that fly towards each other. Their first contact is computed at the start, and
-/// they stop there.
+/// they stop at its time.
 #[derive(Debug, Default)]
 pub(crate) struct Spinning<const D: usize> {
     /// The left bar, then the right one.
@@ -94,7 +94,7 @@ where
         Ok(())
     }
 
-    /// Draws the point and the normal of the impact, already before it happens.
+    /// Draws the point and the normal of the impact, even before it happens.
     fn draw(&self, _: &World<D>, _: &Panel, canvas: &mut Canvas<'_, D>) {
         if let Some(hit) = &self.hit {
             canvas.point(&hit.world1, 0.15, RED);
@@ -102,7 +102,8 @@ where
         }
     }
 
-    /// Returns times and the distance, which falls to zero at the time of impact and not before.
+    /// Returns the time of impact, the current time and the distance, which is zero at the time of
+    /// impact and positive before.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let &[left, right] = self.bars.as_slice() else { return Vec::new() };
         let poses = [left, right].map(|object| isometry(&pose_of(world, object)));

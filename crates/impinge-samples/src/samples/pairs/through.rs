@@ -17,7 +17,8 @@ pub(crate) struct Through {
 }
 
 impl Through {
-    /// Returns the contact of the two solids; at distances up to 100 its depth is negative.
+    /// Returns the contact of the two solids, whose depth is negative if the solids are apart;
+    /// `None` if their distance exceeds 100.
     fn contact<const D: usize>(&self, world: &World<D>) -> Option<Contact<f32, D>>
     where
         f32: Dimension<D>,
@@ -77,7 +78,7 @@ where
         Ok(world.set_position(second, at([self.x(), panel.value("height"), 0.0]))?)
     }
 
-    /// Adds the current depth to the graph.
+    /// Adds the current depth to the graph, unless the graph already has all steps of the path.
     fn updated(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         self.depths.extend(self.contact(world).map(|contact| contact.depth));
         self.depths.truncate(STEPS);

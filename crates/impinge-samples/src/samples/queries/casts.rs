@@ -20,7 +20,8 @@ impl<const D: usize> Casts<D>
 where
     f32: Dimension<D>,
 {
-    /// Returns the cast of the rotated solid from the origin. Its velocity is the whole path.
+    /// Returns the cast of the rotated solid from the origin. The velocity is the vector from the
+    /// start to the end of the path.
     fn question(&self, panel: &Panel) -> CastQuestion<f32, D> {
         let velocity = turn::<D>([0, 1], self.angle) * vector::<D>([LENGTH, 0.0, 0.0]);
         let shape = solid(panel.chosen("solid"), panel.value("size"));
@@ -90,7 +91,7 @@ where
         let CastQuestion { start, velocity, .. } = self.question(panel);
         let (shape, position) = (&start.shape, start.position);
         let sweep = SweptShape { shape, position, velocity, max_time: 1.0 };
-        // Each impact is drawn together with the whole path. Without an impact the path is drawn
+        // The drawing of an impact includes the whole path. Without impacts, the path is drawn
         // alone.
         if self.hits.is_empty() {
             canvas.drawing.cast(&sweep, None, canvas.renderer);

@@ -10,7 +10,8 @@ const PLACES: usize = 120;
 struct Place<const D: usize> {
     /// The point.
     at: Point<f32, D>,
-    /// The distance of the body at this point from the obstacles; zero if it would touch one.
+    /// The distance between the body at this point and the nearest obstacle; zero if they would
+    /// touch.
     distance: f32,
 }
 
@@ -31,7 +32,7 @@ fn path<const D: usize>(place: usize) -> Point<f32, D> {
     point([12.0 * share - 6.0, 1.5 * sine, 0.0])
 }
 
-/// Returns a colour from red at distance 0 to green at distances of `wanted` or more.
+/// Returns the colour of a distance, from red at 0 to green from `wanted` on.
 fn color(distance: f32, wanted: f32) -> Color {
     let share = min(distance / wanted, 1.0);
     let shade = |from: f32, to: f32| {
@@ -76,7 +77,8 @@ where
         Ok(world.set_shape(body, ShapeHandle::new(Ball::new(panel.value("radius"))))?)
     }
 
-    /// Moves the body to the next point of the path every three steps.
+    /// Moves the body to the next point of the path every three steps, and from the end to the
+    /// start.
     fn advance(&mut self, world: &mut World<D>, _: &mut Panel) -> Result<(), SampleError> {
         self.step += 1;
         let Some(body) = self.body else { return Ok(()) };
@@ -84,7 +86,7 @@ where
         Ok(world.set_position(body, f32::isometry(&Pose::from_translation(place.coords)))?)
     }
 
-    /// Computes the distance of the body from all other objects, for each point of the path.
+    /// Computes the distance of the body from the nearest other object, for each point of the path.
     fn updated(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         let found = self.body.and_then(|body| world.collision_object(body));
         let Some(body) = found else { return Ok(()) };

@@ -15,7 +15,7 @@ struct Near<const D: usize> {
     distance: f32,
 }
 
-/// A ball in a field of asteroids, which the user can drag.
+/// A ball, which the user can drag, in a field of asteroids.
 #[derive(Debug, Default)]
 pub(crate) struct Nearest<const D: usize> {
     /// The scene with the asteroids.

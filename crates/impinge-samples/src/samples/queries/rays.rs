@@ -39,8 +39,8 @@ impl<const D: usize> Rays<D>
 where
     f32: Dimension<D>,
 {
-    /// Casts a ray of length `reach`. The query goes through the recorder, so that the recording
-    /// contains the query and its result.
+    /// Casts a ray of length `reach` at the angle `direction`, in radians from x to y. The recorder
+    /// runs the query, so that the recording contains the query and its result.
     fn shoot(
         &self,
         world: &mut World<D>,

@@ -24,8 +24,8 @@ where
             .flag("loosened", "Loosened boxes", true)
     }
 
-    /// Returns a margin that is large enough to be visible. The loosened box of an object does not
-    /// change while the object moves less than the margin.
+    /// Returns a margin that is large enough to be visible. The loosened box (the fat AABB) of an
+    /// object stays while it contains the object.
     fn margin(&self) -> f32 {
         0.15
     }
@@ -47,7 +47,7 @@ where
         self.play.advance(world)
     }
 
-    /// Draws the boxes of objects and of tree nodes.
+    /// Draws the loosened boxes of the objects and the boxes of the tree nodes, as the flags say.
     fn draw(&self, world: &World<D>, panel: &Panel, canvas: &mut Canvas<'_, D>) {
         let DebugOptions { tree_node, loosened_box, .. } = DebugOptions::all();
         let options = DebugOptions {
@@ -59,7 +59,7 @@ where
     }
 
     /// Returns the number of all pairs of objects, and the number of pairs that the broad phase
-    /// keeps.
+    /// passes to the narrow phase.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let all = world.len() * world.len().saturating_sub(1) / 2;
         vec![

@@ -7,7 +7,7 @@ use impinge_scenes::sparse_drift;
 use crate::prelude::*;
 use crate::scene::Play;
 
-/// The number of teams. The team of an object depends on its index.
+/// The number of teams. The team of an object is its index modulo this number.
 const TEAMS: usize = 3;
 
 /// Drifting boxes, each a member of the group of its team.
@@ -39,7 +39,7 @@ where
             }
             world.set_collision_groups(*object, groups)?;
         }
-        // A filter is code: the recording contains its name, and the registry the filter.
+        // A filter is code. So the recording contains only its name; the registry has the filter.
         if panel.is_set("filter") {
             world.register_broad_phase_pair_filter("same first digit")?;
         } else {
@@ -90,13 +90,14 @@ where
         Registry::new().with_filter("same first digit", SameFirstDigit)
     }
 
-    /// Adds the boxes, then sets their groups. In the original scene all pairs may touch.
+    /// Adds the boxes of the scene, in which all pairs may touch, then sets their groups.
     fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         self.play = Play::start(sparse_drift(90), world)?;
         self.assign(world, panel)
     }
 
-    /// Sets the groups again. They can change at any time; pairs start and stop at the next update.
+    /// Sets the groups again. Groups can change at any time; contacts begin and end at the next
+    /// update.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         self.assign(world, panel)
     }
@@ -105,8 +106,8 @@ where
         self.play.advance(world)
     }
 
-    /// Returns the numbers of contacts within and between teams. Teams are taken from the labels,
-    /// not from the groups, so that the numbers verify the rule.
+    /// Returns the numbers of contacts within teams and between teams. The teams are taken from the
+    /// labels, not from the groups, so that the numbers verify the rule.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         // Each manifold counts as one contact.
         let is_within: Vec<_> = world

@@ -2,7 +2,7 @@
 
 use crate::prelude::*;
 
-/// A ball that rises through a hill and descends onto it.
+/// A hill, and a ball that moves up through the hill and down again.
 #[derive(Debug, Default)]
 pub(crate) struct OneSided {
     /// The objects of the hill and the ball.
@@ -63,8 +63,8 @@ where
         Ok(world.set_position(ball, self.position())?)
     }
 
-    /// Returns the depth and the normal of the contact. The normal points from the hill to the
-    /// ball, since the hill was added first.
+    /// Returns the depth and the normal of the deepest contact of the first manifold. The normal
+    /// points from the hill to the ball, since the hill was added first.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let deepest = world.contact_views().map(|(_, _, manifold)| manifold.deepest_contact());
         let deepest = deepest.map(|point| point.contact).next();

@@ -2,7 +2,7 @@
 
 use crate::prelude::*;
 
-/// The number of solids in a row.
+/// The number of solids, which are in a row.
 const COUNT: usize = 6;
 
 /// Solids that move up and down on a slab. All lengths are multiplied by a power of two, so that
@@ -11,14 +11,14 @@ const COUNT: usize = 6;
 pub(crate) struct Scaling {
     /// The objects of the solids on the slab.
     solids: Vec<CollisionObjectHandle>,
-    /// The number of steps of the motion.
+    /// The number of steps since the start.
     step: usize,
 }
 
 /// Returns the factor of all lengths, a power of two.
 fn scale(panel: &Panel) -> f32 {
     let exponent = panel.value("exponent").floor();
-    // Products with a power of two are exact, so that all lengths have equal mantissas at every
+    // Products with a power of two are exact, so that each length has the same mantissa at every
     // size.
     let factor = if exponent < 0.0 { 0.5 } else { 2.0 };
     (0..).take_while(|n| number(*n) < exponent.abs()).fold(1.0, |scale, _| scale * factor)
@@ -93,8 +93,8 @@ where
         Ok(())
     }
 
-    /// Returns the deepest contact, also in units of the size. At the origin that value is exactly
-    /// equal at all sizes.
+    /// Returns the number of contact points, the size, the largest depth, and this depth divided by
+    /// the size. If the scene is at the origin, the quotient is exactly equal at all sizes.
     fn readouts(&self, world: &World<D>, panel: &Panel) -> Vec<Readout> {
         let points = world.contact_views().map(|(_, _, manifold)| manifold.len()).sum::<usize>();
         let (depth, scale) = (Self::depth(world).unwrap_or(0.0), scale(panel));

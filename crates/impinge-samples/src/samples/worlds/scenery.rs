@@ -1,4 +1,4 @@
-//! The scenes of `impinge-scenes`, such as rain, asteroids, a crowd or thousands of boxes.
+//! Scenes of `impinge-scenes`, such as rain, asteroids, terrain or thousands of boxes.
 
 use impinge::narrow_phase::ContactEvent;
 use impinge_scenes::Scene;
@@ -75,8 +75,8 @@ where
         Ok(())
     }
 
-    /// Returns the numbers of pairs. A pair exists while the loosened boxes overlap, with contacts
-    /// or without.
+    /// Returns the numbers of pairs, and of pairs that began or stopped touching. A pair exists
+    /// while the fat AABBs overlap, with contacts or without.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         vec![
             Readout::new("Pairs with contacts kept", world.contact_pairs().count()),

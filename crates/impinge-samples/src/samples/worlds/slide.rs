@@ -2,7 +2,7 @@
 
 use crate::prelude::*;
 
-/// The number of tilted normals that are drawn.
+/// The maximum number of tilted normals that are drawn; older normals are dropped.
 const SHOWN: usize = 100;
 
 /// A box that moves back and forth over a floor with a small penetration, like a body under
@@ -21,8 +21,8 @@ pub(crate) struct Slide<const D: usize> {
     bumps: Vec<[Point<f32, D>; 2]>,
 }
 
-/// Returns the flat floor. The control `contacts` selects whether each triangle has contacts of its
-/// own.
+/// Returns the flat floor. The control `contacts` selects whether contacts are computed for the
+/// whole surface, or for each triangle (in 2D each segment) by itself.
 fn floor<const D: usize>(panel: &Panel) -> ShapeHandle<f32, D>
 where
     f32: Dimension<D>,
@@ -110,7 +110,8 @@ where
         }
     }
 
-    /// Returns counts. Tilted normals occur only if each triangle has its own contacts.
+    /// Returns the numbers of contact points and of tilted normals. Normals are tilted only if
+    /// contacts are computed for each triangle by itself.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let points = world.contact_views().map(|(_, _, manifold)| manifold.len()).sum::<usize>();
         vec![

@@ -4,7 +4,8 @@ use impinge::math::Real;
 
 use crate::prelude::*;
 
-/// The period of the wave in steps. The shapes of a period are computed once.
+/// The period of the wave in steps. The shapes of a period are computed at the start, and again for
+/// another amplitude.
 const PERIOD: usize = 60;
 /// The number of cells of the surface along each axis.
 const CELLS: usize = 16;
@@ -41,8 +42,8 @@ where
         self.surfaces = (0..PERIOD).map(surface).collect();
     }
 
-    /// Returns the position at which a ball of radius 0.4 lands if it falls vertically. It is found
-    /// by a cast against the current surface.
+    /// Returns the position at which a ball of radius 0.4 lands if it falls vertically. A cast
+    /// against the current surface determines this position.
     fn fallen(&self, ball: usize) -> Isometry<D> {
         let above = [2.0 * number(ball) - 6.0, 10.0, scattered(ball, 0) * 8.0 - 4.0];
         let (shape, here) = (Ball::new(0.4), isometry(&Pose::identity()));
@@ -98,7 +99,8 @@ where
         Ok(())
     }
 
-    /// Returns the number of contacts, and the largest tilt of a normal: 0 on a horizontal surface.
+    /// Returns the number of manifolds, and the maximum of 1 − |y| over the normals, which is 0 on
+    /// a horizontal surface.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let deepest = world.contact_views().map(|(_, _, manifold)| manifold.deepest_contact());
         let steepest = deepest.map(|point| 1.0 - point.contact.normal[1].abs()).reduce(max);

@@ -5,8 +5,8 @@ use impinge::debug_render::{DebugDrawing, DebugRender, Drawn, Style};
 use impinge::{dim2, dim3};
 use impinge_view::{Camera, PngPicture, SvgPicture};
 
-/// Returns two pairs: a ball deep in a box, and a tilted box with one corner inside another box and
-/// one above it.
+/// Returns a world with two pairs: a ball deep in a box, and a tilted box on another box, with one
+/// lower corner inside the other box and the other lower corner above it.
 fn touching_pairs() -> dim2::world::CollisionWorld<f64, ()> {
     use dim2::prelude::*;
     let mut world = CollisionWorld::new(0.02);

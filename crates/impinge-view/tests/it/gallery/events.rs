@@ -5,7 +5,7 @@ use impinge::debug_render::{Color, DebugDrawing, DebugRender, Drawn, Style};
 use impinge::dim2::prelude::*;
 use impinge_view::SvgPicture;
 
-/// The world of the guide's program: a ball moves through a sensor to a wall.
+/// The world of the program in the guide: a ball moves through a sensor into a wall.
 struct Course {
     world: CollisionWorld<f64, Color>,
     ball: CollisionObjectHandle,
@@ -24,7 +24,7 @@ impl Course {
         Self { world, ball }
     }
 
-    /// Moves the ball, updates, and returns a text and a colour for each event.
+    /// Moves the ball to `x` and updates the world. Returns a text and a colour for each event.
     fn step(&mut self, x: f64) -> Vec<(String, Color)> {
         self.world.set_position(self.ball, Isometry::translation(x, 0.0));
         self.world.update();

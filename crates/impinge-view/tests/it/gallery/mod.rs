@@ -36,7 +36,8 @@ const INK: Color = Color::rgb(62, 70, 82);
 /// The width of the 2D pictures of the guide in pixels, about that of its text.
 const WIDTH: u32 = 720;
 
-/// Returns the drawing options of all pictures. Boxes, manifolds and proximities are off.
+/// Returns the drawing options from which most pictures start. Boxes, tree nodes, manifolds and
+/// proximities are off.
 fn options<N: Real>() -> DebugOptions<N> {
     let style = |color, size| Some(Style { color, size: N::lit(size) });
     let mut options = DebugOptions {
@@ -71,8 +72,8 @@ fn draw_grid<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns a pose in 2D with a rotation by `angle` radians. It uses the sine of the library, whose
-/// result is the same on every machine.
+/// Returns a pose in 2D with a rotation by `angle` radians. The library computes sine and cosine
+/// with the same bits on every machine.
 fn turned2(x: f64, y: f64, angle: f64) -> dim2::math::Isometry<f64> {
     let (sine, cosine) = angle.sine_cosine();
     let rotation = dim2::math::Rotation::new_unchecked(dim2::na::Complex::new(cosine, sine));
@@ -104,8 +105,8 @@ fn check_svg(name: &str, picture: &SvgPicture) {
     }
 }
 
-/// Returns the picture as the destination of a Markdown link in angle brackets. Pages of `rustdoc`
-/// cannot refer to separate files.
+/// Returns the picture as a data URI, which can be the destination of a Markdown link in angle
+/// brackets. Pages of `rustdoc` cannot refer to separate files.
 fn data_uri(svg: &str) -> String {
     let mut uri = "data:image/svg+xml,".to_owned();
     for character in svg.chars() {

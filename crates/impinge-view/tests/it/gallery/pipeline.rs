@@ -11,8 +11,8 @@ fn spread(number: u32, size: [f64; 2]) -> [f64; 2] {
     [(n * 0.569_840_3).fract() * size[0], (n * 0.754_877_7).fract() * size[1]]
 }
 
-/// Returns a world with shapes of four kinds. Those with even numbers have moved since the first
-/// update, within their fat AABBs.
+/// Returns a world with shapes of four kinds. The objects with even numbers have moved since the
+/// first update, within their fat AABBs.
 fn moving_world() -> CollisionWorld<f64, ()> {
     let mut world = CollisionWorld::new(0.14);
     let (everybody, contacts) = (CollisionGroups::new(), ContactQuery::default());

@@ -7,7 +7,7 @@ use impinge_view::SvgPicture;
 
 type NamedWorld = CollisionWorld<f64, &'static str>;
 
-/// Returns solids of five kinds in a row, at different heights.
+/// Returns a world with solids of five kinds in a row, at different heights.
 fn obstacles() -> NamedWorld {
     let mut world = NamedWorld::new(0.02);
     let (everybody, contacts) = (CollisionGroups::new(), ContactQuery::default());

@@ -104,7 +104,8 @@ fn convex3() -> Vec<(&'static str, ShapeHandle<f64, 3>)> {
     ]
 }
 
-/// Returns a torus of 20 by 10 cells around the second axis.
+/// Returns a torus around the y axis with 20 cells along the large circle and 10 along the small
+/// circle.
 fn torus() -> dim3::shape::TriMesh<f64> {
     use dim3::math::Point;
     let (around, across) = (20_u32, 10_u32);

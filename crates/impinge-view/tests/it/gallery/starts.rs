@@ -8,7 +8,8 @@ use impinge_view::SvgPicture;
 /// The horizontal and the vertical distance between cells of the table.
 const CELL: [f64; 2] = [4.6, 3.1];
 
-/// Draws a box over a floor with its velocity and the impact, and returns the time of impact.
+/// Draws a box at `height` above a floor, its velocity and the impact. Returns the time of impact;
+/// `None` if there is no impact.
 fn draw_start(
     corner: Vector<f64>,
     height: f64,

@@ -15,7 +15,7 @@ type World = CollisionWorld<f64, Color>;
 
 const COLORS: [Color; 5] = [SLATE, CLAY, SAGE, GOLD, MAUVE];
 
-/// Returns a height field of size 12 by 8, with 24 by 36 cells.
+/// Returns a height field of size 12 along x and 8 along z, with 36 by 24 cells.
 fn hills() -> HeightField<f64> {
     let (rows, columns) = (25_u32, 37_u32);
     let height = |row: u32, column: u32| {
@@ -26,7 +26,8 @@ fn hills() -> HeightField<f64> {
     HeightField::new(25, 37, heights.collect(), Vector::new(12.0, 1.0, 8.0))
 }
 
-/// Returns a wave of period 4, made of parabolas so that it is the same on every machine.
+/// Returns the value at `x` of a wave of period 4. It consists of parabolas, so that it is the same
+/// on every machine.
 fn wave(x: f64) -> f64 {
     let phase = x - 4.0 * (x / 4.0).floor();
     let half = if phase < 2.0 { phase } else { phase - 2.0 };
@@ -34,8 +35,8 @@ fn wave(x: f64) -> f64 {
     if phase < 2.0 { arch } else { -arch }
 }
 
-/// Drops a shape until it touches something, then lets it penetrate by 0.02. `turned` is the vector
-/// part of the quaternion of its rotation, divided by the real part.
+/// Adds a shape where it touches an object if it falls vertically at x and z from `at`, lowered by
+/// 0.02. `turned` is the vector part of the quaternion of its rotation, divided by the real part.
 fn drop_shape(world: &mut World, shape: &ShapeHandle<f64>, at: [f64; 2], turned: Vector<f64>) {
     // No sines of the platform are used, so that the picture is the same on every machine.
     let rotation = Rotation::from_quaternion(Quaternion::new(1.0, turned.x, turned.y, turned.z));
@@ -49,7 +50,7 @@ fn drop_shape(world: &mut World, shape: &ShapeHandle<f64>, at: [f64; 2], turned:
     world.add(place, shape.clone(), CollisionGroups::new(), ContactQuery::default(), color);
 }
 
-/// Returns hills on which solids of all kinds have fallen, one after the other.
+/// Returns a world with hills on which solids of six kinds have fallen, one after the other.
 fn terrain() -> World {
     let mut world = World::new(0.02);
     let (everybody, contacts) = (CollisionGroups::new(), ContactQuery::default());

@@ -13,9 +13,9 @@ pub(super) const STACK: usize = 48;
 pub(super) struct OpenPair {
     pub(super) layers: [u8; 2],
     pub(super) blocks: [u32; 2],
-    /// Gap between the regions of the two blocks: above the distance of any two objects in the
-    /// blocks by at most the search's bound of rounding errors. Minus infinity if unknown, NaN if
-    /// the maximum distance is infinite.
+    /// Gap between the regions of the two blocks: a lower bound of the distance of any two objects
+    /// in them, up to the search's bound of rounding errors. Minus infinity if unknown, NaN if the
+    /// maximum distance is infinite.
     pub(super) gap: f32,
 }
 

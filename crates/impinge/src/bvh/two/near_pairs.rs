@@ -1,12 +1,12 @@
 //! Searches for pairs of objects of two trees, each tree in its own frame, nearer pairs first.
 //!
 //! The search is best first over pairs of blocks, one of each tree (Hjaltason and Samet,
-//! "Incremental distance join algorithms for spatial databases", 1998). The search begins with a
-//! descent straight to two objects, whose distance rejects other pairs. The lanes of both blocks
-//! are compared with each other, or only the lanes of the wider block if it is much wider. A box of
-//! one tree is transformed into the frame of the other, so that the axes of both frames separate
-//! blocks. Other directions separate further blocks: along these, the extent of a block is bounded
-//! by its box and its slab.
+//! "Incremental distance join algorithms for spatial databases", 1998). It begins with a descent
+//! straight to one object of each tree; the distance of these two rejects other pairs. The lanes of
+//! both blocks are compared with each other, or only the lanes of the wider block if it is much
+//! wider. A box of one tree is transformed into the frame of the other, so that the axes of both
+//! frames separate blocks. Other directions separate further blocks: along these, the extent of a
+//! block is bounded by its box and its slab.
 //!
 //! ```text
 //!  queue: pairs (block1, block2) by distance
@@ -81,8 +81,9 @@ pub(crate) trait TreePair<N: Real, const D: usize> {
     /// `toward`.
     fn gap(&self, toward: &Toward<N, D>, extents: [N; 2]) -> N;
 
-    /// Receives two objects that are probably near each other, before the search; [`NONE`] for a
-    /// tree in which the descent failed. The search may visit them again.
+    /// Receives one object of each tree before the search; the two are probably near each other.
+    /// The object is [`NONE`] for a tree in which the descent failed. The search may visit the two
+    /// again.
     fn guess(&mut self, objects: [u32; 2]);
 
     /// Receives pairs whose boxes are within the bound: object `own` of the first (0) or the second
@@ -133,8 +134,9 @@ pub(crate) fn visit_pairs<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
-    /// Passes two likely objects to `guess` if the limit is positive and the trees are near each
-    /// other. Then opens pairs of blocks, nearest first, until the next pair is beyond the bound.
+    /// If the limit is positive and the trees are near each other, passes one object of each tree
+    /// to `guess`: two that are probably near each other. Then opens pairs of blocks, nearest
+    /// first, until the next pair is beyond the bound.
     fn run(&mut self, whole: BlockPair) {
         self.queue.push(Reverse(whole));
         let near = || self.near(0, whole.layers[0], 0, &self.other_box(0, &whole));
@@ -155,9 +157,9 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         }
     }
 
-    /// Returns one object of each tree, probably near each other, or [`NONE`]. Each is the end of a
-    /// descent toward the centre of the other object's leaf block; the first descent goes toward
-    /// the centre of the other tree.
+    /// Returns one object of each tree, or [`NONE`] where the descent fails; the two are probably
+    /// near each other. Each is the end of a descent toward the centre of the other object's leaf
+    /// block; the first descent goes toward the centre of the other tree.
     fn descend(&self, whole: BlockPair) -> [u32; 2] {
         let (mut pair, mut found) = (whole, [NONE; 2]);
         for which in [0, 1, 0, 1] {

@@ -40,8 +40,9 @@ pub(super) struct RotatedBox<const D: usize> {
     extent: Option<Extent<D>>,
 }
 
-/// Bounds the extent of a region along any direction: the convex hull of `points`, plus the
-/// segments from `-w` to `w` for each `w` of `wider` (a Minkowski sum), widened by `margin`.
+/// A set that contains a region, so that its extent along any direction bounds the region's. It is
+/// the convex hull of `points`, plus the segments from `-w` to `w` for each `w` of `wider` (a
+/// Minkowski sum), widened by `margin`.
 struct Extent<const D: usize> {
     middle: [f32; D],
     points: SmallVec<[[f32; D]; 3]>,
@@ -69,8 +70,9 @@ impl<const D: usize> TreePose<D> {
         filled(|row| (0..D).map(|axis| self.axes[axis][row] * local[axis]).sum())
     }
 
-    /// Returns the region of a box and its slab, both in this tree's frame, in the frame of the
-    /// other tree. The region is widened by `margin`.
+    /// Takes a box and its slab in this tree's frame. Returns the region in which both overlap, in
+    /// the frame of the other tree and widened by `margin`. The region has an [`Extent`] only if
+    /// `is_for_nearest`.
     pub(super) fn region_of(
         &self,
         bounds: &Bounds<D>,

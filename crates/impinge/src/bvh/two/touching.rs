@@ -8,9 +8,10 @@
 //! and the child with the deepest overlap comes next.
 //!
 //! A search for the nearest pair is best first (Hjaltason and Samet, "Incremental distance join
-//! algorithms for spatial databases", 1998), after a descent straight to two objects. The direction
-//! between these, and the direction between the centres of two blocks, separates most blocks that
-//! lie beside each other.
+//! algorithms for spatial databases", 1998). Before it begins, a descent straight to one object of
+//! each tree gives a first distance. The direction along which the nearest two objects so far are
+//! separated, and the direction between the centres of two blocks, separate most blocks that lie
+//! beside each other.
 //!
 //! Boxes are compared in `f32`, with a margin for the rounding errors: every rejected pair is
 //! beyond the maximum distance.
@@ -52,8 +53,8 @@ pub(crate) trait TouchQuery<N: Real, const D: usize> {
         false
     }
 
-    /// Receives two objects that are probably near each other, before the search. The search may
-    /// visit them again.
+    /// Receives one object of each tree before the search; the two are probably near each other.
+    /// The search may visit them again.
     fn guess(&mut self, _objects: [u32; 2]) {}
 
     /// Returns the direction along which the nearest two objects compared so far are separated, as

@@ -47,8 +47,8 @@ pub(super) struct GroupPair {
     /// A lower bound of the distance between the bodies of the pairs in all configurations whose
     /// slides are zero.
     pub(super) gap: f32,
-    /// The number of groups that slides may move relative to the other group: 0 if both groups are
-    /// on one node, else 2.
+    /// The gap shrinks by at most this factor times the total slide: 0 if both groups are on one
+    /// node, else 2, since slides may move both groups.
     pub(super) sliding: f32,
     /// The sum of the radii of both bounding balls and of both margins.
     pub(super) radius: f32,
@@ -81,7 +81,7 @@ pub(super) struct NodePath<N: Real, const D: usize> {
     joints: usize,
 }
 
-/// The state of the construction of a filter.
+/// A [`RobotFilter`] under construction, with the data that only its construction needs.
 struct Builder<'a, N: Real, const D: usize> {
     tree: &'a FrameTree<N, D>,
     shift: Vector<N, D>,

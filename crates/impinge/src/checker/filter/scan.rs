@@ -42,7 +42,7 @@ impl<const D: usize> ScanScratch<D> {
     }
 }
 
-/// The constant input of a scan.
+/// The input of a scan: the robot, and the obstacles around it.
 #[derive(Clone, Copy)]
 struct Scan<'a, const D: usize> {
     robot: &'a RobotFilter<D>,

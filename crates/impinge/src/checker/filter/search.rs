@@ -70,8 +70,9 @@ pub(in crate::checker) struct CollisionSearch {
     /// A bit mask of the lanes in which a pair is certainly within the limit, in the mode
     /// [`SearchMode::Any`].
     pub(in crate::checker) hits: u8,
-    /// A pair exceeds the limit of its lane if its distance minus its margin is above `outer`. It
-    /// is within the limit if its distance plus its margin is below `inner`.
+    /// A pair is certainly beyond the limit of its lane if its distance minus its margin exceeds
+    /// `outer`, and certainly within the limit if its distance plus its margin is less than
+    /// `inner`.
     outer: LaneRow<f32>,
     inner: LaneRow<f32>,
     /// The error margin for slides in each lane, which `outer` and `inner` include.

@@ -10,8 +10,8 @@ use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 use crate::shape::FeatureId;
 
-/// Kernel for two balls. The pair falls back if the square of the distance of the centres is near
-/// underflow (so also if they coincide) or overflow.
+/// Kernel for two balls. The pair falls back to the builder for one pair if the square of the
+/// distance of the centres is near underflow (so also if the centres coincide) or overflow.
 pub(super) struct BallBall;
 
 impl<N: Real, const D: usize> Form<N, D> for BallBall {

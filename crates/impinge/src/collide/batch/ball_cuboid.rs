@@ -11,8 +11,9 @@ use crate::math::simd::Simd;
 use crate::math::{Real, Wide, filled};
 use crate::shape::{Cuboid, FeatureId};
 
-/// Kernel for a ball and a box. The pair falls back if the centre of the ball lies in the box, or
-/// if a half extent is at most four times the rounding error.
+/// Kernel for a ball and a box. The pair falls back to the builder for one pair if the centre of
+/// the ball lies in the box, if a half extent is at most four times the rounding error, or if a
+/// square is near underflow or overflow.
 pub(super) struct BallCuboid;
 
 impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
@@ -38,8 +39,8 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
         let (pose12, half) = (inputs.beside_ball::<S, V>(simd), inputs.end(simd, 1, 0));
         let radius = inputs.radius(simd, 0);
         let center = pose12.inverse_origin(simd);
-        // Point of the box nearest to the centre of the ball. If the centre is inside the box, both
-        // are the same point, and the pair falls back.
+        // Point of the box nearest to the centre of the ball. If the centre is inside the box, it
+        // is the centre itself, and the pair falls back.
         let clamped = filled(
             #[inline(always)]
             |axis| center[axis].smaller(half[axis]).larger(-half[axis]),

@@ -14,8 +14,9 @@ use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 use crate::shape::FeatureId;
 
-/// Kernel for a ball and a segment or capsule. The pair falls back if the centre of the ball lies
-/// on the core, or if the core has no length.
+/// Kernel for a ball and a segment or capsule. The pair falls back to the builder for one pair if
+/// the centre of the ball is so close to the core that the direction between them is inexact, or if
+/// a squared length is near underflow or overflow (so also if the core has no length).
 pub(super) struct BallSegment;
 
 impl<N: Real, const D: usize> Form<N, D> for BallSegment {

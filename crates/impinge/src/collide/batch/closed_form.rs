@@ -101,7 +101,7 @@ pub(super) struct LaneContacts<N: Real, const D: usize, const L: usize> {
     /// Signed distances of both contacts; unused in lanes with one contact, whose distance is
     /// `gap`.
     pub(super) distances: [[N; L]; 2],
-    /// Lengths up to this are rounding errors. Zero in kernels that never find two contacts.
+    /// Lengths up to this count as rounding errors. Zero in kernels that never find two contacts.
     pub(super) tolerance: [N; L],
     /// Before transposition, masks of the parts that the points lie on (see the figure); after it,
     /// one byte per pair, which [`Form::features`] decodes. With two contacts, the low four bits of
@@ -155,7 +155,8 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
         }
     }
 
-    /// Replaces the manifold of the pair in `lane`; returns `false` if the pair has to fall back.
+    /// Replaces the manifold of the pair in `lane`; clears its points if the solids are beyond the
+    /// prediction. Returns `false`, without a change, if the pair has to fall back.
     #[inline(always)]
     fn write_manifold<F: Form<N, D>>(&self, lane: usize, raw: &mut RawManifold<N, D>) -> bool {
         let [is_found, is_apart, is_two] =

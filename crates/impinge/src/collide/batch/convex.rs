@@ -9,7 +9,8 @@
 //!
 //! A packet that is at least half full runs in a kernel: pairs of segments or capsules in this
 //! module, pairs of faceted solids in `collide/separation/apart/`. All other pairs are computed one
-//! by one. The results of kernels and of single pairs are bit-identical.
+//! by one. The separations of kernels and of single pairs are bit-identical, and so are the
+//! distances of solids that are apart.
 
 use super::LANES;
 use super::gather::put;
@@ -43,8 +44,8 @@ impl<N: Real, const D: usize> ConvexPair<'_, N, D> {
     }
 }
 
-/// Writes the distance of each pair in 2D to its `slot` of `out`, bit-identical to that of a single
-/// pair: zero or negative for an overlap, `None` beyond `limit`, which must be zero or more.
+/// Writes the distance of each pair in 2D to its `slot` of `out`, as [`distance_2d`] returns it:
+/// zero or negative for an overlap, `None` beyond `limit`. `limit` must be zero or more.
 pub(crate) fn distances2<N: Real>(
     pairs: &mut [ConvexPair<'_, N, 2>],
     limit: N,
@@ -55,8 +56,8 @@ pub(crate) fn distances2<N: Real>(
     }
 }
 
-/// Writes the separation of each pair in 2D to its `slot` of `out`, bit-identical to that of a
-/// single pair: `None` beyond `limit`.
+/// Writes the separation of each pair in 2D to its `slot` of `out`, as [`separation_2d`] returns
+/// it: `None` beyond `limit`.
 pub(crate) fn separations2<N: Real>(
     pairs: &mut [ConvexPair<'_, N, 2>],
     limit: N,
@@ -67,8 +68,9 @@ pub(crate) fn separations2<N: Real>(
     }
 }
 
-/// Writes the distance of each pair in 3D to its `slot` of `out`, by the rules of [`distances2`].
-/// Sorts the pairs by kinds.
+/// Writes the distance of each pair in 3D to its `slot` of `out`: bit-identical to [`distance_3d`]
+/// if the solids are apart, any number that is not positive if they overlap, `None` beyond `limit`.
+/// `limit` must be zero or more. Sorts the pairs by kinds.
 pub(crate) fn distances3<N: Real>(
     pairs: &mut [ConvexPair<'_, N, 3>],
     limit: N,
@@ -86,8 +88,8 @@ pub(crate) fn distances3<N: Real>(
     });
 }
 
-/// Writes the separation of each pair in 3D to its `slot` of `out`, by the rules of
-/// [`separations2`]. Sorts the pairs by kinds.
+/// Writes the separation of each pair in 3D to its `slot` of `out`, bit-identical to
+/// [`separation_3d`]: `None` beyond `limit`. Sorts the pairs by kinds.
 pub(crate) fn separations3<N: Real>(
     pairs: &mut [ConvexPair<'_, N, 3>],
     limit: N,

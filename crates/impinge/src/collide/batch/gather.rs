@@ -60,8 +60,8 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         }
     }
 
-    /// Begins up to `L` pairs from index `first` and gathers their inputs. Lanes without a pair
-    /// keep their old values.
+    /// Begins the updates of up to `L` pairs, from index `first` on, and gathers their inputs.
+    /// Lanes without a pair keep their old values.
     #[inline(always)]
     pub(super) fn gather<B: Batch<N, D>, P: KeptPairs<N, D>>(
         &mut self,

@@ -97,11 +97,11 @@ pub(crate) trait KeptPairs<N: Real, const D: usize> {
     /// Begins the update of the pair at `index` and returns its inputs. Called once for each pair.
     fn begin(&mut self, index: usize) -> PairQuestion<'_, N, D>;
 
-    /// Returns the inputs of the pair at `index`, which has begun, and its manifold. The manifold
-    /// is that of the last update; the caller replaces it.
+    /// Returns the inputs of the pair at `index`, whose update has begun, and the manifold that its
+    /// last update wrote, which the caller replaces.
     fn parts(&mut self, index: usize) -> (PairQuestion<'_, N, D>, &mut RawManifold<N, D>);
 
-    /// Returns the manifold of the pair at `index`: that of its last update, which the caller
+    /// Returns the manifold that the last update of the pair at `index` wrote, which the caller
     /// replaces.
     fn raw(&mut self, index: usize) -> &mut RawManifold<N, D>;
 
@@ -124,15 +124,17 @@ trait Batch<N: Real, const D: usize> {
         pair: &PairQuestion<'_, N, D>,
     ) -> bool;
 
-    /// Computes, for all lanes at once, everything that needs no branches.
+    /// Computes, for all lanes at once, everything that needs no branches, and stores it in
+    /// `found`.
     fn find<S: Simd, V: Wide<S, Scalar = N>, const L: usize>(
         simd: S,
         inputs: &Inputs<N, D, L>,
         found: &mut Self::Found<L>,
     );
 
-    /// Replaces the manifold of the pair in `lane` by at most `max_points` points; returns `false`
-    /// if the pair has to fall back.
+    /// Replaces the points of the pair in `lane` by at most `max_points` points, or clears them if
+    /// the solids are beyond the prediction. Returns `false`, without a change, if the pair has to
+    /// fall back to the builder for one pair.
     fn write_manifold<const L: usize>(
         found: &Self::Found<L>,
         lane: usize,
@@ -165,7 +167,8 @@ pub(crate) fn update_pairs3<N: Space<3>>(
     run3(solids, Many { level: Level::new(), pairs })
 }
 
-/// Updates one pair in 2D; returns `false` if its kinds have no kernel or the pair is unsupported.
+/// Updates the manifold of one pair in 2D; returns `false`, with nothing changed, if its kinds have
+/// no kernel or the kernel does not support the pair.
 pub(crate) fn update_pair2<N: Space<2>>(
     question: &PairQuestion<'_, N, 2>,
     raw: &mut RawManifold<N, 2>,
@@ -173,7 +176,8 @@ pub(crate) fn update_pair2<N: Space<2>>(
     run2(question.solids, One { question, raw })
 }
 
-/// Updates one pair in 3D; returns `false` if its kinds have no kernel or the pair is unsupported.
+/// Updates the manifold of one pair in 3D; returns `false`, with nothing changed, if its kinds have
+/// no kernel or the kernel does not support the pair.
 pub(crate) fn update_pair3<N: Space<3>>(
     question: &PairQuestion<'_, N, 3>,
     raw: &mut RawManifold<N, 3>,
@@ -181,8 +185,8 @@ pub(crate) fn update_pair3<N: Space<3>>(
     run3(question.solids, One { question, raw })
 }
 
-/// Computes the contact points of a pair in canonical order, as a batch of one. Returns `false` if
-/// its kinds have no kernel or the pair is unsupported.
+/// Computes the contact points of a pair in canonical order, as a batch of one. Returns `false`,
+/// with `raw` unchanged, if its kinds have no kernel or the kernel does not support the pair.
 pub(crate) fn contacts_in_lanes<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     request: &ManifoldRequest<N>,
@@ -306,7 +310,7 @@ impl BatchLanes<1> for LonePair {
 }
 
 /// Updates all pairs, `L` at a time, with the algorithm `B`. The inputs of the next batch are
-/// gathered before the kernel reads those of this batch, which hides memory latency.
+/// gathered before the kernel reads the inputs of this batch, to hide memory latency.
 fn update<B: Batch<N, D>, P: KeptPairs<N, D>, N: Space<D>, const D: usize, const L: usize>(
     lanes: impl BatchLanes<L>,
     pairs: &mut P,

@@ -1,5 +1,5 @@
-//! Inputs of pairs with segments and capsules (their cores in lanes, and lengths of the cores), and
-//! the features of a segment.
+//! Functions shared by the kernels for segments and capsules: they gather the cores, compute
+//! lengths of the cores, and name the features of a segment.
 
 use super::gather::Inputs;
 use super::vectors::{length_of, lit, minus, norm};

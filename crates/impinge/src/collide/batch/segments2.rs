@@ -1,5 +1,6 @@
-//! Segments and capsules in 2D: the overlap interval of their cores along the tangent, as
-//! `interval.rs` computes it for all flat-sided solids, for several pairs at a time.
+//! Contacts of segments and capsules in 2D, for several pairs at a time. They are the ends of the
+//! overlap interval of both cores along the tangent, which `interval.rs` computes for one pair of
+//! any flat-sided solids.
 //!
 //! ```text
 //!      normal
@@ -25,8 +26,9 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
 use crate::shape::FeatureId;
 
-/// Kernel for two segments or capsules. The pair falls back if the cores cross or touch, or if a
-/// core is parallel to the normal.
+/// Kernel for two segments or capsules. The pair falls back to the builder for one pair if the
+/// cores cross or touch, if a core is parallel to the normal, or if the contacts depend on
+/// rounding.
 pub(super) struct Segments2;
 
 impl<N: Real> Form<N, 2> for Segments2 {
@@ -102,7 +104,7 @@ struct ContactLine<V> {
     point1: PlaneLanes<V>,
     /// Signed distance of the solids along the normal; negative for an overlap.
     distance: V,
-    /// Lengths up to this are rounding errors.
+    /// Lengths up to this count as rounding errors.
     tolerance: V,
     prediction: V,
     sine: V,
@@ -242,8 +244,8 @@ impl<V, M> LaneSide<V, M> {
         let depth = self.below_witness(core, line);
         let away = line.flat(core) - self.top.1;
         let (away_squared, radius) = (away * away, self.radius);
-        // Up to this squared distance along the tangent, the surface is the ball around the nearest
-        // end.
+        // Up to this squared distance along the tangent, the surface is the ball around the core's
+        // end nearest to the other solid.
         let turns_squared = radius * radius * (one - self.cosine * self.cosine);
         let round = depth - self.top.0 + (radius * radius - away_squared).sqrt();
         let is_round = away_squared.simd_lt(turns_squared);
@@ -252,8 +254,8 @@ impl<V, M> LaneSide<V, M> {
         radius.simd_le(zero).select(zero, lift)
     }
 
-    /// Returns the lanes where end `end`, in tangent order, is the segment's first end, and the
-    /// lanes where it is the last end.
+    /// Returns the lanes where `ends[end]` is the segment's first end, and the lanes where it is
+    /// the segment's last end.
     #[inline(always)]
     fn end_masks<S: Simd>(&self, end: usize) -> [M; 2]
     where

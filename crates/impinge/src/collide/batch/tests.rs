@@ -1,5 +1,5 @@
-//! Compares batches of 8 pairs with batches of one and with the builder for one pair, bit for bit,
-//! on every instruction set.
+//! Asserts on every instruction set that batches of 8 pairs, batches of one and the builder for one
+//! pair give the same manifolds, to the bit.
 
 use super::{
     BallBall, BallCuboid, BallSegment, Batch, Boxes2, Boxes3, ClosedForm, KeptPairs, Many,
@@ -216,7 +216,7 @@ impl<const D: usize> Draw<D> {
         shaken
     }
 
-    /// Converts to a case, with lengths multiplied by `unit`.
+    /// Converts the drawn solids to a case, with all lengths multiplied by `unit`.
     fn case<N: Scene<D>>(&self, unit: f64, request: ManifoldRequest<N>) -> Case<N, D> {
         let vector = |v: &Vector<f64, D>| v.map(|x| N::lit(x * unit));
         let poses = [0, 1].map(|at| N::pose(vector(&self.positions[at]), self.turns[at]));

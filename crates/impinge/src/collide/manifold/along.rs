@@ -1,5 +1,5 @@
-//! Manifold of two solids along a given normal: the contacts with one face of a surface along the
-//! face's normal, even where the nearest points have another normal.
+//! Contacts of two solids along a given normal. They are used for a face of a surface: its contacts
+//! are along the face's normal even where the nearest points have another normal.
 //!
 //! The supporting features along the normal are clipped as for a separation, but the nearest points
 //! need not be among the contacts. If the features do not overlap in projection, there is no
@@ -29,14 +29,16 @@ where
     pub(crate) tolerance: N,
 }
 
-/// Request for the contacts of two solids, one of which is a face of a surface.
+/// Request for the contacts of two solids along the normal of a face; one of the solids is the
+/// face.
 pub(crate) struct OnFace<N: Real, const D: usize> {
     /// Normal of the face: unit vector from the first solid to the second.
     pub(crate) normal: Vector<N, D>,
     /// Points nearer than this by more than rounding are dropped; the distances of the other points
     /// are raised to at least this.
     pub(crate) least: N,
-    /// Smallest distance of the solids along the normal, if it is known.
+    /// Signed distance of the solids if `normal` is also the normal of their separation; else
+    /// `None`.
     pub(crate) nearest: Option<N>,
     /// Points farther than this are dropped.
     pub(crate) prediction: N,
@@ -45,7 +47,8 @@ pub(crate) struct OnFace<N: Real, const D: usize> {
 }
 
 /// Builds the manifold of two convex solids along a normal. It is empty if the supporting features
-/// do not overlap in projection, or if one of the solids is a half-space.
+/// do not overlap in projection, if all points are beyond the prediction or nearer than `least`,
+/// and if one of the solids is a half-space.
 pub(crate) fn build_along<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     along: &Along<N, D>,
@@ -57,8 +60,9 @@ pub(crate) fn build_along<N: Space<D>, const D: usize>(
     <N::Algorithms>::on_face(pair, &on_face, out);
 }
 
-/// Builds the manifold of a pair whose signed distance along the normal of a face of a surface is
-/// `distance`, up to rounding. Returns `false` if the caller has to use [`build_between`] instead.
+/// Builds the manifold of a pair whose separation has the normal of a face of a surface, up to
+/// rounding, and the signed distance `distance`. Returns `false` if the caller has to use
+/// [`build_between`] instead; always if `distance` is beyond the prediction.
 pub(crate) fn build_on_face<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     normal: &Vector<N, D>,
@@ -83,8 +87,8 @@ pub(crate) fn build_between<N: Space<D>, const D: usize>(
 }
 
 /// Computes the contacts of two solids in 2D along a normal. Returns `false` if `nearest` is known,
-/// because [`build_between`] then gives the contacts; also for half-spaces, and if a supporting
-/// feature is neither a side nor a corner.
+/// because [`build_between`] then gives the contacts. Also returns `false`, without contacts, for
+/// half-spaces and if a supporting feature is neither a side nor a corner.
 pub(crate) fn on_face2<N: Real>(
     pair: &Pair<'_, N, 2>,
     query: &OnFace<N, 2>,
@@ -101,10 +105,10 @@ pub(crate) fn on_face2<N: Real>(
     sides.along(&along, |point| out.points.push(point)).is_some()
 }
 
-/// Computes the contacts of two solids in 3D along the normal of a face of one of them. If
-/// `nearest` is known, returns `false` for kinds other than those of `is_served`, and if no contact
-/// is that near, up to the tolerance: then [`build_between`] gives the contacts. Always returns
-/// `false` for half-spaces.
+/// Computes the contacts of two solids in 3D along the normal of a face of one of them. Returns
+/// `false` for half-spaces. If `nearest` is known, also returns `false` for pairs of kinds that
+/// `is_served` excludes, and if no contact is as near as `nearest`, up to the tolerance: then
+/// [`build_between`] gives the contacts.
 pub(crate) fn on_face3<N: Real>(
     pair: &Pair<'_, N, 3>,
     query: &OnFace<N, 3>,
@@ -125,7 +129,7 @@ pub(crate) fn on_face3<N: Real>(
     let frame = ContactFrame::known(&planes, tangents3(&normal), tolerance, prediction);
     let (mut candidates, mut lowest) = (Candidates::new(), N::INFINITY);
     clip::candidates(pair, &frame, &mut candidates);
-    // Candidates nearer than `least` lie below the face's surface and beside the face.
+    // Candidates nearer than `least` lie beside the face, below its plane.
     candidates.retain(|candidate| candidate.distance >= least - tolerance);
     for candidate in &mut candidates {
         candidate.distance = max(candidate.distance, least);

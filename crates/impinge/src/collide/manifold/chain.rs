@@ -41,9 +41,9 @@ impl<N: Real> SegmentPair<'_, N> {
         Some(own.at_witness(&frame))
     }
 
-    /// Visits the contacts of the two solids, whose separation is `witness`; there are none beyond
-    /// the prediction. Returns `None` if a supporting feature is neither a corner nor a side, or if
-    /// [`Self::touched`] returns `None` for a ball.
+    /// Visits the contacts of the two solids, whose separation is `witness`. There are none if its
+    /// distance is beyond the prediction, NaN or infinite. Returns `None` if a supporting feature
+    /// is neither a corner nor a side or, for a ball, if [`Self::touched`] returns `None`.
     pub(crate) fn between(
         &self,
         witness: &Separation<N, 2>,
@@ -124,7 +124,8 @@ impl<N: Real> SegmentPair<'_, N> {
         ContactFrame::known(witness, tangents2(&witness.normal), self.tolerance, self.prediction)
     }
 
-    /// Returns the supporting feature of the first solid.
+    /// Returns the supporting feature of the first solid; `None` if it is neither a corner nor a
+    /// side.
     #[inline]
     fn first(&self, frame: &ContactFrame<N, 2>) -> Option<FeatureInterval<N>> {
         match self.pair.first {

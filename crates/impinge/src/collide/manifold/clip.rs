@@ -58,7 +58,8 @@ pub(super) fn build<N: Real>(
     choose_in_frame(pair, frame, &mut candidates, limit, out);
 }
 
-/// Returns the part of a solid's supporting feature that the nearest point lies on.
+/// Returns the part of a solid's supporting feature that the nearest point lies on; the whole
+/// feature if rounding places the point outside.
 pub(super) fn part_at_witness<N: Real>(
     kind: Kind<'_, N, 3>,
     which: Which,
@@ -96,7 +97,8 @@ fn project_rings<N: Real>(
         project_in_lanes::<_, N, N::Lanes<_>>(simd, rings, frame, insides));
 }
 
-/// Projects one ring or two, and measures the corners of each ring against the sides of the other.
+/// Projects one ring or two. Measures the nearest point and the corners of the other ring, if there
+/// is one, against the sides of each ring.
 #[inline(always)]
 fn project_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -216,8 +218,8 @@ fn ring_part<N: Real>(
     if is_segment { found } else { Some(found.unwrap_or(ring.id)) }
 }
 
-/// Returns the sides whose lines separate two points, both farther from the line than the
-/// tolerance.
+/// Returns the bits of the sides whose lines separate two points that are both farther from the
+/// line than the tolerance.
 const fn parted<N: Real>(from: &SideRow<N>, to: &SideRow<N>) -> u8 {
     from.within & to.beyond | from.beyond & to.within
 }
@@ -247,15 +249,16 @@ impl<'a, N: Real> RingClip<'a, N> {
         Self { frame, rings, insides: [Insides::new(), Insides::new()] }
     }
 
-    /// Fills the rings with the supporting features of a pair, and measures the corners of both.
+    /// Fills the rings with the supporting features of a pair, and measures each ring against the
+    /// other.
     fn project(&mut self, pair: &Pair<'_, N, 3>) {
         self.rings[0].fill(pair.first, self.frame);
         self.rings[1].fill(pair.second, self.frame);
         project_rings(Level::new(), &mut self.rings, self.frame, &mut self.insides);
     }
 
-    /// Returns whether the overlap may have a length or an area; if it is a point, the nearest
-    /// points suffice.
+    /// Returns `false` if the overlap is a single point, because then the nearest points are the
+    /// only contact. Otherwise the overlap may have a length or an area.
     fn has_area_or_length(&self) -> bool {
         let [first, second] = &self.rings;
         let are_segments = first.is_segment() && second.is_segment();
@@ -281,19 +284,20 @@ impl<'a, N: Real> RingClip<'a, N> {
         self.crossings(out);
     }
 
-    /// Returns the id of the part of a ring that the nearest point lies on.
+    /// Returns the id of the part of a ring that the nearest point lies on; the id of the whole
+    /// ring if rounding places the point outside.
     fn part_at_witness(&self, which: usize) -> FeatureId {
         let (ring, other) = (&self.rings[which], &self.rings[1 - which]);
         let rows = self.insides[which].row(other.count);
         ring_part(ring, rows, &Vector::<N, 2>::zeros(), self.frame.tolerance).unwrap_or(ring.id)
     }
 
-    /// Adds the corners of each ring that lie inside the other.
+    /// Adds a contact for each corner of a ring that lies inside the other ring.
     fn corners(&self, out: &mut Candidates<N, 3>) {
         for (which, ring) in self.rings.iter().enumerate() {
             let other = &self.rings[1 - which];
-            // A ring that is a point contains no corner. Its own corner is found against the other
-            // ring.
+            // No corner lies inside a ring that is a point; that point is tested as a corner of its
+            // own ring.
             let count = if other.is_point() { 0 } else { ring.count };
             for at in 0..count {
                 let flat = ring.flat(at);
@@ -368,8 +372,8 @@ impl<'a, N: Real> RingClip<'a, N> {
     /// Adds the ends of the overlap interval of two nearly parallel segments. Each contact is an
     /// end of one segment and the point beside it on the other segment. Both points are moved
     /// halfway towards each other, perpendicular to the normal, because they meet there if the
-    /// solids rotate. The moved points are off their segments by at most half the lever arm times
-    /// the sine.
+    /// solids rotate. The moved points are off their segments by at most half their distance from
+    /// the nearest points times the sine.
     fn common_interval(&self, out: &mut Candidates<N, 3>) {
         for (which, ring) in self.rings.iter().enumerate() {
             let other = &self.rings[1 - which];
@@ -394,9 +398,10 @@ impl<'a, N: Real> RingClip<'a, N> {
         part_beside(along, length, tolerance, ends, segment.id)
     }
 
-    /// Adds the surface points over two points of the cores, unless `out` already has this contact:
-    /// corners that coincide are found from both rings. Different points on round rims may have the
-    /// same ids.
+    /// Adds the contact at the surface points over two points of the cores, if the request admits
+    /// it. Skips a duplicate of a contact in `out`, because corners that coincide are found from
+    /// both rings. Contacts count as duplicates only at one position: different points on round
+    /// rims may have the same ids.
     fn push(
         &self,
         [core1, core2]: [Point<N, 3>; 2],

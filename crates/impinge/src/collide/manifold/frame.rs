@@ -63,15 +63,16 @@ impl Which {
     }
 }
 
-/// Returns the height of a rounded surface above a point of the flat feature that it surrounds at
-/// `radius`, along the normal.
+/// Returns the height of a rounded surface above a point of its core's flat feature, along the
+/// normal. The surface is at distance `radius` from the feature.
 ///
-/// `cosine` is the cosine of the feature's tilt. `depth` and `top` are the depths, below the
-/// supporting plane, of the point and of the feature's corner nearest to the other solid;
-/// `away_squared` is the squared distance between the point and that corner, perpendicular to the
-/// normal. Above the flat part the height is `radius / cosine`; above the corner it is the height
-/// of the ball around the corner; nothing rises above the supporting plane. Exact for capsules, and
-/// where the surface is parallel to the feature; elsewhere a rounded polygon may be slightly lower.
+/// `cosine` is the cosine of the feature's tilt against the contact plane. `depth` and `top` are
+/// the depths, below the supporting plane, of the point and of the feature's corner nearest to the
+/// other solid; `away_squared` is the squared distance between the point and that corner,
+/// perpendicular to the normal. Above the flat part the height is `radius / cosine`; above the
+/// corner it is the height of the ball around the corner; nothing rises above the supporting plane.
+/// Exact for capsules, and where the surface is parallel to the feature. For a tilted polygon it is
+/// approximate beside the sides, whose rounding is not considered.
 #[inline]
 pub(in crate::collide) fn lifted<N: Real>(
     radius: N,
@@ -80,7 +81,7 @@ pub(in crate::collide) fn lifted<N: Real>(
     top: N,
     away_squared: N,
 ) -> N {
-    // Where the ball around the corner meets the flat part of the surface.
+    // Squared distance from the corner at which its ball meets the flat part of the surface.
     let turns_squared = radius * radius * (N::ONE - cosine * cosine);
     let lift = if away_squared < turns_squared {
         depth - top + (radius * radius - away_squared).sqrt()
@@ -101,7 +102,7 @@ pub(in crate::collide) struct ContactFrame<N: Real, const D: usize> {
     tangents: [Vector<N, D>; 2],
     /// Lengths up to this are rounding errors.
     pub(in crate::collide) tolerance: N,
-    /// Largest distance of a contact point.
+    /// Largest distance of a contact point; rotation may admit farther points ([`Self::admit`]).
     prediction: N,
     /// Sine of the largest angle by which the solids may rotate; zero if rotation is not
     /// considered.
@@ -159,7 +160,8 @@ impl<N: Real, const D: usize> ContactFrame<N, D> {
         }
     }
 
-    /// Creates a frame with a known tolerance, for a request without rotation.
+    /// Creates a frame for a request without rotation, with a tolerance that the caller has
+    /// computed.
     #[inline]
     pub(in crate::collide) fn known(
         witness: &Separation<N, D>,
@@ -213,14 +215,15 @@ impl<N: Real, const D: usize> ContactFrame<N, D> {
         (distance <= self.prediction + self.sine * flat.norm()).then_some(distance)
     }
 
-    /// Returns an upper bound of the distances that [`Self::admit`] admits; infinite if the solids
+    /// Returns an upper bound of the distances that [`Self::admit`] accepts; infinite if the solids
     /// may rotate.
     #[inline]
     pub(in crate::collide) fn most(&self) -> N {
         if self.sine > N::ZERO { N::INFINITY } else { self.prediction + self.tolerance }
     }
 
-    /// Returns the candidate at a surface point of the first solid; `None` if it is not admitted.
+    /// Returns the candidate at a surface point of the first solid; `None` if [`Self::admit`]
+    /// rejects it.
     #[inline]
     pub(in crate::collide) fn candidate(
         &self,
@@ -233,9 +236,9 @@ impl<N: Real, const D: usize> ContactFrame<N, D> {
         Some(Candidate { point1, distance, flat, features, kept: None })
     }
 
-    /// Adds the candidate that [`Self::candidate`] returns, if any, unless `out` has a candidate
-    /// with the same features within four tolerances of it: corners that coincide are found from
-    /// both solids.
+    /// Adds the candidate that [`Self::candidate`] returns, if any, unless it is a duplicate: a
+    /// candidate in `out` has the same features and is within four tolerances of it in tangent
+    /// coordinates. Corners that coincide are found twice, once from each solid.
     #[inline]
     pub(in crate::collide) fn push_new(
         &self,
@@ -282,7 +285,8 @@ pub(in crate::collide) fn rounding<N: Real, const D: usize>(pair: &Pair<'_, N, D
     N::lit(ROUNDING_ERRORS) * N::EPSILON * size
 }
 
-/// Returns the bounding radius of a solid, including its rounding radius; zero for half-spaces.
+/// Returns the bounding radius of a solid around its origin, including its rounding radius; zero
+/// for kinds without a support map, such as half-spaces.
 #[inline]
 fn size<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> N {
     match kind {

@@ -1,5 +1,5 @@
-//! A solid against a half-space, whose boundary is unbounded: the corners of the solid near the
-//! boundary.
+//! Contacts of a solid and a half-space: the corners of the solid near the boundary, which has no
+//! corners of its own.
 //!
 //! For flat-faced solids every vertex is a candidate, not only those of the supporting feature: if
 //! no face is parallel to the boundary, the near vertices need not belong to one face. For other
@@ -34,14 +34,16 @@ pub(super) fn build<N: Real, const D: usize>(
     choose_in_frame(pair, frame, &mut candidates, limit, out);
 }
 
-/// Frame of a solid above a half-space; the methods add the corners of the solid as candidates.
+/// A solid above a half-space, in the contact frame. The methods add the corners of the solid as
+/// candidates.
 struct Above<'a, N: Real, const D: usize> {
     frame: &'a ContactFrame<N, D>,
 }
 
 impl<N: Real, const D: usize> Above<'_, N, D> {
-    /// Adds the corners that the request admits. Returns the feature of the nearest point, for use
-    /// if no corner is admitted.
+    /// Adds the corners that the request admits. Returns the feature of the solid at the nearest
+    /// point, which the caller uses if no corner is admitted. For boxes, hulls and triangles it is
+    /// a placeholder, because one of their vertices is the nearest point.
     fn corners(&self, kind: Kind<'_, N, D>, out: &mut Candidates<N, D>) -> FeatureId {
         match kind {
             Kind::Cuboid(cuboid) => self.vertices_of_box(cuboid, out),
@@ -101,7 +103,8 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
     ) {
         let frame = self.frame;
         let along: [V; D] = spread(simd, &frame.normal());
-        // Loosened by the tolerance, because the distance of each near vertex is computed again.
+        // The limit is loosened by the tolerance, because `push` computes the distance of each near
+        // vertex again, with another rounding error.
         let top = frame.normal().dot(&frame.witness.point1.coords) - frame.tolerance;
         let least = V::all(simd, top + frame.witness.distance - frame.most());
         for (first, block) in (0_u32..).step_by(LANES).zip(hull.blocks()) {

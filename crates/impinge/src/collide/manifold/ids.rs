@@ -1,4 +1,4 @@
-//! Ids of contact points: a contact that moved keeps its id.
+//! Ids of contact points: a contact that moves by a short distance in one step keeps its id.
 //!
 //! Old points are matched to new points in three classes, and within a class by distance, nearest
 //! first:
@@ -66,8 +66,8 @@ pub(in crate::collide) fn is_same_point<N: Real, const D: usize>(
     !are_edges(features) || max_component(moved) <= N::lit(REACH) * size()
 }
 
-/// Returns the reciprocal of the largest distance that a contact of a pair of this size may move in
-/// one step.
+/// Returns the reciprocal of the largest distance that a contact may move in one step and keep its
+/// id; `size` is the size of the pair.
 #[inline(always)]
 pub(in crate::collide) fn near_scale<N: Real>(size: N) -> N {
     N::ONE / (N::lit(SHARE) * size)
@@ -200,9 +200,9 @@ pub(in crate::collide) fn inherit_by_features<N: Real, const D: usize>(
     }
 }
 
-/// Matches the candidates with indices `some` that have no id with the old points whose id none of
-/// `some` has, by [`each_match`], and passes on the ids. `pose` is the new pose; `size` computes
-/// the size of the pair.
+/// Passes ids on by position ([`each_match`]). Considers the candidates with the indices `some`:
+/// those without an id are matched to the old points whose ids none of these candidates has. `pose`
+/// is the new pose; `size` computes the size of the pair.
 pub(in crate::collide) fn inherit_by_position<N: Real, const D: usize>(
     old: &RawManifold<N, D>,
     pose: &PairPose<'_, N, D>,
@@ -303,8 +303,8 @@ pub(in crate::collide) fn in_order<N: Real, const D: usize>(
     order
 }
 
-/// Replaces the points of a manifold by the `chosen` candidates, in the order of their ids; those
-/// without an id get new ones.
+/// Replaces the points of a manifold by the `chosen` candidates, sorted by id. Candidates without
+/// an id get new ids, in the order of [`in_order`].
 pub(in crate::collide) fn replace_points<N: Real, const D: usize>(
     candidates: &mut [Candidate<N, D>],
     chosen: &[usize],

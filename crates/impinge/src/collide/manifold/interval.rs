@@ -1,9 +1,9 @@
 //! Two flat-sided 2D solids: the overlap interval of their supporting sides.
 //!
-//! This module computes the contacts of segments, capsules, triangles, boxes, polygons, rounded
-//! solids, and support maps whose supporting feature is a side or a corner, with a radius around
-//! it. Boxes, segments and capsules also have kernels of their own (`collide/batch/`). A position
-//! along the tangent is one coordinate:
+//! This module computes the contacts of segments, capsules, triangles, boxes, polygons and rounded
+//! solids. It also handles other support maps whose supporting feature is a side or a corner, with
+//! a radius around it. Boxes, segments and capsules also have kernels of their own
+//! (`collide/batch/`). A position along the tangent is one coordinate:
 //!
 //! ```text
 //!          from ─────────────── to          the second solid's side
@@ -66,9 +66,9 @@ pub(super) struct FeatureInterval<N: Real> {
     pub(super) is_side: bool,
     /// Radius around the feature.
     rounding: N,
-    /// Cosine of the angle between the side and the tangent.
+    /// Cosine of the angle between the side and the tangent; 1 for a corner.
     cosine: N,
-    /// Signed length from the first corner to the second along the tangent.
+    /// Difference of the tangent coordinates of the second and the first corner; zero for a corner.
     along: N,
     /// Magnitude of `along`.
     length: N,
@@ -99,7 +99,8 @@ impl<N: Real> FeatureInterval<N> {
         Self::placed(Which::First, &SideOrVertex::of_segment(segment), N::ZERO, None, frame)
     }
 
-    /// Transforms a feature into the frame of the first solid and simplifies it.
+    /// Transforms a feature into the frame of the first solid, and reduces it to a corner if
+    /// needed.
     #[inline(always)]
     fn placed(
         which: Which,
@@ -136,7 +137,8 @@ impl<N: Real> FeatureInterval<N> {
     #[inline(always)]
     fn simplify(&mut self, outward: &Vector<N, 2>, tolerance: N) {
         let [from, to] = &self.corners;
-        // Long in projection. A side along the normal is short in projection, but it has a length.
+        // Whether the side has a length in projection. A side along the normal has none, but it is
+        // still a side: the code below reduces it to its corner nearest to the other solid.
         let is_long = max_component(&(from.flat - to.flat)) > tolerance;
         self.is_side &= is_long || max_component(&(from.point - to.point)) > tolerance;
         if !self.is_side {
@@ -153,7 +155,7 @@ impl<N: Real> FeatureInterval<N> {
         }
     }
 
-    /// Finds the corner nearest to the other solid, and sets `top`.
+    /// Sets `top`: finds the corner nearest to the other solid, and its depth.
     fn find_top(&mut self, frame: &ContactFrame<N, 2>) {
         let [first, second] = &self.corners;
         let depth = self.which.below_witness(&first.point, frame);
@@ -265,8 +267,9 @@ impl<N: Real> Shared<'_, N> {
         }
     }
 
-    /// Adds a pair of points unless it is a duplicate. First moves each point by half the offset
-    /// between the points along the tangent.
+    /// Adds a contact if the request admits it and it is no duplicate. The two points of the cores
+    /// are first moved halfway towards each other along the tangent, so that they face each other
+    /// along the normal.
     fn push(
         &self,
         core1: &Point<N, 2>,
@@ -279,7 +282,8 @@ impl<N: Real> Shared<'_, N> {
         self.push_pair(&(core1 + half), &(core2 - half), features, out);
     }
 
-    /// Adds a pair of points that face each other along the normal, unless it is a duplicate.
+    /// Adds the contact of two points of the cores that face each other along the normal, if the
+    /// request admits it and it is no duplicate.
     pub(super) fn push_pair(
         &self,
         core1: &Point<N, 2>,

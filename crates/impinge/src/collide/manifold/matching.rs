@@ -7,9 +7,10 @@
 //! ```
 //!
 //! Up to 32 old and 32 new points are bits of a `u32`, and all pairs are compared. For more points,
-//! lists sorted by the first coordinate give the pairs that may be near on either solid. The
-//! kernels of `batch` have no positions on the second solid; [`each_near`] compares positions on
-//! the first, and the vertices of the second that points lie on.
+//! only pairs that may match are compared: a list sorted by features gives the pairs with equal
+//! features, and lists sorted by the first coordinate the pairs that may be near on either solid.
+//! The kernels of `batch` have no positions on the second solid; for them [`each_near`] compares
+//! positions on the first, and the vertices of the second that points lie on.
 
 use super::ids::{Anchors, REACH, SHARE, are_edges, moved, near_scale};
 use crate::math::ones::Ones;
@@ -153,7 +154,7 @@ fn match_many<N: Real, const D: usize>(
     }
 }
 
-/// Visits matches by position alone. Precondition: no new point has the features of an old one.
+/// Visits matches by position alone. Precondition: no new point has the features of an old point.
 /// `old` and `new` are masks of points.
 ///
 /// `moved` returns the squared distance of an old and a new point in units of the squared near

@@ -10,11 +10,14 @@
 //! The separation provides the normal and the witness, its nearest pair of points. The supporting
 //! features of both solids, projected along the normal, are points, segments and convex polygons
 //! ([`ring`]); the corners of their intersection ([`clip`]) are the candidates. In 2D the
-//! intersection is an interval ([`interval`]); over a [`half_space`] every corner is a candidate.
-//! [`reduce`] chooses a few candidates, and [`ids`] gives them ids.
+//! intersection is an interval ([`interval`]). Against a half-space ([`half_space`]), the
+//! candidates are all corners of the solid near the boundary. [`reduce`] chooses a few candidates,
+//! and [`ids`] gives them ids.
 //!
-//! The manifold always contains a point with the distance of the witness, so its smallest distance
-//! is exactly that of the separation. If a solid is a ball, the witness is the only point.
+//! If the solids are within the prediction, a manifold built from their separation has at least one
+//! point, and its smallest distance is exactly that of the witness. If the first solid is a ball,
+//! the witness is the only point. A manifold along a given normal ([`along`]) may be empty, and
+//! need not contain the witness.
 
 mod along;
 mod chain;
@@ -108,8 +111,9 @@ pub(crate) fn build3<N: Real>(
     }
 }
 
-/// Builds the manifold if the pair is beyond the prediction, the first solid is a ball, or the
-/// second solid is a half-space; returns `false`, with nothing changed, for other pairs.
+/// Builds the manifold of three kinds of pairs: an empty one for a pair beyond the prediction or
+/// with a distance that is NaN or infinite, one point for a ball as the first solid, and the near
+/// corners for a half-space as the second. Returns `false`, with nothing changed, for other pairs.
 fn build_one_sided<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -138,7 +142,7 @@ fn build_one_sided<N: Space<D>, const D: usize>(
     true
 }
 
-/// Builds the manifold that consists of the nearest points only.
+/// Builds the manifold whose only contact is at the nearest points.
 fn build_witness_manifold<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -162,7 +166,7 @@ pub(crate) fn tangents3<N: Real>(normal: &Vector<N, 3>) -> [Vector<N, 3>; 2] {
     [u, v]
 }
 
-/// Returns the tangent in 2D, and zero as the second tangent.
+/// Returns the normal rotated clockwise by 90° as the only tangent in 2D; the second is zero.
 #[inline]
 pub(crate) fn tangents2<N: Real>(normal: &Vector<N, 2>) -> [Vector<N, 2>; 2] {
     [-perp(normal), Vector::<N, 2>::zeros()]
@@ -199,13 +203,14 @@ pub(crate) fn contacts_of_separation2<N: Real>(
 /// surfaces by at most the difference.
 const SLACK: f64 = 1.0 / 512.0;
 
-/// Number of candidates up to which all are kept, if the limit allows. Among more candidates, some
-/// may coincide up to rounding, such as corners of two equal boxes.
+/// Up to this number of candidates, all are kept if the limit on the number of points allows. Of
+/// more candidates, [`reduce`] chooses some, because some may coincide up to rounding, such as
+/// corners of two equal boxes.
 pub(in crate::collide) const ALL: usize = 4;
 
-/// Inputs for the choice of points.
+/// Inputs of [`choose`].
 pub(in crate::collide) struct PointChoice<'a, N: Real, const D: usize> {
-    /// Current poses of the solids, and the normal from the first to the second.
+    /// Pose of the second solid relative to the first (see [`PairPose`]), and the normal.
     pub(in crate::collide) pose: PairPose<'a, N, D>,
     /// Computes the size of the pair (`collide/size.rs`); called only when a length is compared
     /// with it.
@@ -218,9 +223,9 @@ pub(in crate::collide) struct PointChoice<'a, N: Real, const D: usize> {
     pub(in crate::collide) limit: usize,
 }
 
-/// Returns the distance up to which an old point may stand for the deepest point: `distance` plus
-/// `SLACK` times `size`, or plus `tolerance` if that is larger. `distance` and `size` are those of
-/// the pair.
+/// Returns the distance up to which an old point may stand for the deepest point: `distance`, the
+/// distance of the pair, plus `SLACK` times `size`, the size of the pair, or plus `tolerance` if
+/// that is larger.
 pub(in crate::collide) fn slack_level<N: Real>(distance: N, size: N, tolerance: N) -> N {
     distance + max(size * N::lit(SLACK), tolerance)
 }
@@ -257,8 +262,8 @@ fn keeps_pose<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
 }
 
 /// Replaces the points of a manifold by at least one and at most `limit` candidates, and sets its
-/// normal. One of the deepest points gets exactly the distance of the pair; the distance computed
-/// for that point differs from it by rounding, or by up to `SLACK` times the size.
+/// normal. One of the deepest points gets exactly the distance of the pair. The distance computed
+/// for that point differs from it by rounding, or by up to `SLACK` times the size of the pair.
 pub(in crate::collide) fn choose<N: Real, const D: usize>(
     candidates: &mut [Candidate<N, D>],
     choice: &PointChoice<'_, N, D>,
@@ -290,9 +295,10 @@ pub(in crate::collide) fn choose<N: Real, const D: usize>(
     out.normal = *choice.pose.normal;
 }
 
-/// Returns the indices of at most `limit` candidates. At least one of them is deepest: its distance
-/// is the smallest or at most `levels[0]`, or it is an old point with a distance of at most
-/// `levels[1]`.
+/// Returns the indices of all candidates if these are no more than `limit` and [`ALL`], else of at
+/// most `limit` candidates that span a large area ([`reduce`]). At least one is deepest: its
+/// distance is the smallest or at most `levels[0]`, or it continues an old point and has at most
+/// the distance `levels[1]`.
 #[inline]
 fn chosen<N: Real, const D: usize>(
     candidates: &[Candidate<N, D>],
@@ -307,9 +313,9 @@ fn chosen<N: Real, const D: usize>(
     reduce::chosen(&mut reduce::projected(flattened, levels), limit, tolerance)
 }
 
-/// Adds the nearest points as a candidate. If exactly one candidate has the same features and these
-/// are not two faces, the new one replaces it. Several candidates with the same features, as on
-/// round rims, all stay.
+/// Adds the nearest points, which lie on `features`, as a candidate. If exactly one candidate has
+/// the same features, and they are not two faces, the new candidate replaces it. Several candidates
+/// with the same features lie on round rims at different positions, so they all stay.
 fn add_witness<N: Real, const D: usize>(
     witness: &Separation<N, D>,
     features: [FeatureId; 2],
@@ -323,7 +329,8 @@ fn add_witness<N: Real, const D: usize>(
     out.push(Candidate::alone(witness, features));
 }
 
-/// Returns the index of the candidate that gets the distance of the pair, by [`deepest_of`].
+/// Returns the index of the candidate that gets the distance of the pair, by [`deepest_of`] with
+/// `limit`.
 fn deepest<N: Real, const D: usize>(candidates: &[Candidate<N, D>], limit: N) -> usize {
     deepest_of(candidates.len(), limit, |index| {
         let candidate = &candidates[index];

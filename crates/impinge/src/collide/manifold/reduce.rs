@@ -9,13 +9,12 @@
 //! The best four of a few candidates come from trying all such diagonals. Of more than [`FEW`]
 //! candidates, only corners of the convex hull are tried (A. M. Andrew, "Another efficient
 //! algorithm for convex hulls in two dimensions", 1979). More than four points come from dynamic
-//! programming over these corners (J. E. Boyce, D. P. Dobkin, R. L. Drysdale and L. J. Guibas,
-//! "Finding extremal polygons", 1985). Both are exact up to [`FEW`] candidates; a longer hull is
-//! first reduced ([`coarsen`]).
+//! programming over these corners (Boyce, Dobkin, Drysdale and Guibas, "Finding extremal polygons",
+//! 1985). Both are exact up to [`FEW`] candidates; a longer hull is first reduced ([`coarsen`]).
 //!
-//! Old points, those of the previous manifold, are all kept if they span [`ENOUGH`] of the best
-//! choice and include a deepest one; otherwise each weighs slightly more than a new one. So solids
-//! at rest keep their points even where many choices are equal.
+//! Old points (which continue points of the previous manifold) are all kept if they are few, span
+//! [`ENOUGH`] of the best choice and include a deepest one. Otherwise each weighs slightly more
+//! than a new one. So solids at rest keep their points even where many choices are equal.
 
 use core::cmp::Ordering;
 
@@ -47,7 +46,7 @@ pub(in crate::collide) struct Projected<N: Real> {
     pub(in crate::collide) index: usize,
     /// Whether the candidate's distance is the smallest, up to rounding or, if old, the slack.
     pub(in crate::collide) is_deepest: bool,
-    /// Whether the previous manifold had the candidate.
+    /// Whether the candidate is old: continues a point of the previous manifold.
     pub(in crate::collide) is_kept: bool,
 }
 
@@ -57,9 +56,9 @@ pub(in crate::collide) type Projections<N> = SmallVec<[Projected<N>; FEW]>;
 /// Indices of chosen candidates.
 pub(in crate::collide) type Indices = SmallVec<[usize; 8]>;
 
-/// Lists candidates from (tangent coordinates, distance, whether the previous manifold had it). A
-/// candidate is deepest if its distance is at most `level` or is the smallest. If no old candidate
-/// is deepest in this sense, old candidates with a distance up to `slack` are deepest, too.
+/// Lists candidates from (tangent coordinates, distance, whether the candidate is old). A candidate
+/// is deepest if its distance is at most `level` or is the smallest. If no old candidate is deepest
+/// in this sense, old candidates with a distance up to `slack` are deepest, too.
 #[inline]
 pub(in crate::collide) fn projected<N: Real>(
     candidates: impl Iterator<Item = (Vector<N, 2>, N, bool)> + Clone,
@@ -130,8 +129,8 @@ fn span<N: Real>(points: &Projections<N>) -> [N; 2] {
     [area, longest]
 }
 
-/// Computes [`chosen`] from the corners of the convex hull, and a deepest candidate if no corner is
-/// deepest, even for at most `limit` candidates. Cost: O(n log n) for n candidates.
+/// Computes [`chosen`] from the corners of the convex hull and, if none of them is deepest, a
+/// deepest candidate; drops all others even if there are few. Cost: O(n log n).
 #[inline(never)]
 pub(in crate::collide) fn spanning<N: Real>(
     points: &mut Projections<N>,
@@ -200,7 +199,7 @@ fn rescale<N: Real>(points: &mut [Projected<N>]) -> N {
     scale
 }
 
-/// Returns the indices of at most four of a few points, at most `limit`, with the largest area.
+/// Returns the indices of at most `limit` points, and at most four, that span the largest area.
 fn best_four<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> Indices {
     let best = if limit > 2 { best_diagonal(points, limit > 3, tolerance) } else { None };
     let mut chosen = best.unwrap_or_else(|| farthest(points, limit, tolerance));
@@ -210,8 +209,8 @@ fn best_four<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> In
     chosen
 }
 
-/// Returns the positions of a deepest point, of the point farthest from it and, if the deepest
-/// point is inside a row and `limit` is above 2, of the other end of the row.
+/// Returns the positions of a deepest point, of the point farthest from it if that is beyond the
+/// tolerance and, if the deepest is inside a row and `limit` is above 2, of the row's other end.
 fn farthest<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> Indices {
     let mut chosen = Indices::from_slice(&[a_deepest(points)]);
     let mut most = tolerance;
@@ -232,7 +231,8 @@ fn farthest<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> Ind
     chosen
 }
 
-/// Returns the position of the point farthest from the one at `from`, and their weighted distance.
+/// Returns the position of the point farthest from the point at `from`, and their weighted
+/// distance.
 fn farthest_from<N: Real>(points: &[Projected<N>], from: usize) -> (usize, N) {
     let (mut best, mut most) = (from, N::ZERO);
     for (to, point) in points.iter().enumerate() {
@@ -294,8 +294,8 @@ impl<N: Real> CoordinateRows<N> {
     }
 }
 
-/// Returns the positions of the ends of the best diagonal and of the farthest points on both sides,
-/// or on one side unless `is_four`; `None` if all points lie in a row.
+/// Returns the positions of the ends of the best diagonal and, if `is_four`, of the farthest point
+/// on each side, else of the farther of these two. `None` if all points lie in a row.
 fn best_diagonal<N: Real>(points: &[Projected<N>], is_four: bool, tolerance: N) -> Option<Indices> {
     let (mut ends, mut most) = ([0; 2], N::ZERO);
     let rows = CoordinateRows::of(points);
@@ -316,8 +316,8 @@ fn best_diagonal<N: Real>(points: &[Projected<N>], is_four: bool, tolerance: N) 
     with_sides(points, ends, is_four, tolerance)
 }
 
-/// Returns the ends of a diagonal and the points farthest from it on both sides, or on one side
-/// unless `is_four`; `None` if no point is farther from the diagonal than the tolerance.
+/// Returns the ends of a diagonal and, if `is_four`, the farthest point on each side, else the
+/// farther of these two. `None` if no point is farther from the diagonal than the tolerance.
 fn with_sides<N: Real>(
     points: &[Projected<N>],
     ends: [usize; 2],
@@ -361,7 +361,7 @@ fn hull<N: Real>(points: &mut [Projected<N>], tolerance: N) -> Projections<N> {
     ring
 }
 
-/// Appends the corners of one half of the hull; every corner turns left.
+/// Appends the corners of one half of the hull, with a left turn at every corner.
 fn chain<'p, N: Real>(points: impl Iterator<Item = &'p Projected<N>>, ring: &mut Projections<N>) {
     let start = ring.len();
     for next in points {
@@ -381,7 +381,7 @@ fn twice_area<N: Real>(a: &Projected<N>, b: &Projected<N>, c: &Projected<N>) -> 
     cross2(&(b.at - a.at), &(c.at - a.at))
 }
 
-/// Removes corners between their neighbours, up to rounding; deepest and old corners last.
+/// Removes corners between their neighbours, up to rounding: new ones, then old ones, deepest last.
 fn thin<N: Real>(ring: &mut Projections<N>, tolerance: N) {
     for rank in 0..4 {
         let mut at = 0;
@@ -408,7 +408,7 @@ fn is_between<N: Real>(own: &Projected<N>, ends: [&Projected<N>; 2], tolerance: 
     is_in_row && along >= -slack && along <= length * length + slack
 }
 
-/// Reduces a hull to at most `count` corners: a deepest, the old, and those that add most area.
+/// Reduces a hull to `count` corners: a deepest one, old ones, and those that add the most area.
 fn coarsen<N: Real>(ring: &mut Projections<N>, count: usize) {
     if ring.len() <= count {
         return;

@@ -267,7 +267,8 @@ impl<'a, N: Real> SupportRing<'a, N> {
         }
     }
 
-    /// Simplifies a feature that has no extent in projection, or is tilted by more than 60°.
+    /// Reduces a feature that has no area or length in projection, or is tilted by more than 60°,
+    /// and computes `turn`, `cosine` and `top`.
     fn simplify(&mut self, frame: &ContactFrame<N, 3>) {
         let (outward, tolerance) = (self.which.outward(frame), frame.tolerance);
         // Coinciding corners make the extent unknown; once they are merged, the face may have an
@@ -326,8 +327,8 @@ impl<'a, N: Real> SupportRing<'a, N> {
         Some((area, longest))
     }
 
-    /// Merges each corner with the following corners that coincide with it; the merged corner gets
-    /// the side of the last of these.
+    /// Merges each corner with the following corners that coincide with it in projection. The
+    /// merged corner gets the side that begins at the last of these corners.
     fn merge_coincident(&mut self, tolerance: N) {
         let is_apart =
             |a: &RingCorner<N>, b: &RingCorner<N>| max_component(&(a.flat - b.flat)) > tolerance;
@@ -378,7 +379,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
         self.replace(&[farthest]);
     }
 
-    /// Replaces the corners by some of them, in the order of `corners`.
+    /// Keeps only the given corners, in the order of `corners`.
     fn replace(&mut self, corners: &[RingCorner<N>]) {
         for (at, corner) in corners.iter().enumerate() {
             let (face, lane) = (&mut self.faces[at / LANES], at % LANES);

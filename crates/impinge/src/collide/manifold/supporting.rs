@@ -1,7 +1,7 @@
 //! Supporting features of 3D solids as rings of corners, in the frames of the solids.
 //!
-//! The features equal those of [`SupportMap::core_feature`], which computes the features of all
-//! kinds without a function here. Only the corners of round caps are chosen otherwise
+//! The features equal those of [`SupportMap::core_feature`], which is also called for the kinds
+//! that have no function here. Only the corners of round caps are chosen differently
 //! ([`contact_feature`]). A ring is one `FaceRing` for up to 8 corners; a round cap may fill two.
 
 use smallvec::SmallVec;
@@ -18,8 +18,8 @@ use crate::shape::{
 /// Corners of a feature, 8 per ring; the first ring holds the id and normal of the feature.
 pub(super) type FaceBlocks<N> = SmallVec<[FaceRing<N>; 2]>;
 
-/// Fills a blank ring with the supporting feature of a solid's core; returns the radius around the
-/// core.
+/// Fills a blank ring with the supporting feature of a solid's core in `direction`, in the frame of
+/// the solid. Returns the radius of the solid's surface around the core.
 pub(super) fn supporting_feature<N: Real>(
     kind: Kind<'_, N, 3>,
     direction: &Vector<N, 3>,
@@ -68,8 +68,8 @@ fn fill_segment<N: Real>(segment: &Segment<N, 3>, face: &mut FaceRing<N>) -> boo
     fill_ends(FeatureId::Edge(0), ends, face)
 }
 
-/// Returns the part of a box or hull that faces a direction. `None` for other kinds, and for a flat
-/// box, some of whose parts coincide.
+/// Returns the id of the supporting feature of a box or hull in a direction. `None` for other
+/// kinds, and for a box with a zero half extent, some of whose parts coincide.
 pub(super) fn supporting_part<N: Real>(
     kind: Kind<'_, N, 3>,
     direction: &Vector<N, 3>,
@@ -104,8 +104,8 @@ pub(super) fn fill_part<N: Real>(
     }
 }
 
-/// Fills a ring with the part of a triangle that faces a direction; returns `false` for thin
-/// triangles, and where rounding may decide which part it is.
+/// Fills a ring with the supporting feature of a triangle in a direction. Returns `false`, with the
+/// ring unchanged, for thin triangles and where rounding may decide between two features.
 fn fill_triangle<N: Real>(
     triangle: &Triangle<N, 3>,
     direction: &Vector<N, 3>,
@@ -122,7 +122,8 @@ fn fill_triangle<N: Real>(
     true
 }
 
-/// Fills a ring with a point or line of a round solid; returns `false` for a cap.
+/// Fills a ring with a point or line of a cylinder or cone; returns `false` if `part` is `None`,
+/// because the part is a cap.
 fn fill_round<N: Real>(part: Option<RoundPart<N>>, face: &mut FaceRing<N>) -> bool {
     match part {
         Some(RoundPart::Point(id, point)) => fill_point(id, &point, face),
@@ -131,15 +132,15 @@ fn fill_round<N: Real>(part: Option<RoundPart<N>>, face: &mut FaceRing<N>) -> bo
     }
 }
 
-/// Fills `out` with the part of a core that faces a direction, in the form used for contacts. May
-/// return one more corner, which precedes the first.
+/// Fills `out` with the supporting feature of a core in `direction`, with the corners that contacts
+/// use. Returns one additional corner, if needed; it precedes the first corner of `out`.
 ///
 /// The corners of a round cap are fixed on the solid: they are the corners that `core_feature`
 /// returns for the cap's own normal. So a solid that vibrates on its cap touches with the same
-/// points at any small tilt. If the lowest point of the rim lies between two of these corners, it
-/// is returned as the additional corner. If the tilt is so large that no old corner may stand for
-/// the lowest point (`SLACK`), the corners are placed around the lowest point: the cap rolls on its
-/// rim.
+/// points at any small tilt. The lowest point of the rim is its farthest point along `direction`.
+/// If it lies between two of the fixed corners, it is returned as the additional corner. If the
+/// tilt is so large that no old corner may stand for the lowest point (`SLACK`), the corners are
+/// placed around the lowest point instead: the cap rolls on its rim.
 pub(super) fn contact_feature<N: Real, const D: usize>(
     map: &dyn SupportMap<N, D>,
     direction: &Vector<N, D>,
@@ -152,7 +153,7 @@ pub(super) fn contact_feature<N: Real, const D: usize>(
     let lowest = map.core_support(direction);
     let height = |point: &Point<N, D>| point.coords.dot(direction);
     let top = out.vertices.iter().map(height).fold(-N::INFINITY, max);
-    // How far the rim's lowest point extends beyond the lowest corner, along the direction.
+    // How far the lowest point of the rim lies beyond the farthest corner, along `direction`.
     let (lower, reach) = (height(&lowest) - top, map.reach());
     if lower > N::lit(SLACK) * reach {
         map.core_feature(direction, out);
@@ -165,7 +166,7 @@ pub(super) fn contact_feature<N: Real, const D: usize>(
     })
 }
 
-/// Rotates the list of corners so that it begins with the corner after a point on the rim.
+/// Rotates the list of corners so that it begins with the corner that follows a point of the rim.
 fn start_after<N: Real, const D: usize>(point: &Point<N, D>, out: &mut Feature<N, D>) {
     let count = out.vertices.len();
     let distance = |at: usize| (out.vertices[at] - point).norm();

@@ -63,8 +63,8 @@ fn frame<N: Real, const D: usize>(
     ContactFrame::new(pair, separation, &request, tangents)
 }
 
-/// Returns both features: each from the position of the point if that decides, else from the
-/// supporting feature.
+/// Returns the features of both solids: each from the position of its point if that decides, else
+/// from the supporting feature.
 fn features<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -87,8 +87,9 @@ fn features<N: Real, const D: usize>(
 }
 
 /// Returns the part of a solid that contains a surface point with the outward normal `outward`,
-/// from the position alone, without the supporting feature. Flat-faced solids, half-spaces,
-/// segments, capsules and rounded solids are supported; `None` for other kinds and in close cases.
+/// from the position alone, without the supporting feature. Supports flat-faced solids,
+/// half-spaces, segments, capsules and rounded solids of these kinds; returns `None` for other
+/// kinds, and where the position does not decide within `tolerance`.
 fn by_position<N: Real, const D: usize>(
     kind: Kind<'_, N, D>,
     point: &Point<N, D>,
@@ -155,8 +156,8 @@ fn on_seam<N: Real, const D: usize>(
     part.filter(|part| !matches!(part, FeatureId::Face(_)))
 }
 
-/// Returns the feature of the second solid if the first is a ball and the kind of the second gives
-/// the feature directly; else `None`.
+/// Returns the feature of the second solid if the first is a ball and the position of the point
+/// decides ([`beside_ball`]); else `None`.
 fn of_ball<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,

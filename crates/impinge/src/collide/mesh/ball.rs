@@ -25,7 +25,8 @@ use crate::convex::Separation;
 use crate::math::{Mapped, Point, Pose, Real, Vector, max, min};
 use crate::shape::{Ball, CompositeShape, FeatureId, Kind, SupportMap, SurfaceAccess, Triangle};
 
-/// Rounding error of lengths, in units of epsilon times the sum of all sizes.
+/// Rounding error of lengths, in units of epsilon times the sum of the bounding radii of the ball
+/// and the triangle around the ball's centre.
 const ROUNDING: f64 = 16.0;
 /// Number of parts that the cache may hold with its large margin. The number is large because a
 /// part outside the ball's box costs only a box test.
@@ -124,7 +125,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
             within,
         };
         let candidates = candidate_triangles(&question, self.surface.has_regular_seams());
-        // Everything outside the box is beyond the prediction.
+        // Triangles outside the box are not among the candidates; they are beyond `max_distance`.
         let max_distance = self.ball.radius() + self.request.prediction;
         let clearance = min(max_distance, candidates.from_middle);
         let travelled = Travelled { old: contacts.reference, clearance };
@@ -258,7 +259,8 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         Some(Some(PartContact { distance, normal, piece, lowest, status, face, tolerance }))
     }
 
-    /// Filters the normal of the separation `found` of the ball and a triangle by the surface.
+    /// Applies the normal filter of the surface to `found`, the separation of the ball and a
+    /// triangle.
     fn filtered_normal(
         &self,
         centered: &CenteredTriangle<N>,
@@ -277,9 +279,9 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     }
 }
 
-/// Calls `visit` with the indices of some triangles in ascending order. `bits` selects the
-/// triangles of a packet from its two masks, near and hidden. If `visit` returns `None`, stops and
-/// returns `None`.
+/// Calls `visit` with the index of each triangle that `bits` selects, in ascending order. `bits`
+/// receives the two masks of a packet, near and hidden, and returns a mask. If `visit` returns
+/// `None`, stops and returns `None`.
 fn each_lane<N>(
     candidates: &CandidateTriangles<N>,
     bits: impl Fn([u8; 2]) -> u8,

@@ -1,6 +1,6 @@
-//! Tests contacts of balls, boxes and hulls on surfaces over several updates: the contacts of balls
-//! with those of the generic path, which defines them, and the deepest contact of each solid with
-//! the contact of a query.
+//! Tests contacts with surfaces over several updates. The contacts of balls must equal the contacts
+//! of the generic path, which defines them. The deepest contact of a ball, a box or a hull must be
+//! the contact that a query returns, up to rounding.
 
 use super::CompositeContacts;
 use super::ball::update_on_surface;
@@ -34,8 +34,8 @@ fn heights<N: Real>(random: &mut Random, kind: usize) -> Vec<N> {
 }
 
 /// Returns a mesh over a grid. In some meshes, each triangle has its own vertices; some triangles
-/// are left out, turned over or without area; or two vertices are moved, one of them to the
-/// position of another vertex.
+/// are left out, turned over or without area; two vertices are moved, one of them to the position
+/// of another vertex; or contacts with internal edges are kept.
 fn mesh_of<N: Space<3>>(random: &mut Random, heights: &[N]) -> TriMesh<N, 3> {
     let vertex_at = |at: u32| {
         let [x, z] = [at % POINTS, at / POINTS].map(|n| N::lit(f64::from(n) * 0.5 - 2.0));
@@ -117,8 +117,9 @@ fn flat_of<N: Space<3>>(random: &mut Random) -> Solid<N> {
 }
 
 /// Moves one solid and asserts, at each step, that the contacts do not depend on whether
-/// [`update_on_surface`] is tried before the generic path. Returns the number of updates by
-/// [`update_on_surface`], and the number of contact points.
+/// [`update_on_surface`] is tried before the generic path, and that queries return the deepest
+/// contact. Returns the number of updates by [`update_on_surface`], and the number of contact
+/// points.
 fn follow<N: Space<3>>(
     (solid, height): Solid<N>,
     random: &mut Random,

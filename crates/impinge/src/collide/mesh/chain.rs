@@ -27,7 +27,8 @@ use crate::shape::{
     SupportMap, Surface, SurfaceAccess,
 };
 
-/// Rounding error of lengths, in units of epsilon times the sum of all sizes.
+/// Rounding error of lengths, in units of epsilon times the sum of the bounding radii of the solid
+/// and the segment around the solid's origin.
 const ROUNDING: f64 = 16.0;
 /// Largest number of cached packets that are searched for the segments at a point; for more
 /// packets, the surface of the chain is called instead.
@@ -139,7 +140,7 @@ struct ChainLink<'c, 'b, 'a, N: Real> {
     parts: [u32; 2],
     /// The segment relative to the origin of the solid.
     segment: Segment<N, 2>,
-    /// The segment as part of the surface: filters the normals of its contacts.
+    /// The segment and its neighbours, to filter the normals of its contacts.
     known: KnownSegment<'c, N>,
     /// Separation of the segment and the solid, in the order of kinds.
     found: Separation<N, 2>,
@@ -256,21 +257,22 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         Some(ChainLink { chain: self, parts, segment, known, found: *found, tolerance })
     }
 
-    /// Converts a direction of [`ChainLink::pair`], from its first solid to its second in the frame
-    /// of the first, into the direction from the solid to the chain, in the frame of the solid.
+    /// Takes a normal of [`ChainLink::pair`], which points from the first solid of this pair to the
+    /// second, in the frame of the first. Returns it as a vector from the solid to the chain, in
+    /// the frame of the solid.
     fn outward(&self, normal: &Vector<N, 2>) -> Vector<N, 2> {
         if self.comes_first { *normal } else { -self.turn.vector(normal) }
     }
 
-    /// Converts a direction from the solid to the chain, in the frame of the solid, into a
-    /// direction of [`ChainLink::pair`]: from its first solid to its second, in the frame of the
-    /// first.
+    /// Takes a normal that points from the solid to the chain, in the frame of the solid. Returns
+    /// it as a normal of [`ChainLink::pair`]: from the first solid of this pair to the second, in
+    /// the frame of the first.
     fn inward(&self, normal: &Vector<N, 2>) -> Vector<N, 2> {
         if self.comes_first { *normal } else { -self.turn.inverse_vector(normal) }
     }
 
-    /// Converts a contact point of [`ChainLink::pair`], in a manifold with this `normal`, into the
-    /// frame of the solid, with the solid as the first shape.
+    /// Takes a contact point of [`ChainLink::pair`], in a manifold with this `normal`. Returns it
+    /// in the frame of the solid, with the solid as the first shape and the chain as the second.
     fn placed(&self, point: RawPoint<N, 2>, normal: &Vector<N, 2>) -> RawPoint<N, 2> {
         if self.comes_first {
             return point;
@@ -310,7 +312,7 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
         let Self { found: Separation { distance, .. }, tolerance, parts, .. } = *self;
         let mut lowest = points[start..].iter().fold(N::INFINITY, |low, p| min(low, p.distance));
         // There may be no points along the face's normal, or all may be apart although the parts
-        // overlap.
+        // overlap. The contact is dropped then.
         let highest = if distance <= N::ZERO { tolerance } else { N::INFINITY };
         if !points[start..].iter().any(|point| point.distance <= highest) {
             points.truncate(start);
@@ -330,7 +332,8 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
         Some(())
     }
 
-    /// Filters the normal of a contact, in the frame of the solid, by the chain.
+    /// Filters the normal of the contact by the surface of the chain. `normal` points from the
+    /// solid to the chain, in the frame of the solid.
     fn filtered_normal(&self, normal: &Vector<N, 2>) -> FilteredNormal<N, 2> {
         let chain = self.chain;
         let middle = centroid(&[*self.segment.a(), *self.segment.b()]) + chain.origin.coords;
@@ -351,9 +354,9 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
         SegmentPair { pair, tolerance: self.tolerance, prediction: request.prediction }
     }
 
-    /// Appends the contact points at the nearest points, for a normal in the frame of the solid.
-    /// Returns the normal, rounded as in a piece of the generic path; `None` if the generic path
-    /// must find the points.
+    /// Appends the contact points of the segment for a normal that the chain admits, in the frame
+    /// of the solid. Returns the normal, rounded as in a piece of the generic path; `None` if the
+    /// generic path must find the points.
     fn between(&self, normal: &Vector<N, 2>, points: &mut ChainPoints<N>) -> Option<Vector<N, 2>> {
         let inward = self.chain.inward(normal);
         let witness = Separation { normal: inward, ..self.found };

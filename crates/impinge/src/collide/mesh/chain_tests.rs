@@ -37,8 +37,8 @@ fn heights<N: Real>(random: &mut Random, kind: usize) -> Vec<N> {
     (0..13).map(&mut next).collect()
 }
 
-/// Returns a terrain around the origin: a height field or a polyline, in either direction along x,
-/// one-sided or two-sided.
+/// Returns a terrain around the origin: a height field, perhaps with a hole, or an open or closed
+/// polyline, in either direction along x. It is one-sided or two-sided.
 fn ground_of<N: Space<2>>(random: &mut Random, round: usize) -> Box<dyn Shape<N, 2>> {
     let heights = heights::<N>(random, round % 3);
     let is_one_sided = random.pick(3) == 0;
@@ -89,7 +89,7 @@ fn pose_of<N: Real>(position: Vector<N, 2>, angle: N) -> Pose<N, 2> {
     Pose { rotation: Matrix::<N, 2>::new(cosine, -sine, sine, cosine), translation: position }
 }
 
-/// Asserts that the two sets of contacts are equal bit for bit, ids included.
+/// Asserts that two sets of contacts are equal, ids and reference points included.
 pub(super) fn assert_same<N: Real, const D: usize>(
     quick: &CompositeContacts<N, D>,
     slow: &CompositeContacts<N, D>,
@@ -106,9 +106,9 @@ pub(super) fn assert_same<N: Real, const D: usize>(
     }
 }
 
-/// Asserts that the deepest contact within `limit` depends neither on the path, specialised or
-/// generic, nor on whether the distance of the shapes is computed first; in the latter case up to
-/// rounding.
+/// Asserts that the deepest contact within `limit` does not depend on the path, specialised or
+/// generic and, up to rounding, not on whether the distance of the shapes is computed first.
+/// Asserts that [`contact_in_world`] finds a contact in the same cases.
 pub(super) fn assert_one_contact<N: Space<D>, const D: usize>(
     [placed1, placed2]: [&Placed<'_, N, D>; 2],
     limit: N,
@@ -134,8 +134,8 @@ pub(super) fn assert_one_contact<N: Space<D>, const D: usize>(
 }
 
 /// Moves one solid and asserts, at each step, that the contacts do not depend on whether
-/// [`update_chain`] is tried before the generic path. Returns the number of updates by
-/// [`update_chain`], and the number of contact points.
+/// [`update_chain`] is tried before the generic path, and that queries return the deepest contact.
+/// Returns the number of updates by [`update_chain`], and the number of contact points.
 fn follow<N: Space<2>>(random: &mut Random, round: usize) -> (usize, usize) {
     let (solid, terrain) = (solid_of::<N>(random), ground_of::<N>(random, round));
     let far = N::lit([0.0, 40.0][random.pick(2)]);

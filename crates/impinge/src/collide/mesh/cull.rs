@@ -26,7 +26,7 @@ use crate::math::{Matrix, Point, Real, Space, Vector, Wide, filled, max, max_com
 use crate::shape::{Geometry, Kind};
 
 /// Slack of the bounds, relative to the sum of all lengths: 128 rounding units, and at least
-/// `CURVED`, the tolerance of the distance search of curved solids.
+/// `CURVED`, which exceeds the tolerance of the distance search of curved solids.
 const ROUNDING: f64 = 128.0;
 const CURVED: f64 = 1.0e-10;
 
@@ -68,7 +68,7 @@ pub(super) struct LowerBounds<N> {
     /// Bits of the parts that may be within `max_distance`.
     pub(super) mask: u8,
     /// Lower bound of the distance from the solid's centre to the nearest of the 8 parts whose
-    /// boxes overlap the query's box; zero if unknown.
+    /// boxes overlap the query's box; zero if unknown, infinite if no box overlaps.
     pub(super) from_middle: N,
 }
 

@@ -29,7 +29,8 @@ use crate::shape::{FaceSeams, FeatureId, Geometry, Kind, SurfaceAccess};
 use core::cell::Cell;
 
 /// Appends the contacts of a box or a hull with the nearby triangles of a surface. Returns `false`,
-/// and appends nothing, for other solids and composites. `prediction` is that of the whole shapes;
+/// and appends nothing, for other solids, for hulls with fewer than 4 faces, and if the parts are
+/// not the cached triangles of a surface without bodies. `prediction` is that of the whole shapes;
 /// the request for pairs of parts in `query` may have a larger prediction.
 pub(crate) fn face_contacts<N: Real>(
     query: &Query<'_, N, 3>,
@@ -163,7 +164,7 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
         Some(KeptTriangle { part: self.around.parts()[cache_index], corners, seams, tolerance })
     }
 
-    /// Filters the normal of the gap between a triangle and the solid by the surface.
+    /// Applies the normal filter of the surface to the gap between a triangle and the solid.
     fn answer(&self, triangle: &KeptTriangle<'_, N>, gap: &TriangleGap<N>) -> SurfaceAnswer<N> {
         let known = triangle.seams.in_surface(self.surface, &triangle.corners[0]);
         let surface = Some(SurfaceAccess::of_own(&known));

@@ -17,7 +17,8 @@ use crate::shape::{CompositeShape, Part};
 /// Pairs of part indices; 0 stands for a convex shape.
 pub(super) type PartPairs = SmallVec<[[u32; 2]; 24]>;
 
-/// Masks of the packets of the cache, one for each packet, with one bit for each of its 8 parts.
+/// Masks of the packets of the cache, one for each packet: bit `i` is set if part `i` of the packet
+/// is a candidate.
 pub(super) type CandidateMasks = SmallVec<[u8; 8]>;
 
 /// Result of [`culled`]: the pairs of parts that may be within a distance.
@@ -25,7 +26,7 @@ pub(crate) struct CulledParts<N: Real> {
     /// Pairs in ascending order.
     pub(super) parts: PartPairs,
     /// The second parts of `parts`, as bits of the cached packets; empty if the cache holds no
-    /// corners.
+    /// corners or was not used.
     pub(super) masks: CandidateMasks,
     /// Lower bound of the distance from the centre of a convex first shape to the second shape;
     /// zero if unknown.

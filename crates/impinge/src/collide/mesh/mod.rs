@@ -76,7 +76,7 @@ use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Space, Vector, max, min};
 use crate::shape::{Geometry, Kind, PartSolid, SupportMap};
 
-/// Points kept per pair of parts before merging; enough for two facets of common solids.
+/// Points kept for each pair of parts before merging; enough for two facets of common solids.
 const PART_POINTS: usize = 16;
 
 /// Parts farther than the nearest part by up to this fraction of its distance are searched, too.
@@ -141,8 +141,8 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
         self.patches.iter().map(|patch| patch.points.len()).sum()
     }
 
-    /// Calls `each` with the normal, the distance and the first point of each contact point. `each`
-    /// may change the distance.
+    /// Calls `each` with the normal, the distance and the point on the first shape of each contact
+    /// point; `each` may change the distance.
     pub(crate) fn each_point(&mut self, mut each: impl FnMut(&Vector<N, D>, &mut N, &Point<N, D>)) {
         for Patch { normal, points } in &mut self.patches {
             points.iter_mut().for_each(|point| {
@@ -298,7 +298,7 @@ fn advanced<N: Space<D>, const D: usize>(
     if is_hit { old } else { center }
 }
 
-/// Input of the computation of the contacts of two shapes.
+/// The shapes, cached parts and request for which contacts are computed.
 pub(crate) struct Query<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     /// Whether both shapes are one composite, whose parts may touch each other.
@@ -399,7 +399,7 @@ pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
     let in_world = |found| placed(&found, ordered.first, ordered.swapped);
     if between.pair.pose12.is_finite() && is_within_solid(&between, limit) && has_own_path(&between)
     {
-        // Points whose distances differ only by rounding are all considered, whatever `limit` is.
+        // Searches at least as far as `rounding`, because touching shapes may seem that far apart.
         let rounding = rounding(&between);
         let mut found = deepest_within(&between, max(limit, rounding))?;
         let is_close = found.distance > N::ZERO && found.distance <= rounding;
@@ -408,7 +408,7 @@ pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
         }
         return Some(found).filter(|found| found.distance <= limit).map(in_world);
     }
-    // The deepest contact of two composites is searched among all their contacts.
+    // Any touching pair of two composites will do: their deepest contact is searched below.
     let nearest = match between.composites() {
         [Some(_), Some(_)] => touching_of_ordered(&ordered, limit)?,
         _ => of_ordered(&ordered, limit)?,
@@ -484,8 +484,8 @@ fn rounding<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> N {
     N::lit(64.0) * N::EPSILON * (sizes + between.pair.pose12.translation.norm())
 }
 
-/// Returns the least distance of two parts of one composite that are not adjacent; negative if they
-/// overlap, `None` beyond `limit`. `pair` is the shape with itself.
+/// Returns the least signed distance of two parts of one composite that are not adjacent; `None` if
+/// no such pair is within `limit`. `pair` is the pair of the composite with itself.
 pub(crate) fn own_distance<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,

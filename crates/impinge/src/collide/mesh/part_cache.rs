@@ -17,7 +17,8 @@ use crate::math::ones::Ones;
 use crate::math::{Point, Pose, Real, Space, Vector, max};
 use crate::shape::{CompositeShape, FaceSeams, Part, PartSolid, Segment, SupportMap, Triangle};
 
-/// Margin around a box in which parts are cached for later updates.
+/// Margin by which the searched box exceeds the box that the solid needs, so that the cached parts
+/// also serve later updates.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) enum CacheMargin {
@@ -60,7 +61,8 @@ enum KeptSeams<N: Real> {
 /// bytes per triangle.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PartCache<N: Real, const D: usize> {
-    /// Box all of whose parts are in the cache; `None` before the first search.
+    /// Box in the frame of the composite; all parts that overlap it are in the cache. `None` before
+    /// the first search.
     within: Option<Aabb<N, D>>,
     /// Indices of all parts that overlap `within`, ascending.
     parts: SmallVec<[u32; 8]>,
@@ -140,8 +142,8 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         self.within.as_ref().is_some_and(|within| within.contains(aabb))
     }
 
-    /// Searches the parts that overlap a box loosened by the margin, and copies their corners. If
-    /// the large margin gives more than `most` parts, this search and all later ones use the small
+    /// Finds the parts that overlap a box loosened by the margin, and copies their corners. If the
+    /// large margin gives more than `most` parts, this search and all later ones use the small
     /// margin.
     fn fill(&mut self, composite: &dyn CompositeShape<N, D>, aabb: &Aabb<N, D>, most: usize) {
         let half = aabb.half_extents().iter().fold(N::ZERO, |most, &half| max(most, half));
@@ -225,7 +227,8 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         &self.parts
     }
 
-    /// Returns the corners of all parts in packets of 8; empty unless all parts have corners.
+    /// Returns the corners of all parts in packets of 8; empty unless all parts are triangles, or
+    /// all are segments, in the frame of the composite.
     pub(super) fn tiles(&self) -> &[PartPacket<N, D>] {
         &self.tiles
     }

@@ -65,8 +65,9 @@ pub(crate) struct Arena<N: Real, const D: usize> {
     pub(super) points: RawPoints<N, D>,
     /// Largest bound of the rounding errors of lengths computed for parts that were skipped.
     pub(super) rounding: N,
-    /// Whether all faces in contact are fronts, with neighbours oriented alike. Then no face hides
-    /// another, because the solid is in front of all these faces.
+    /// Whether the solid touches every face in contact on its front, and all neighbours of these
+    /// faces have their fronts on the same side. Then no face hides another, because the solid is
+    /// in front of all these faces.
     pub(super) are_fronts: bool,
     raw: RawManifold<N, D>,
 }
@@ -180,8 +181,8 @@ impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
         tolerance: N,
         over: Option<FeatureId>,
     ) -> [FilteredNormal<N, D>; 2] {
-        // The reference point of the other solid and the centre of the part, in the frame of the
-        // part's shape.
+        // In the frame of each shape: the centre of its own part, and the centre or reference point
+        // of the other solid.
         let ([own1, other2], [other1, own2]) = (self.centers[0], self.centers[1]);
         let other2 = self.reference.unwrap_or(other2);
         let [surface1, surface2] = scene.surfaces;
@@ -290,7 +291,8 @@ fn of_surfaces<N: Space<D>, const D: usize>(
 }
 
 /// Builds the manifold of two parts at their nearest points, along a normal that the surface
-/// admits. `over` is the feature that a ball is over, if it is certain.
+/// admits. `over` is the feature of a triangle whose Voronoi region contains the centre of a ball,
+/// if it is certain.
 fn build_touching<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     witness: &Separation<N, D>,

@@ -185,9 +185,10 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
         }
     }
 
-    /// Returns the index of the heir of an old point in a piece: the point with the same features,
-    /// which inherits the id. `None` if the features do not identify one old and one new point, or
-    /// if these two are far apart or have different normals.
+    /// Returns the index of the point of a piece that inherits the id of an old point: the only
+    /// point with the same features. If one of these features is a vertex, that suffices; otherwise
+    /// the two points must be near each other with similar normals, and no other old point of the
+    /// patch may have these parts and features. `None` if there is no such point.
     fn only_heir(
         &self,
         old_pose: &PairPose<'_, N, D>,
@@ -217,7 +218,7 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
         (is_only && are_near()).then_some(heir)
     }
 
-    /// Matches the remaining old and new points by position.
+    /// Matches the remaining old and new points by [`each_match`], and passes the ids on.
     #[inline(never)]
     fn keep_by_position(&self, olds: &[Anchors<N, D>], ids: &[u32], kept: &mut KeptIds) {
         let (mut news, mut indices) = (AnchorList::new(), SmallVec::<[usize; 32]>::new());

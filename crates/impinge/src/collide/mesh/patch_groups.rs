@@ -295,8 +295,9 @@ mod tests {
         pieces
     }
 
-    /// Asserts that all patches with the normal of a piece are candidates for it, unless there are
-    /// more than the cap, and that a piece has at most `most` candidates on average.
+    /// Asserts that all earlier patches with the normal of a piece are candidates for that piece,
+    /// unless the number of candidates reaches [`MAX_COMPARED`]. Asserts that a piece has at most
+    /// `most` candidates on average.
     fn check<const D: usize>(count: usize, most: usize) {
         let pieces = pieces::<D>(count, true);
         let (mut cells, mut compared, mut same) = (NormalCells::of(&pieces), 0, 0);

@@ -40,7 +40,7 @@ pub(super) struct Member<N> {
 /// The points of one patch.
 pub(super) type Members<N> = SmallVec<[Member<N>; FEW]>;
 
-/// Input for the choice of points; `kept` holds the inherited ids.
+/// Input for the choice of points: the pieces to merge, and the inherited ids of their points.
 pub(super) struct Choosing<'a, N: Real, const D: usize> {
     pub(super) merging: &'a Merging<'a, N, D>,
     pub(super) kept: &'a KeptIds,
@@ -101,8 +101,8 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
     }
 
     /// Appends the chosen points, sorted by id. The deepest old point (one that the last update
-    /// had) gets exactly the distance `lowest` if it is within the tolerance of it; otherwise the
-    /// deepest point does.
+    /// had) gets exactly the distance `lowest` if its own distance exceeds `lowest` by at most the
+    /// tolerance; otherwise the deepest point gets it.
     fn points(
         &self,
         chosen: &[Member<N>],
@@ -135,8 +135,7 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         }
     }
 
-    /// Returns whether the point continues a point of the last update that was at the same
-    /// position.
+    /// Returns whether the point continues a point of the last update that was near it.
     fn is_old(&self, member: &Member<N>) -> bool {
         self.kept[member.point].is_some_and(|kept| kept.is_old)
     }
@@ -186,8 +185,8 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         for next in 0..members.len() {
             let member = members[next];
             let flat = member.flat;
-            // Sorted along the first tangent, so only the last few points can be at the same
-            // position.
+            // The points are sorted along the first tangent, so only the last few can be at the
+            // position of the next.
             let is_close = |at: &usize| flat.x - members[*at].flat.x <= N::TWO * near;
             let mut last = (0..count).rev().take_while(is_close);
             match last.find(|&at| (members[at].flat - flat).norm_squared() <= near * near) {

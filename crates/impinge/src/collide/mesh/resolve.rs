@@ -52,8 +52,9 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
     keep_one(scene, contacts, arena);
 }
 
-/// Drops contacts with faces that other contacts explain: first the `Snapped` ones, then the
-/// `Beyond` ones.
+/// Drops contacts that are explained by other contacts, whose escapes separate the two parts: first
+/// the `Snapped` contacts, then the `Beyond` contacts. Only a contact that is not deeper can
+/// explain another.
 ///
 /// Cost: O(n log n) in the number of contacts; each is compared with at most `MAX_ESCAPES` escapes.
 fn leave_explained<N: Space<D>, const D: usize>(
@@ -120,7 +121,8 @@ impl<N: Real, const D: usize> Escapes<N, D> {
 }
 
 /// Returns whether one of the escapes separates the two parts of a contact. Only a `Beyond` contact
-/// may be explained by an escape along its own normal.
+/// may be explained by an escape along its own normal. `false` for a contact without overlap beyond
+/// rounding.
 fn is_explained<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contact: &PartContact<N, D>,
@@ -137,7 +139,8 @@ fn is_explained<N: Space<D>, const D: usize>(
     let is_relevant = |escape: &&Escape<N, D>| {
         escape.depth >= least && (is_beyond || escape.normal.dot(&normal) < N::lit(ALIKE))
     };
-    // The normal of the parts may give a separating plane after the motion.
+    // The parts may be apart along their own normal after the motion, which proves that the escape
+    // separates them.
     let rest = |escape: &Escape<N, D>| {
         contact.distance + contact.normal.dot(&escape.normal) * escape.depth
     };

@@ -13,7 +13,7 @@ use crate::collide::{Pair, RawManifold, RawPoints};
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector, min};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Plane, SurfaceAccess};
 
-/// Two shapes, at least one of them a composite.
+/// Two shapes, at least one of them a composite, of which pairs of parts are placed.
 pub(crate) struct Scene<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     /// The surface of each shape, if it has one.
@@ -81,7 +81,7 @@ pub(super) struct PlacedPair<'a, N: Real, const D: usize> {
     is_shared: bool,
 }
 
-/// Translates a part so that `origin` becomes the origin. Of triangles and segments, the corners
+/// Translates a part so that `origin` becomes the origin. For triangles and segments, the corners
 /// are moved instead of the pose, so that adjacent parts still share their corners bit for bit.
 fn moved<'a, N: Real, const D: usize>(
     part: &Part<'a, N, D>,
@@ -144,7 +144,8 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         self.between.composites()[0].is_none()
     }
 
-    /// Returns whether a ghost is adjacent to one of two parts.
+    /// Returns whether a ghost (a part that stands for a part of a neighbouring shape) is adjacent
+    /// to one of two parts.
     pub(super) fn are_beside_ghost(&self, parts: [u32; 2]) -> bool {
         let mut both = self.surfaces.iter().zip(parts);
         both.any(|(surface, part)| surface.is_some_and(|surface| surface.is_beside_ghost(part)))
@@ -240,9 +241,9 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         PlacedPair::new(bodies, self.turn(), origins)
     }
 
-    /// Returns the pair of a half-space and a part of the first shape (0) or of the second (1); the
-    /// half-space replaces the other shape. The `plane` is in the frame of the other shape; its
-    /// boundary runs through `point`, in the frame of the first.
+    /// Returns the pair of a half-space and one part: a part of the first shape (0) or of the
+    /// second (1). The half-space replaces the other shape. The `plane` is in the frame of the
+    /// shape that it replaces; its boundary runs through `point`, in the frame of the first shape.
     pub(super) fn above<'p>(
         &'p self,
         plane: &'p Plane<N, D>,
@@ -271,7 +272,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
     }
 
     /// Returns the pair of a convex solid and a part with the shared placement, without computing
-    /// its poses again; `None` for other parts.
+    /// its poses again; `None` for other parts, and if a coordinate overflows.
     fn with_shared_placement(&self, part: &Part<'a, N, D>) -> Option<PlacedPair<'a, N, D>> {
         if let PartSolid::Shape(_) = part.solid {
             return None;
@@ -307,7 +308,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
 
 impl<N: Space<D>, const D: usize> SharedPlacement<N, D> {
     /// Returns a part with the anchor as its origin; `None` if the part does not have this
-    /// placement.
+    /// placement or a coordinate overflows.
     fn recentred<'a>(&self, part: &Part<'a, N, D>) -> Option<PartSolid<'a, N, D>> {
         let is_segment = matches!(part.solid, PartSolid::Segment(_));
         let is_alike = self.pose.is_same(&part.pose) && self.is_segment == is_segment;
@@ -348,7 +349,7 @@ impl<'a, N: Space<D>, const D: usize> PlacedPair<'a, N, D> {
     }
 
     /// Replaces the part of the second shape by `part`. Returns `false`, and changes nothing, if
-    /// `part` does not have the shared placement.
+    /// `part` does not have the shared placement or a coordinate overflows.
     fn exchange(&mut self, shared: &SharedPlacement<N, D>, part: &Part<'a, N, D>) -> bool {
         let Some(solid) = shared.recentred(part) else { return false };
         let at = usize::from(!self.relative.is_swapped);
@@ -418,15 +419,17 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         self.relative.turn.inverse_vector(direction)
     }
 
-    /// Converts a direction from the first body to the second, in the first body's frame, into the
-    /// direction from the first shape to the second, in the first shape's frame.
+    /// Takes a normal that points from the first body to the second, in the frame of the first
+    /// body. Returns it as a vector from the first shape to the second, in the frame of the first
+    /// shape: rotated, and negated if the order of kinds swaps the shapes.
     pub(super) fn outward(&self, normal: &Vector<N, D>) -> Vector<N, D> {
         let normal = self.relative.frame.vector(normal);
         if self.relative.is_swapped { -normal } else { normal }
     }
 
-    /// Converts a direction from the first shape to the second, in the first shape's frame, into
-    /// the direction from the first body to the second, in the first body's frame.
+    /// Takes a normal that points from the first shape to the second, in the frame of the first
+    /// shape. Returns it as a vector from the first body to the second, in the frame of the first
+    /// body: rotated, and negated if the order of kinds swaps the shapes.
     pub(super) fn inward(&self, normal: &Vector<N, D>) -> Vector<N, D> {
         let normal = self.relative.frame.inverse_vector(normal);
         if self.relative.is_swapped { -normal } else { normal }
@@ -469,9 +472,9 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         <N::Algorithms>::separation(&pair, -tolerance).is_none()
     }
 
-    /// Converts a manifold of the bodies, in the frame of the first body, into a manifold of the
-    /// shapes, in the frame of the first shape. Appends its points to `points`; ids and codes are
-    /// copied unchanged.
+    /// Takes the manifold of [`Self::pair`], in the frame of its first body. Returns the manifold
+    /// of the shapes, in the frame of the first shape, as a piece whose points are appended to
+    /// `points`; ids and codes are copied unchanged.
     pub(super) fn piece(
         &self,
         raw: &RawManifold<N, D>,

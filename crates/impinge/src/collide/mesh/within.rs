@@ -1,4 +1,4 @@
-//! Computes the contacts of two shapes at one time, without a cache.
+//! Computes the contacts of two shapes for a single configuration, without cached data.
 
 use super::part_cache::PartCache;
 use super::part_contact::{Arena, PartStatus};

@@ -18,8 +18,9 @@ use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Segment, Tri
 #[derive(Clone, Copy)]
 pub(crate) struct Between<'a, N: Real, const D: usize> {
     pub(crate) pair: Pair<'a, N, D>,
-    /// Pose of the first shape in the frame of the second. It is as exact as `pair.pose12`, because
-    /// both are computed from the difference of the positions.
+    /// Pose of the first shape in the frame of the second. If [`Self::of_ordered`] made the pair,
+    /// it is as exact as `pair.pose12`, because both are computed from the difference of the
+    /// positions.
     pub(crate) pose21: Pose<N, D>,
 }
 

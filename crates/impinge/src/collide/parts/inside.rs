@@ -168,21 +168,22 @@ fn each_solid<N: Space<D>, const D: usize>(
     }
 }
 
-/// Search for the nearest pair of parts of each piece and its boundary.
+/// Search that finds, for each piece, the nearest pair of a part of the piece and a part of the
+/// boundary of the body that the piece is in.
 struct NearestBoundary<'p, 'a, N: Real, const D: usize> {
     between: &'p Between<'a, N, D>,
     pieces: &'p mut InsidePieces<N, D>,
 }
 
 impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestBoundary<'_, '_, N, D> {
-    /// Returns the largest of the known distances of the pieces from their boundaries; infinite
-    /// while one is unknown.
+    /// Returns the largest of the known distances of the pieces from the boundaries of their
+    /// bodies; infinite while the distance of a piece is unknown.
     fn limit(&self) -> N {
         self.pieces.iter().fold(-N::INFINITY, |most, piece| max(most, piece.distance()))
     }
 
-    /// Returns a negative bound, which ends the search, once every piece touches its boundary: a
-    /// piece that crosses the boundary is dropped, whatever its depth.
+    /// Returns a negative bound, which ends the search, once every piece touches the boundary of
+    /// its body: a piece that crosses the boundary is dropped, whatever its depth.
     fn bound(&self) -> N {
         let limit = self.limit();
         if limit <= N::ZERO { -N::ONE } else { loosened(limit) }
@@ -316,8 +317,8 @@ fn rounding<N: Real, const D: usize>(points: [&Point<N, D>; 2]) -> N {
     N::lit(ROUNDING) * N::EPSILON * size
 }
 
-/// Extends `best`, the result for the surfaces alone, to the bodies of the shapes. Returns the pair
-/// of parts that `wanted` selects; `None` if no pair is within `limit`.
+/// Returns the pair of parts that `wanted` selects if bodies are solid inside; `best` is the result
+/// for the surfaces alone. `None` if no pair is within `limit`.
 pub(super) fn with_inside<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     limit: N,

@@ -14,7 +14,8 @@ pub(crate) enum Wanted {
     /// The nearest pair, or the deepest if parts overlap; in a tie, the pair with the lowest
     /// indices.
     Deepest,
-    /// The nearest pair, or any pair that touches or overlaps, which suffices for the distance.
+    /// The nearest pair or, if parts touch or overlap, any such pair: enough for the distance of
+    /// shapes that are apart, and to know whether shapes touch.
     Touching,
 }
 

@@ -10,7 +10,7 @@
 //!
 //! ```text
 //! axis                          lanes             stops when all are beyond
-//!  centroid to centroid          limit > 0         yes
+//!  between means of corners      limit > 0         yes
 //!  2 normals                     all               yes
 //!  9 cross products of sides     all
 //!  6 in-plane normals of sides   coplanar pairs
@@ -110,8 +110,8 @@ fn in_lanes_3d<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let (own, others) = (sides(&held.one), sides(&held.other));
     let [normal, other_normal] = [cross(&own[0], &own[1]), cross(&others[0], &others[1])];
     if limit > N::ZERO {
-        // The other axes seldom separate distant coplanar pairs, so the centroids are compared
-        // first.
+        // The other axes seldom separate distant coplanar pairs, so the line through the means of
+        // the corners is tested first.
         held.between_middles();
         if bits(held.beyond) == u8::MAX {
             return held.masks(false);
@@ -160,7 +160,8 @@ struct HeldPairs<S: Simd, V: Wide<S>, const D: usize> {
     limits: [V; 2],
     is_precise: V::Mask,
     beyond: V::Mask,
-    /// Pairs that no axis so far separates by more than the limit.
+    /// Pairs that no axis tested so far separates by more than the limit, with the margin
+    /// [`CERTAIN`].
     within: V::Mask,
     /// Pairs for which the direction of some axis was not exact.
     unsure: V::Mask,
@@ -209,8 +210,9 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         self.within &= gap.simd_le(self.limits[1] * length);
     }
 
-    /// Tests the line through the centroids and updates `beyond` only, because this axis cannot
-    /// prove an overlap.
+    /// Tests the line through the means of the corners of both parts (an end of a segment that
+    /// occurs twice counts twice). Updates `beyond` only, because this axis cannot prove an
+    /// overlap.
     #[inline(always)]
     fn between_middles(&mut self) {
         let ([a, b, c], [d, e, f]) = (&self.one, &self.other);
@@ -228,7 +230,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         dot(along, along).simd_gt(squares * V::all(self.simd, least))
     }
 
-    /// Marks the pairs as unsure for which [`Self::is_wide`] does not select the lane.
+    /// Marks the pairs as unsure in the lanes that [`Self::is_wide`] does not select.
     #[inline(always)]
     fn require_width(&mut self, along: &[V; D], squares: V) {
         self.unsure |= !self.is_wide(along, squares);

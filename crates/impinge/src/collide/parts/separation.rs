@@ -113,8 +113,8 @@ struct TreeParts<'a, 'q, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     visitor: &'q mut dyn PairVisitor<N, D>,
     parts: [&'a dyn CompositeShape<N, D>; 2],
-    /// Rounding error of gaps along a direction; infinite if such gaps cannot be used, because
-    /// parts move or their size is not finite.
+    /// Rounding error of gaps along a direction; infinite if such gaps cannot be used, because a
+    /// shape moves or the size of the shapes is too large.
     slack: N,
     /// Slabs around the part that was visited last.
     slabs: Option<PartSlabs<N, D>>,
@@ -215,8 +215,8 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
     }
 
     /// Rejects parts by the gaps along the normal of the best pair, along the line through the
-    /// centroids, and along slabs and separating axes. Visits the remaining parts in the order of
-    /// their lower bounds.
+    /// means of the three corners of each part, and along slabs and separating axes. Visits the
+    /// remaining parts in the order of their lower bounds.
     fn visit(&mut self, which: usize, own: u32, others: &[u32]) {
         let pair = |other: u32| if which == 0 { [own, other] } else { [other, own] };
         let (best, mut near) = (self.best(), PartGaps::new());
@@ -264,8 +264,9 @@ impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
         self.gap(toward, [0, 1].mapped(|which| self.extent(which, parts[which], &toward[which])))
     }
 
-    /// Returns a lower bound of the gap along the line through the centroids of two parts; minus
-    /// infinity if a part has no corners.
+    /// Returns a lower bound of the gap along the line through the means of the three corners of
+    /// each part (the first end of a segment counts twice). Minus infinity if a part has no corners
+    /// or the means coincide.
     fn gap_between(&self, parts: [u32; 2]) -> N {
         let middles = [0, 1].mapped(|which| {
             let [a, b, c] = corners_of(self.parts[which], parts[which])?;

@@ -1,5 +1,5 @@
 //! Lower bounds of the distances from one part to 8 other parts at a time, along the slabs around
-//! the one part and along separating axes of each pair.
+//! the first part and along separating axes of each pair.
 //!
 //! Two triangles in 3D that are not coplanar overlap iff none of these axes separates them: the two
 //! normals and the nine cross products of a side of each. If they overlap, the shortest separating

@@ -3,8 +3,8 @@
 use crate::bounding_volume::Aabb;
 use crate::math::{Matrix, Point, Real, Vector, max, min};
 
-/// Motion of the points of one shape during some time, in the frame of the other shape. A point `x`
-/// stays within `spread` of the segment from `x` to `x + turn · x + shift`.
+/// Motion of the points of one shape during a time interval, in the frame of the other shape. A
+/// point `x` stays within `spread` of the segment from `x` to `x + turn · x + shift`.
 ///
 /// ```text
 ///    ,--------------------.

@@ -34,10 +34,10 @@ pub(crate) trait TouchingVisitor<N: Real, const D: usize> {
 /// The pairs of parts that a search visits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Touching {
-    /// All pairs within `max_distance`, each once.
+    /// All pairs that may be within `max_distance`, each once.
     Each,
-    /// Any pair within `max_distance`: the first pair found is likely to end the search, so no pair
-    /// waits for a full batch of lanes.
+    /// Any pair that may be within `max_distance`: the first pair found is likely to end the
+    /// search, so no pair waits for a full batch of lanes.
     Any,
     /// The nearest pair: `max_distance` shrinks to the best distance. A pair that is likely to be
     /// near is visited first, and may be visited twice.
@@ -102,9 +102,9 @@ struct TouchingSearch<'a, 'q, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> TouchingSearch<'_, '_, N, D> {
-    /// Returns whether two parts are farther apart than `max_distance` along the line through their
-    /// centroids; always false unless the nearest pair is wanted. This rejects most pairs whose
-    /// boxes are near.
+    /// Returns whether two parts are farther apart than `max_distance` along the line through the
+    /// means of their three corners (the first end of a segment counts twice); always `false`
+    /// unless the nearest pair is wanted. This rejects most pairs whose boxes are near.
     fn are_beyond(&self, one: &[Vector<N, D>; 3], other: &[Vector<N, D>; 3]) -> bool {
         let Some(max_distance) = self.max_distance.filter(|_| self.wanted == Touching::Nearest)
         else {
@@ -193,8 +193,8 @@ impl<N: Space<D>, const D: usize> TouchQuery<N, D> for TouchingSearch<'_, '_, N,
         self.own
     }
 
-    /// Rejects pairs along the line through their centroids, puts the others into the lanes, and
-    /// visits pairs without corners directly.
+    /// Drops each pair for which [`Self::are_beyond`] returns `true`. Puts the other pairs into the
+    /// lanes, except that a pair with a part without corners is visited directly.
     fn visit(&mut self, which: usize, own: u32, others: &[u32]) {
         for &other in others {
             let pair = if which == 0 { [own, other] } else { [other, own] };

@@ -9,8 +9,8 @@
 use crate::math::{Matrix, Point, Real, Vector, max_component, min};
 use crate::shape::{CurvedSupport, Ellipsoid, Geometry, Kind, SupportMap};
 
-/// Share of the largest possible radius by which an ellipsoid is eroded. It is below 1 so that the
-/// core of a sphere is not a point.
+/// Radius by which an ellipsoid is eroded, as a share of the largest possible radius. It is below 1
+/// so that the core of a sphere is not a point.
 const SHARE: f64 = 15.0 / 16.0;
 
 /// A solid as a core with a radius: the points within `radius` of the eroded solid. Support points

@@ -59,8 +59,8 @@ fn are_smooth<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
     matches!((pair.first, pair.second), (Segment(_) | Capsule(_) | Ellipsoid(_), Ellipsoid(_)))
 }
 
-/// Returns the separation of two solids whose cores are hulls of points. It is compiled for the
-/// concrete type [`FlatCore`], so all calls can be inlined.
+/// Returns the separation of two solids whose cores are hulls of points; `None` above `limit`. It
+/// is compiled for the concrete type [`FlatCore`], so all calls can be inlined.
 pub(super) fn of_flat_cores<N: Simplicial<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -95,7 +95,8 @@ fn from_start<N: Simplicial<D>, const D: usize>(
     found.filter(|found| found.distance <= limit)
 }
 
-/// Returns the distance of [`separation`], or zero if a certain overlap is found during the search.
+/// Returns the distance of [`separation`]; zero instead if the search finds that the cores
+/// certainly overlap. `None` above `limit`.
 pub(super) fn distance<N: Simplicial<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,

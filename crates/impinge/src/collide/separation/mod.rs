@@ -33,8 +33,9 @@
 //! Terms of these files: the *core* of a solid is the solid without its radius. Lengths in *units
 //! of the pair* are divided by a power of two near the sum of both bounding radii and the distance
 //! of the origins ([`Units`](crate::convex::Units)), so that scaling is exact. A result is *proved*
-//! if its points are as far apart as supporting planes with its normal; for overlaps, `revolved`
-//! also requires balls inside the solids that exclude a smaller depth.
+//! if the vector between its two points is, up to rounding, the normal times the signed distance of
+//! the supporting planes (the planes perpendicular to the normal that touch the solids). For
+//! overlaps, `revolved` also requires balls inside the solids that exclude a smaller depth.
 
 pub(crate) mod apart;
 pub(crate) mod balls;

@@ -1,4 +1,4 @@
-//! Distance of two solids if the depth of an overlap is not needed.
+//! Computes the distance of two solids for callers that do not need the depth of an overlap.
 //!
 //! If the solids are apart, this distance is bit-identical to the distance of their separation.
 
@@ -26,7 +26,8 @@ const DEEP: f64 = 1.0 / 8.0;
 enum DistanceMethod {
     /// By a closed form, which costs no more if it includes the depth.
     Formula,
-    /// By formulas for features; proving an overlap first is faster than computing the depth.
+    /// By closed forms for pairs of features, as for two cylinders; proving an overlap first is
+    /// faster than computing the depth.
     Features,
     /// By separating axes; proving an overlap first is faster only for depths of at least [`DEEP`].
     Axes,
@@ -40,8 +41,8 @@ enum DistanceMethod {
 ///
 /// If the solids overlap and `limit` is zero or more, the result may be any number that is not
 /// positive, so that clear overlaps need not be measured. Otherwise it is bit-identical to the
-/// distance of the separation. Pairs that are not in the order of kinds are passed to the
-/// separation, which orders them, unless balls inside the solids prove an overlap.
+/// distance of the separation. A pair whose kinds are not in canonical order gets the distance of
+/// its separation, unless a closed form exists for it or balls inside the solids prove an overlap.
 pub(crate) fn distance_3d<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     if let Some(known) = known_3d(pair) {
         return (known <= limit).then_some(known);
@@ -83,9 +84,9 @@ fn known_3d<N: Real>(pair: &Pair<'_, N, 3>) -> Option<N> {
     }
 }
 
-/// Returns the signed distance of two balls, of a solid before a half-space, or of a ball before
-/// another solid, whose distance `beside_ball` returns. `None` for other pairs and where these
-/// formulas return `None`.
+/// Returns the signed distance of two balls, of any solid (first) and a half-space (second), or of
+/// a ball (first) and another solid (second), for which it calls `beside_ball`. `None` for other
+/// pairs, and if `beside_ball` or [`plane_any::distance`] returns `None`.
 #[inline(always)]
 fn known<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -193,9 +194,9 @@ fn are_bare<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
     !is_rounded(pair.first) && !is_rounded(pair.second)
 }
 
-/// Returns whether two solids overlap by more than rounding, for certain. `false` proves nothing;
-/// with [`DistanceMethod::Axes`] it is also returned for depths below [`DEEP`]. The radii of
-/// capsules and rounded solids count: their cores need not overlap.
+/// Tries to prove that two solids overlap by more than rounding, and returns whether it succeeds.
+/// `false` proves nothing; with [`DistanceMethod::Axes`] it is also returned for depths below
+/// [`DEEP`]. The radii of capsules and rounded solids count: their cores need not overlap.
 ///
 /// Cost: a few support points of each solid.
 fn certainly_overlap<N: Simplicial<D>, const D: usize>(
@@ -276,8 +277,9 @@ mod tests {
 
     /// Returns the number of cases in which [`certainly_overlap`] proves an overlap, and the number
     /// of all cases with an overlap. A case is a pair of solids at a pose; pairs with
-    /// [`DistanceMethod::Formula`] are not counted. Asserts that `distance` agrees with the
-    /// separation in each case.
+    /// [`DistanceMethod::Formula`] are not counted. Asserts in each case that an overlap is proved
+    /// only if there is one, and that `distance` returns the distance of the separation if the
+    /// solids are apart, and no positive number otherwise.
     fn found<N: Simplicial<D> + Space<D>, const D: usize>(
         solids: &[Box<dyn Shape<N, D>>],
         poses: &[Pose<N, D>],

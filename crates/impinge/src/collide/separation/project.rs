@@ -9,7 +9,8 @@ use super::projection::{Projection, first_axis};
 use crate::math::{Point, Real, unit};
 use crate::shape::Kind;
 
-/// Projects a point onto a solid in 2D, in the frame of the solid; `None` without a closed form.
+/// Projects a point onto a solid in 2D, in the frame of the solid; `None` for kinds without a
+/// closed form, for triangles that are segments up to rounding, and for a triangle and a NaN point.
 pub(crate) fn project_on_solid_2d<N: Real>(
     kind: Kind<'_, N, 2>,
     point: &Point<N, 2>,
@@ -25,7 +26,8 @@ pub(crate) fn project_on_solid_2d<N: Real>(
     }
 }
 
-/// Projects a point onto a solid in 3D, in the frame of the solid; `None` without a closed form.
+/// Projects a point onto a solid in 3D, in the frame of the solid; `None` for kinds without a
+/// closed form.
 pub(crate) fn project_on_solid_3d<N: Real>(
     kind: Kind<'_, N, 3>,
     point: &Point<N, 3>,

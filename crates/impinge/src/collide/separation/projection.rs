@@ -42,8 +42,7 @@ impl<N: Real, const D: usize> Projection<N, D> {
     }
 }
 
-/// Returns the bound that is used for the rounding error of lengths between points at most `reach`
-/// from the origin.
+/// Returns the length that counts as rounding error for points at most `reach` from the origin.
 pub(super) fn rounding_error<N: Real>(reach: N) -> N {
     N::lit(8.0) * N::EPSILON * reach
 }

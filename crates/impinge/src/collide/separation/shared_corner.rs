@@ -18,9 +18,10 @@ use crate::shape::{Geometry, Kind, SupportMap};
 /// distance of the origins.
 const ROUNDING: f64 = 64.0;
 
-/// Returns `found`, with a distance of zero if a corner of one solid coincides with a corner of the
-/// other or lies between two of its corners. For two boxes it returns `found` unchanged, because
-/// their distance is a difference of their dimensions.
+/// Returns `found`, but with distance zero if its distance is positive, may be a rounding error,
+/// and a corner of one solid coincides with a corner of the other solid or lies on the segment
+/// between two of them. For two boxes it returns `found` unchanged, because their distance is a
+/// difference of their dimensions.
 #[inline]
 pub(super) fn with_shared_corner<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -40,9 +41,10 @@ fn rounding<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
     N::lit(ROUNDING) * N::EPSILON * size
 }
 
-/// Compares those corners of both solids that are extreme along the normal, up to rounding. Returns
-/// `found`, with distance zero and both points at the corner if a corner of one solid coincides
-/// with a corner of the other or lies between two of its corners.
+/// Compares those corners of both solids that are extreme along the normal, up to rounding. If one
+/// of them coincides with one of the other solid's or lies on the segment between two of these,
+/// returns `found` with distance zero and both points at this corner. Otherwise returns `found`
+/// unchanged.
 #[cold]
 fn at_corner<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,

@@ -11,7 +11,8 @@ use crate::collide::parts;
 use crate::convex::Separation;
 use crate::math::Real;
 
-/// Carrier of the 2D table for the scalar type `N`, as an associated constant.
+/// Type whose associated constant is the 2D table for the scalar type `N`, because a static item
+/// cannot be generic.
 struct Table2<N>(core::marker::PhantomData<N>);
 
 impl<N: Real> Table2<N> {

@@ -15,7 +15,8 @@ use crate::collide::parts;
 use crate::convex::Separation;
 use crate::math::Real;
 
-/// Carrier of the 3D table for the scalar type `N`, as an associated constant.
+/// Type whose associated constant is the 3D table for the scalar type `N`, because a static item
+/// cannot be generic.
 struct Table3<N>(core::marker::PhantomData<N>);
 
 impl<N: Real> Table3<N> {

@@ -36,8 +36,9 @@ impl Xorshift {
     }
 }
 
-/// Asserts a separation up to `slack`: its normal separates the solids by the distance, and its
-/// points have this distance and lie in the solids, as far as 26 directions tell.
+/// Asserts up to `slack` that a separation is right: the supporting planes with its normal have its
+/// distance, the vector between its points is the normal times this distance, and each point is
+/// within its solid's extents along 26 directions.
 fn check_proof<N: Real>(pair: &Pair<'_, N, 3>, found: &Separation<N, 3>, slack: f64, what: &str) {
     let maps = [pair.first, pair.second].map(|kind| match kind {
         Kind::Triangle(triangle) => triangle as &dyn SupportMap<N, 3>,
@@ -81,8 +82,9 @@ struct Tally {
     rounds: usize,
 }
 
-/// Compares the separating axis test `own` with the general algorithm, asserts how it treats the
-/// limit, and counts the case in `tally`.
+/// Asserts that the separating axis test `own` finds the distance of the general algorithm up to
+/// rounding, passes [`check_proof`], returns the same separation if the limit is its distance, and
+/// `None` if the limit is smaller by more than rounding. Counts the case in `tally`.
 fn check_pair<N: Real>(own: Algorithm<N, 3>, pair: &Pair<'_, N, 3>, size: f64, tally: &mut Tally) {
     let slack = 256.0 * N::EPSILON.as_f64() * size;
     let found = own(pair, N::INFINITY).expect("within infinity");
@@ -103,9 +105,10 @@ fn check_pair<N: Real>(own: Algorithm<N, 3>, pair: &Pair<'_, N, 3>, size: f64, t
     assert_eq!(own(pair, less), None, "beyond the limit: {what}");
 }
 
-/// Compares a random triangle with a random box, hull and triangle, in `rounds` random poses. Sizes
-/// are about 0.1 to 1; every seventh box is flat. Asserts that more than a quarter of the results
-/// are not those of the general algorithm, and that more than a sixteenth are overlaps.
+/// Runs [`check_pair`] for a random triangle and a random box, hull and triangle, in `rounds`
+/// random poses. Sizes are about 0.1 to 1; every seventh box is flat. Asserts that more than a
+/// quarter of the results are not those of the general algorithm, and that more than a sixteenth
+/// are overlaps.
 fn at_random<N: Real>(rounds: usize) {
     let (mut random, mut tallies) = (Xorshift(7), [(); 4].map(|()| Tally::default()));
     for round in 0..rounds {
@@ -188,8 +191,8 @@ fn a_box_on_a_face_has_its_normal() {
     }
 }
 
-/// Compares the gaps of 1 to 19 triangles and a box or hull, computed in packets, with separations
-/// computed one by one.
+/// Runs [`check_together`] for 1 to 19 random triangles and a box or hull: it compares gaps that
+/// are computed in packets with separations that are computed one by one.
 fn together<N: Real>(rounds: usize) {
     let (mut random, mut touching) = (Xorshift(5), 0);
     for round in 0..rounds {
@@ -252,8 +255,9 @@ fn check_together<N: Real>(
     touching
 }
 
-/// Asserts that the gap of a triangle in a packet agrees with its separation. A gap along the
-/// triangle's own normal may be smaller than the distance.
+/// Asserts up to rounding that the gap of a triangle in a packet is at most the distance of its
+/// separation. If the gap has a feature, asserts that it equals the distance, and that the
+/// separation touches this feature, unless another direction has nearly the same gap.
 fn check_gap<N: Real>(
     gap: &TriangleGap<N>,
     triangle: &Triangle<N, 3>,

@@ -1,5 +1,5 @@
-//! Runs all cases with convex solids from two files of poses on which other libraries returned
-//! wrong results.
+//! Tests the separations of all convex solids in two files of cases, which hold poses on which
+//! other libraries returned wrong results.
 
 use serde_json::Value;
 
@@ -33,7 +33,8 @@ fn relative<N: Own<D>, const D: usize>(case: &Case<'_>) -> Pose<N, D> {
     }
 }
 
-/// Checks a case; the error is a message. `None` if [`solid`] does not support one of the solids.
+/// Compares the separation of a case with the expected distance. Returns `Ok`, or the errors as a
+/// message; `None` if [`solid`] does not support one of the solids.
 fn check<N, const D: usize>(case: &Case<'_>) -> Option<Result<(), String>>
 where
     N: Simplicial<D> + Own<D>,

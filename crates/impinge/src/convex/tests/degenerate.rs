@@ -1,4 +1,5 @@
-//! Points, segments and flat solids; exact touching; numbers near the limits of their range.
+//! Tests separations of points, segments and flat solids, of solids that touch exactly, and of
+//! solids with sizes near the limits of the scalar type, or with NaN.
 
 use super::super::{Separation, Simplicial, separation};
 use super::solids::Points;

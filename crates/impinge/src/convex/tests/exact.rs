@@ -1,5 +1,5 @@
-//! Compares results with results computed by hand, and distances of boxes with the largest height
-//! over all candidate axes.
+//! Tests separations against results computed by hand, and the distances of boxes against the
+//! largest height over all axes along which two boxes can be separated.
 
 use super::super::{Separation, Simplicial, separation};
 use super::generator::{Generator, Sample};
@@ -26,8 +26,8 @@ fn expect<N: Real, const D: usize>(
     within(found, distance, normal, points, [100.0 * N::EPSILON.as_f64(); 2]);
 }
 
-/// Compares distance and normal with the expected ones, but no points. On curved surfaces a normal
-/// is accurate only to the square root of the accuracy of the distance.
+/// Asserts that distance and normal are as expected; does not check the points. On curved surfaces
+/// a normal is accurate only to the square root of the accuracy of the distance.
 #[track_caller]
 fn expect_curved<N: Real>(found: Option<Separation<N, 3>>, distance: f64, normal: [f64; 3]) {
     let tolerance = 64.0 * N::EPSILON.as_f64() + 1e-11;
@@ -128,8 +128,9 @@ fn axes<const D: usize>(pose12: &Pose<f64, D>, crosses: &[Vector<f64, D>]) -> Ve
     axes
 }
 
-/// Compares the distance of two boxes with the greatest height over all axes; for disjoint boxes
-/// this height is only a lower bound. `tolerance` is relative to the scale of the sample.
+/// Asserts, for random pairs of boxes, that the distance of an overlap equals the largest height
+/// over all axes, and that the distance of disjoint boxes is not less than this height. `tolerance`
+/// is relative to the scale of the sample.
 fn against_all_axes<N, const D: usize>(
     crosses: impl Fn(&Pose<f64, D>) -> Vec<Vector<f64, D>>,
     tolerance: f64,

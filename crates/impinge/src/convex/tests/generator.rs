@@ -45,8 +45,8 @@ impl Generator {
     }
 
     /// Returns a random solid of a kind, with sizes of about `size`. If `thin`, the radius of a
-    /// ball, capsule, cylinder or cone, or the last half extent of a box, is 200 times smaller;
-    /// other kinds ignore `thin`.
+    /// ball, capsule, cylinder or cone is 200 times smaller, and so are the last half extent and
+    /// the radius of a box; other kinds ignore `thin`.
     pub(super) fn shape<const D: usize>(&mut self, kind: &str, size: f64, thin: bool) -> Value {
         let slim = if thin { size / 200.0 } else { size };
         let mut length = |scale: f64| self.between(0.5, 2.0) * scale;

@@ -183,7 +183,7 @@ fn swapping_flips() {
     swapped::<f64, 3>(KINDS.len(), [1e-14, 1e-10]);
 }
 
-/// Multiplies all numbers of a shape, but not its name.
+/// Returns a shape with all its numbers multiplied by `factor`.
 fn scaled(shape: &serde_json::Value, factor: f64) -> serde_json::Value {
     use serde_json::Value;
     match shape {

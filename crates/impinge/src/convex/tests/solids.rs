@@ -1,4 +1,4 @@
-//! Convex solids for the tests, and slow computations of their properties.
+//! Convex solids for the tests, made from entries of the test data, and reference computations.
 
 use serde_json::Value;
 
@@ -50,7 +50,8 @@ impl<N: Real, const D: usize> SupportMap<N, D> for RoundCuboid<N, D> {
     }
 }
 
-/// A solid of revolution about y, with the y axis exchanged for the axis `axis`.
+/// A solid of revolution whose axis is the coordinate axis `axis` instead of y: the coordinates y
+/// and `axis` of `solid` are exchanged.
 struct Along<N: Real> {
     axis: usize,
     solid: Solid<N, 3>,

@@ -1,4 +1,5 @@
-//! Distance of a point from the surface of a solid in closed form, independent of the algorithms.
+//! Signed distance of a point from a solid in closed form, independent of the algorithms under
+//! test.
 
 use serde_json::Value;
 

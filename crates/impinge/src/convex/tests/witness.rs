@@ -28,8 +28,8 @@ fn errors<N: Simplicial<3> + Own<3>>(sample: &Sample<3>, found: &Separation<N, 3
     ]
 }
 
-/// Checks random samples of every pair of kinds; `allowed` is the largest error, relative to
-/// [`Sample::scale`].
+/// Asserts that the errors of separations, for random samples of every pair of [`KINDS`], are at
+/// most `allowed`, relative to [`Sample::scale`].
 fn check<N>(rounds: usize, allowed: f64)
 where
     N: Simplicial<3> + Own<3>,

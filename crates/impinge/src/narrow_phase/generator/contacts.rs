@@ -48,8 +48,8 @@ impl<N: Real, const D: usize> KeptPoints<N, D> for PairContacts<N, D> {
     }
 }
 
-/// Returns two values, one for each solid in the pair's order, with the value first of the solid in
-/// whose frame contacts are stored.
+/// Reorders two values, one for each solid of a pair: the value of the solid in whose frame
+/// contacts are stored comes first. `is_swapped` is `true` if this is the second solid.
 pub(super) fn in_kept_order<T>([one, other]: [T; 2], is_swapped: bool) -> [T; 2] {
     if is_swapped { [other, one] } else { [one, other] }
 }
@@ -105,7 +105,8 @@ impl<N: Space<D>, const D: usize> PairContacts<N, D> {
         }
     }
 
-    /// Returns the manifolds with at least one contact, in the memory of `old`.
+    /// Returns the manifolds, in the memory of `old`. For two convex solids the list always has one
+    /// manifold, which is empty if there is no contact.
     pub(in crate::narrow_phase) fn manifolds(
         &self,
         placed: &[Placed<'_, N, D>; 2],

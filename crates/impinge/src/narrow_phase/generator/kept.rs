@@ -30,7 +30,7 @@ pub(super) enum KeptShape<N: Real, const D: usize> {
     Composite(Revision),
 }
 
-/// A solid of revolution; exists in 3D only.
+/// A copy of a solid of revolution, which exists in 3D only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Revolved<N: Real> {
     Cylinder(Cylinder<N>),
@@ -106,7 +106,8 @@ impl<N: Real, const D: usize> KeptShape<N, D> {
     }
 }
 
-/// The solids on which a contact of a composite lies.
+/// Copies of the solids on which a contact of a composite lies, from which readers build its
+/// manifold after the call.
 #[derive(Clone, Debug)]
 pub(super) struct KeptTouch<N: Real, const D: usize> {
     /// By solid: the touched part and its pose. `None` for a convex shape, which the generator

@@ -31,7 +31,7 @@ pub(crate) const fn conforming_points<const D: usize>() -> usize {
     1 << (D - 1)
 }
 
-/// Computes the contacts of any two built-in shapes, composites included.
+/// Computes the contacts of any two shapes, composites and shapes of users' types included.
 ///
 /// One type serves all pairs: it selects the algorithm by the kinds of the shapes at each
 /// update, so even the shapes may change from one update to the next.
@@ -69,7 +69,8 @@ pub struct PairManifoldGenerator<N: Real, const D: usize> {
     is_readable: bool,
     /// Whether the contacts belong to `numbers` and `request`.
     is_current: bool,
-    /// The coordinates of both isometries at the last update.
+    /// The coordinates of both isometries at the last update, which show whether a shape has moved
+    /// since.
     numbers: [[N; 7]; 2],
     request: ManifoldRequest<N>,
     /// Poses at the last update, for readers.
@@ -84,7 +85,8 @@ pub struct PairManifoldGenerator<N: Real, const D: usize> {
 #[derive(Clone)]
 struct PairReuse<N: Real, const D: usize> {
     tolerance: N,
-    /// Bounding radii of the two shapes around their origins; see [`ReachBounds::reach`].
+    /// Bounding radii of the two shapes around their origins, see [`ReachBounds::reach`]; infinite
+    /// for a pair that is always computed.
     reaches: [N; 2],
     reference: Reference<N, D>,
 }
@@ -243,8 +245,8 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         }
     }
 
-    /// Returns `true` for a ball and another small solid: computing contacts is then as fast as
-    /// reusing them.
+    /// Returns `true` if one solid is a ball and the other one a ball, a segment, a capsule or a
+    /// box: computing contacts is then as fast as reusing them.
     fn has_closed_form(&self) -> bool {
         let solids = self.shapes.each_ref().mapped(|shape| shape.as_ref()?.solid());
         let is_ball = |solid: &Option<&Solid<N, D>>| matches!(solid, Some(Solid::Ball(_)));
@@ -290,8 +292,9 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         }
     }
 
-    /// Keeps copies of the solids on which the contacts lie, which were just computed. Returns
-    /// `false` if a solid cannot be kept.
+    /// Keeps copies of the parts on which the contacts of a composite lie. The contacts must have
+    /// just been computed. Returns `false` if a shape or a part cannot be kept, so that the
+    /// manifolds must be built before the shapes are gone.
     fn keep_touched(&mut self, shapes: [Geometry<'_, N, D>; 2]) -> bool {
         let are_whole = self.wholes().mapped(|whole| whole.is_some());
         let PairContacts::Composite(state) = &self.contacts else { return are_whole == [true; 2] };

@@ -24,8 +24,8 @@ pub(crate) struct PartArrival<N: Real, const D: usize> {
     pub(crate) is_of_whole: bool,
 }
 
-/// Returns the first impact of two parts; of several at the same time, the one with the lowest part
-/// indices. `None` if no parts hit each other up to the end of the path.
+/// Returns the first impact of two parts; of several impacts at the same time, the impact with the
+/// lowest part indices. `None` if no parts hit each other up to the end of the path.
 ///
 /// The contacts of the whole shapes decide whether a contact at the start is an impact. If they are
 /// no impact, the contacts of the whole shapes also decide about each later impact of two parts: if
@@ -33,9 +33,9 @@ pub(crate) struct PartArrival<N: Real, const D: usize> {
 /// the floor.
 ///
 /// Of two composites, the one with fewer parts is searched for the parts that the box of the other
-/// composite hits. Each part found searches the other composite along its path; paths end at the
-/// first impact found so far. After a start in contact that is not an impact, each part that is hit
-/// also costs the contacts of the whole shapes at that time.
+/// composite hits. For each part found, the other composite is searched along the path of that
+/// part; a path ends at the first impact found so far. After a start in contact that is not an
+/// impact, each part that is hit also costs the contacts of the whole shapes at that time.
 pub(crate) fn first_arrival<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     path: &Path<N, D>,
@@ -118,8 +118,8 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
 
     /// Tests the nearest part of a composite against a half-space: the half-space approaches all
     /// parts at the same speed, so it hits the nearest part first. If that part is hit at time
-    /// zero, the other parts that touch the half-space at the start are tested, too, for the lowest
-    /// index.
+    /// zero, the other parts are tested, too: of several impacts at time zero, the one with the
+    /// lowest part index is returned.
     fn of_half_space(&mut self, others: &dyn CompositeShape<N, D>) {
         let nearest = nearest_between(self.between, N::INFINITY, Wanted::Deepest, None);
         let Some(nearest) = nearest else { return };
@@ -130,8 +130,8 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
     }
 
     /// Tests part `part` of shape `which` against the parts of the other shape whose boxes are on
-    /// its path, in the order of the lower bounds of their times of contact. Parts that do not
-    /// touch up to the end by [`Mover::earliest`] are skipped.
+    /// its path, in the order of the lower bounds of their times of contact. Skips each part that,
+    /// by [`Mover::earliest`], the moving part does not touch up to the end.
     fn each_on_path(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
         let aabb = self.grown(&self.between.aabb_in_other(which, part));
         let (velocity, end) = (self.velocity(which), self.end());
@@ -167,7 +167,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
     }
 
     /// Computes the impact of two parts that do not touch before `earliest`, and keeps it if it is
-    /// the first so far. If the path is mirrored, parts with equal indices are a mirrored pair,
+    /// the earliest so far. If the path is mirrored, parts with equal indices are a mirrored pair,
     /// too.
     fn hold(&mut self, parts: [u32; 2], earliest: N) {
         if self.start == WholeContact::Hit {

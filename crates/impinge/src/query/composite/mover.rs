@@ -12,7 +12,7 @@ use crate::shape::{Geometry, Part, SupportMap};
 const ROUNDING: f64 = 128.0;
 
 /// A convex solid that moves in the frame of a composite. While some axis separates the solid from
-/// a part, the two do not touch. The tested axes are those of both frames, the normals of the
+/// a part, the two do not touch. The tested axes are the axes of both frames, the normals of the
 /// part's sides within its plane, and the normal of that plane.
 pub(super) struct Mover<'a, N: Real, const D: usize> {
     map: &'a dyn SupportMap<N, D>,
@@ -92,7 +92,7 @@ impl<N: Real> ContactSpan<N> {
             self.leave = if down > N::ZERO || up < N::ZERO { -N::ONE } else { self.leave };
             return;
         }
-        // The relative rounding error of the quotients is below this.
+        // An upper bound of the relative rounding error of the quotients.
         let rounding_error = N::lit(4.0) * N::EPSILON;
         let (one, other) = (down / speed, up / speed);
         let (enter, leave) = (min(one, other), max(one, other));

@@ -55,9 +55,11 @@ impl<'a, N: Real, const D: usize> PartQuery<'a, N, D> {
 }
 
 impl<N: Real, const D: usize> PartQuery<'_, N, D> {
-    /// Returns whether a triangle or segment is certainly farther than `distance`, by a plane
-    /// perpendicular to the direction of its centre; false for other parts. With `m` the sum of the
-    /// corners `c` relative to the query point, the distance of the plane is `min(m · c) / |m|`.
+    /// Returns whether a plane proves that a triangle or segment is farther than `distance` from
+    /// the query point; false for other parts, and for a part that was not translated. Let `m` be
+    /// the sum of the corners `c` relative to the query point, where the second end of a segment
+    /// counts twice. All corners lie beyond the plane perpendicular to `m` at the distance `min(m ·
+    /// c) / |m|`.
     fn is_beyond(&self, distance: N) -> bool {
         let corners: [Vector<N, D>; 3] = match self.solid() {
             _ if self.query != Point::origin() => return false,

@@ -129,8 +129,8 @@ impl<N: Space<D>, const D: usize> Touched<'_, N, D> {
     }
 }
 
-/// Returns true if the normal belongs to a face of the second surface, false if to a face of the
-/// first, `None` if to neither.
+/// Returns true if the normal belongs to a face of the second surface, false if it belongs to a
+/// face of the first surface alone, `None` if it belongs to no face.
 fn turning<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     patch: &Patch<N, D>,

@@ -103,20 +103,20 @@ impl<'a, N: Space<D>, const D: usize> MovingBody<'a, N, D> {
     }
 }
 
-/// The poses of two bodies at one time.
+/// The poses and centres of two bodies at one time, and the direction that separates them.
 pub(super) struct Moment<'b, 'a, N: Space<D>, const D: usize> {
     pub(super) bodies: [&'b MovingBody<'a, N, D>; 2],
     /// The world point to which all positions are relative.
     pub(super) origin: Vector<N, D>,
     pub(super) poses: [Pose<N, D>; 2],
-    /// The centres of motion of the two bodies.
+    /// The positions of the bodies' centres of motion, relative to `origin`.
     pub(super) centers: [Vector<N, D>; 2],
     pub(super) time: N,
     /// The unit vector from the first body to the second, in the world's axes.
     pub(super) normal: Vector<N, D>,
 }
 
-/// One part of each of two bodies.
+/// A part of each of two bodies, both treated as separate bodies.
 pub(super) struct ImpactParts<'p, N: Space<D>, const D: usize> {
     bodies: [MovingBody<'p, N, D>; 2],
     poses: [Pose<N, D>; 2],
@@ -225,8 +225,10 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         Rate { speed: self.drift(None, to) + swings[0] + swings[1], bend: N::ZERO }
     }
 
-    /// Returns the motion of a body's points during `span`, in the frame of the other body, for
-    /// constant velocities. `rate` bounds the approach of any two points.
+    /// Returns a bound of the motion of the points of body `which` during `span`, in the frame of
+    /// the other body. `rate` bounds the approach of any two points. For constant velocities the
+    /// result is a linear function of the position plus a spread, unless the travel by `rate` alone
+    /// is smaller than that spread.
     ///
     /// A point at `u` from the other body's centre has the velocity `u' - S u` in the frame of that
     /// body, which rotates with the generator `S`. The velocity is a linear function of the
@@ -419,7 +421,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     }
 
     /// Computes [`Self::closing`] by differences, from the positions of the points a short time
-    /// later.
+    /// later. Zero, with no error, if the bound of the speed is zero or not finite.
     fn closing_observed(
         &self,
         points: &[Vector<N, D>; 2],

@@ -13,7 +13,7 @@ use crate::math::{Point, Pose, Real, Space, Vector, max, max_component};
 use crate::shape::{FeatureId, Geometry, Kind};
 use crate::tables::ByDimension;
 
-/// The maximum number of steps.
+/// The maximum number of steps of conservative advancement.
 const MAX_STEPS: usize = 128;
 
 /// The motion of the second solid of a pair in the frame of the first.
@@ -119,7 +119,7 @@ pub(super) fn is_hit_at_start<N: Real>(
     closing > rounding_error || (deep && closing >= -rounding_error) || gap == -N::INFINITY
 }
 
-/// The start of the path of two solids.
+/// The result of [`begin`]: a contact at the start, or an impact later.
 pub(crate) enum Beginning<N: Real, const D: usize> {
     /// The solids are in contact at the start; `counts` is true if the contact is an impact.
     InContact { arrival: Arrival<N, D>, counts: bool },
@@ -127,8 +127,9 @@ pub(crate) enum Beginning<N: Real, const D: usize> {
     Apart(Option<Arrival<N, D>>),
 }
 
-/// Returns the impact at the first time on a path at which two solids are at the target distance;
-/// `None` if there is none up to the end of the path.
+/// Returns the first impact of two solids on a path: the first time at which they are at the target
+/// distance, or time zero for a contact at the start that counts as an impact. `None` if there is
+/// no impact up to the end of the path.
 ///
 /// Conservative advancement (Mirtich, "Impulse-based dynamic simulation", 1996). The solids stay
 /// apart at least until the gap along the normal of the nearest points is used up at the closing

@@ -111,7 +111,7 @@ pub struct ImpactOptions<N: Real> {
     /// slide on each other, the search accepts that gap. Straight paths ignore this option.
     pub tolerance: Option<N>,
     /// Whether solids that touch or overlap at time zero are an impact at time zero, whatever their
-    /// velocities. False by default: solids that separate or just slide are not.
+    /// velocities. False by default: then the table of [`impact()`] decides.
     pub contact_at_start: bool,
 }
 
@@ -161,7 +161,7 @@ impl<N: Real> Default for ImpactOptions<N> {
 /// The kind of an impact, and its certainty.
 ///
 /// "At the start" means at time zero, for the two parts of the impact. If a start in contact is not
-/// an impact (see [`impact()`]), the status is that of the later impact.
+/// an impact (see [`impact()`]), the status describes the later impact.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -184,8 +184,8 @@ pub enum ImpactStatus {
     Reached,
     /// The time is zero: the solids touch, or are at the target distance, up to rounding.
     TouchingAtStart,
-    /// The time is zero: the solids overlap, or are nearer than the target distance. The distance
-    /// of their two points is then the depth.
+    /// The time is zero: the solids overlap, or are nearer than the target distance. If they
+    /// overlap, the distance of the two points is the depth.
     PenetratingAtStart,
     /// The maximum number of steps was reached: the solids certainly do not touch before the
     /// returned time; whether they touch later is unknown.
@@ -265,7 +265,7 @@ impl<N: Real, const D: usize> Impact<N, D> {
 ///
 /// Returns `None` if the solids never come within the target distance up to the latest time, and if
 /// a pose, a velocity or the difference of the velocities is not finite. Swapping the solids gives
-/// a bitwise equal result. The unit of time is that of the velocities.
+/// a bitwise equal result. The velocities define the unit of time.
 ///
 /// At the returned time the solids are at the target distance, up to the rounding error of their
 /// sizes and of their initial distance. Before that time they were not nearer by more than that
@@ -433,7 +433,7 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
         Some(Self { first, ordered, pair, path, scale })
     }
 
-    /// Returns the first impact in canonical order, and its time in the arguments' unit.
+    /// Returns the earliest impact with the solids in canonical order, and its [`Impact::toi`].
     #[inline(always)]
     fn touch(&self) -> Option<(PartArrival<N, D>, N)> {
         let found = if self.ordered.has_composite() {
@@ -449,7 +449,7 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
         toi.is_finite_number().then_some((found, toi))
     }
 
-    /// Converts an impact, given in canonical order, to the world frame and the arguments' order.
+    /// Converts an impact to the world frame. The solids stay in canonical order.
     #[inline(always)]
     fn impact(&self, touch: &PartArrival<N, D>, toi: N) -> Impact<N, D> {
         let (found, features) = if self.ordered.has_composite() {

@@ -16,7 +16,7 @@ use crate::collide::separation::separation;
 use crate::math::{Mapped, Pose, Space, Unit, Vector, max, max_component, min};
 use crate::shape::Shape;
 
-/// The maximum number of steps.
+/// The maximum number of steps of conservative advancement.
 const MAX_STEPS: usize = 1024;
 
 /// The maximum number of separate steps of two parts before all parts are tested again.
@@ -25,15 +25,16 @@ const MAX_PART_STEPS: usize = 64;
 /// The maximum number of consecutive steps with a gap below [`NEAR`], if no tolerance is given.
 const MAX_NEAR_STEPS: usize = 256;
 
-/// Limits of a near gap: a fraction of the sum of the bodies' sizes and distance (2^-20), and a
-/// number of epsilons of that sum. The larger limit applies.
+/// A gap is near if it is at most the larger of two limits: a fraction (2^-20) of the sum of the
+/// bodies' sizes and distance, and a number of epsilons of that sum.
 const NEAR: [f64; 2] = [1.0 / 1_048_576.0, 64.0];
 
 /// Parts of composites are advanced one by one if the gap is less than this fraction of the sum of
 /// the bodies' sizes.
 const PARTS_WITHIN: f64 = 1.0 / 128.0;
 
-/// Parts are advanced separately while no point moves by more than this fraction of that sum.
+/// Parts are advanced separately while no point moves by more than this fraction of the sum of the
+/// bodies' sizes.
 const PARTS_WAY: f64 = 1.0 / 32.0;
 
 /// Returns the first impact of two bodies that move and rotate.
@@ -41,7 +42,7 @@ const PARTS_WAY: f64 = 1.0 / 32.0;
 /// Returns `None` if the bodies never come within the target distance up to the latest time, and if
 /// a pose at time zero is not finite. Swapping the bodies gives a bitwise equal result.
 ///
-/// *Never late.* The time is at most that of the first touch, up to the rounding error of the
+/// *Never late.* The time is not later than the first touch, up to the rounding error of the
 /// bodies' positions and sizes: fast rotation and thin bodies are not missed. *Hardly early.* With
 /// [`ImpactStatus::Reached`] the bodies are then within [`ImpactOptions::tolerance`] of the target
 /// distance, or so near that they reach the target distance within the resolution of the time. With
@@ -174,7 +175,7 @@ struct ImpactSearch<'a, N: Space<D>, const D: usize> {
     /// The largest difference from the target distance, zero or more; `None` for the default of
     /// [`ImpactOptions::tolerance`].
     tolerance: Option<N>,
-    /// Whether a contact at time zero is an impact, whatever the velocities.
+    /// Whether a contact at time zero is an impact for all velocities.
     contact_at_start: bool,
     /// Whether the bodies are equal at time zero.
     mirrored: bool,
@@ -189,7 +190,7 @@ struct BodyPoses<'b, 'a, N: Space<D>, const D: usize> {
     between: Between<'a, N, D>,
 }
 
-/// The contact configuration of the bodies at a time.
+/// The poses of the bodies at a time, with their nearest parts and points.
 struct Configuration<'b, 'a, N: Space<D>, const D: usize> {
     poses: BodyPoses<'b, 'a, N, D>,
     found: PartSeparation<N, D>,
@@ -203,7 +204,7 @@ struct Configuration<'b, 'a, N: Space<D>, const D: usize> {
     tolerance: N,
 }
 
-/// The reference against which the gap is measured.
+/// The rule by which the gap decides whether the bodies have an impact.
 #[derive(Clone, Copy, Debug)]
 enum Mode<N> {
     /// The bodies have been apart: they touch when the gap is used up.
@@ -214,7 +215,8 @@ enum Mode<N> {
 }
 
 impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
-    /// Advances to the first impact; `None` if there is none up to `end`.
+    /// Advances to the first impact. `None` if there is none up to `end`, if a pose at time zero is
+    /// not finite, or if a composite has no parts.
     fn run(&self) -> Option<Impact<N, D>> {
         let mut configuration = self.look(N::ZERO, None)?;
         let starts = self.end >= N::ZERO;
@@ -260,7 +262,7 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
         Some(self.impact(&configuration, ImpactStatus::StepsSpent))
     }
 
-    /// Returns a step during which the bodies certainly do not hit.
+    /// Returns a step during which the bodies certainly do not hit each other.
     fn step(&self, configuration: &Configuration<'_, 'a, N, D>, mode: Mode<N>) -> Step<N> {
         let moment = &configuration.poses.moment;
         let between = length(&(moment.centers[1] - moment.centers[0]));
@@ -382,7 +384,8 @@ impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
         if self.gap > self.tolerance + self.slack() { Mode::Apart } else { mode }
     }
 
-    /// Returns the gap that is accepted as an impact if further steps bring the bodies no nearer.
+    /// Returns the gap that is accepted as an impact if it lasts for more than [`MAX_NEAR_STEPS`]
+    /// consecutive steps.
     fn near(&self) -> N {
         max(N::lit(NEAR[0]), N::lit(NEAR[1]) * N::EPSILON) * self.size
     }
@@ -424,11 +427,11 @@ struct PartSteps<'s, 'b, 'a, N: Space<D>, const D: usize> {
     step: Step<N>,
 }
 
-/// A step during which the bodies certainly do not hit.
+/// A step during which the bodies certainly do not hit each other.
 #[derive(Clone, Copy, Debug)]
 struct Step<N> {
     time: N,
-    /// The number of consecutive near steps of the two parts that end the step.
+    /// The number of consecutive near steps at the end of the step, of the two parts that limit it.
     near_steps: usize,
 }
 

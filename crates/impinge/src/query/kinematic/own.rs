@@ -44,11 +44,11 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     /// Builds the kinematic of a user's contact, given in the world frame; `m1` and `m2` are the
     /// poses at which it was found.
     ///
-    /// For these poses [`Self::contact`] returns the contact, up to rounding. For other poses its
-    /// normal rotates with the solid whose side is flat; of two flat sides, with the one whose
-    /// normal is nearer to the contact's. If no side is flat, the normal is that of the shortest
-    /// connection of the cores, provided that this equals the contact's normal at `m1` and `m2`;
-    /// else it rotates with the first solid.
+    /// For these poses [`Self::contact`] returns the contact, up to rounding. For other poses the
+    /// normal rotates with the solid whose side is flat. If both sides are flat, it rotates with
+    /// the solid whose face normal is nearer to the contact's normal. If no side is flat, the
+    /// normal is along the shortest connection of the cores, provided that this direction equals
+    /// the contact's normal at `m1` and `m2`; else the normal rotates with the first solid.
     #[must_use]
     pub fn from_contact<R: AbstractRotation<N, D>>(
         contact: &Contact<N, D>,

@@ -41,7 +41,11 @@ impl<const D: usize> Cones<D> {
     }
 }
 
-/// Returns the moments of the area of a built-in 2D composite other than a compound.
+/// Returns the moments of the triangles of a 2D mesh, or of the area that a closed polyline
+/// encloses.
+///
+/// # Errors
+/// If the shape is an open polyline or another composite.
 pub(super) fn enclosed2<N: Real>(shape: &dyn Shape<N, 2>) -> Result<Moments<2>, MassError> {
     let mut cones = Cones::none();
     let units = if let Some(mesh) = shape.as_shape::<TriMesh<N, 2>>() {
@@ -70,7 +74,11 @@ pub(super) fn enclosed2<N: Real>(shape: &dyn Shape<N, 2>) -> Result<Moments<2>, 
     Ok(units.grown(&cones.moments()))
 }
 
-/// Returns the moments of the volume that a built-in 3D composite other than a compound encloses.
+/// Returns the moments of the volume that a closed 3D mesh encloses.
+///
+/// # Errors
+/// If the mesh bounds no volume, with the first triangle at fault, or the shape is another
+/// composite.
 pub(super) fn enclosed3<N: Real>(shape: &dyn Shape<N, 3>) -> Result<Moments<3>, MassError> {
     let Some(mesh) = shape.as_shape::<TriMesh<N, 3>>() else {
         return Err(MassError::NotClosed { part: 0 });

@@ -16,7 +16,7 @@ pub(super) struct LocalUnits<const D: usize> {
 }
 
 impl<const D: usize> LocalUnits<D> {
-    /// Returns the units around some points inflated by `radius`.
+    /// Returns the units for the set of points within `radius` of the given points.
     pub(super) fn around<'p, N: Real>(
         points: impl IntoIterator<Item = &'p Point<N, D>>,
         radius: N,

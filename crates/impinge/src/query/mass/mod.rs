@@ -1,7 +1,7 @@
 //! Mass, centre of mass and inertia of shapes.
 //!
-//! Shapes are integrated in doubles, about their centre and in units of their size ([`integrals`]),
-//! whatever the scalar. Closed forms are used where they exist; [`round_ellipsoid`], [`support2`]
+//! Shapes of either scalar type are integrated in doubles, about their centre and in units of their
+//! size ([`integrals`]). Closed forms are used where they exist; [`round_ellipsoid`], [`support2`]
 //! and [`support3`] integrate the other shapes numerically.
 
 mod by_dimension;
@@ -166,7 +166,7 @@ impl<N: Real> Weighing<'_, N> {
         Ok(found.of_density(self.density()?))
     }
 
-    /// Returns the sum of the children of a compound, in the compound's frame.
+    /// Returns the sum of the moments of a compound's children, in the compound's frame.
     fn of_children<const D: usize>(
         &mut self,
         compound: &Compound<N, D>,
@@ -186,7 +186,7 @@ impl<N: Real> Weighing<'_, N> {
         Ok(all.unwrap_or_else(|| Moments::massless(Vector::<f64, D>::zeros())))
     }
 
-    /// Returns the sum of the parts of a user's composite.
+    /// Returns the sum of the moments of the parts of a user's composite.
     ///
     /// # Errors
     /// If the composite is a surface.
@@ -262,7 +262,8 @@ fn of_solid<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns the moments of the set of points within `radius` of a solid with a closed form.
+/// Returns the moments of the set of points within `radius` of a built-in convex solid other than a
+/// [`Kind::Rounded`].
 fn rounded<N: Space<D>, const D: usize>(core: Geometry<'_, N, D>, radius: N) -> Moments<D> {
     match core.0 {
         Kind::Ball(ball) => solids::round_box(&Vector::<N, D>::zeros(), ball.radius() + radius),

@@ -48,9 +48,9 @@ fn round_points<N: Real>(corners: &[Point<N, 2>], radius: N) -> Moments<2> {
     units.grown(&round_ring(ring, units.length(radius)).moments())
 }
 
-/// Returns the integrals over the polygon of a ring inflated by `radius`. Its pieces are the
-/// polygon, a rectangle along each side, and at each corner a sector with the angle by which the
-/// outline turns there.
+/// Returns the integrals over the set of points within `radius` of the polygon with the corners
+/// `ring`. The pieces of the set are the polygon, a rectangle along each side, and at each corner a
+/// sector with the angle by which the outline turns there.
 fn round_ring(mut ring: Vec<V2>, radius: f64) -> Integrals<2> {
     let mut sum = Integrals::none();
     for (a, b) in sides(&ring) {

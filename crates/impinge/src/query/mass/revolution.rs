@@ -1,8 +1,9 @@
 //! Bodies of revolution, integrated in slices across the axis.
 //!
 //! A slice at z is a ball of D − 1 dimensions with the radius of the profile: a disk in 3D, a
-//! segment in 2D. The profile consists of lines and arcs. Their integrals are polynomials and
-//! trigonometric functions; Gauss-Legendre quadrature with 16 nodes integrates both up to rounding.
+//! segment in 2D. The profile consists of lines and arcs. The integrands are polynomials on lines
+//! and trigonometric polynomials on arcs; Gauss-Legendre quadrature with 16 nodes integrates both
+//! up to rounding.
 
 use super::integrals::LocalUnits;
 use super::solids::{UNIT_BALL, round_box};
@@ -79,7 +80,8 @@ impl<const D: usize> Slices<D> {
     }
 }
 
-/// Returns the rotation that maps the y axis to a unit vector or its opposite, whichever is nearer.
+/// Returns the rotation that maps the y axis to the unit vector `axis` or to its opposite, the
+/// nearer of the two.
 fn rotation_to<const D: usize>(axis: &Vector<f64, D>) -> Matrix<f64, D> {
     let mut y = Vector::<f64, D>::zeros();
     y[1] = 1.0;

@@ -3,11 +3,11 @@
 //!
 //! The support point in the direction u is `y = A² u / h + r u` with `h = |A u|`, where A is the
 //! diagonal matrix of the half axes and r the radius. A surface element has the area of its solid
-//! angle times the product of the principal radii of curvature there, each larger by r than that of
-//! the ellipsoid. Mass and moments follow from the surface by the divergence theorem. Directions
-//! are sampled as `A^(−1/2) v`, between the directions of the normals and of the points. The angles
-//! of v from the axes have evenly spaced logarithms: the curvature of needles and plates is
-//! concentrated near the axes.
+//! angle times the product of the principal radii of curvature there, each larger by r than the
+//! ellipsoid's radius of curvature. Mass and moments follow from the surface by the divergence
+//! theorem. Directions are sampled as `A^(−1/2) v`, between the directions of the normals and of
+//! the points. The angles of v from the axes have evenly spaced logarithms: the curvature of
+//! needles and plates is concentrated near the axes.
 
 use super::integrals::LocalUnits;
 use crate::math::{Mapped, Matrix, Real, Vector, max, max_component};
@@ -37,7 +37,7 @@ fn nodes() -> Vec<AngleNode> {
     (-STEPS..=STEPS).map(node).collect()
 }
 
-/// Sums of the volume and the second moments over directions of the surface.
+/// The volume and the second moments of the body, summed over directions.
 struct Shell<const D: usize> {
     half_axes: Vector<f64, D>,
     radius: f64,

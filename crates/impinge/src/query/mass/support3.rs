@@ -28,8 +28,9 @@ const THIN_EPSILON: f64 = 64.0;
 /// The maximum number of times that a group of slices is halved.
 const HALVINGS: u32 = 6;
 
-/// A group is not halved further if the sum of its halves differs from the group by less than this.
-/// In the round frame mass and moments are about 1.
+/// A group is not halved further if its mass plus the trace of its second moments differs by at
+/// most this between the group and the sum of its halves. In the round frame these numbers are
+/// about 1.
 const ENOUGH: f64 = 1e-5;
 
 /// The maximum number of times that each quarter of a slice's outline is halved.
@@ -191,9 +192,10 @@ impl<N: Real> Sliced<'_, N> {
         }
     }
 
-    /// Sums slices at Gauss-Legendre nodes between two angles. Slices are indexed by the angle that
-    /// a slice of a ball would have. The area of a slice is then a smooth function of the angle,
-    /// even at the ends of a solid that is round there.
+    /// Sums slices at Gauss-Legendre nodes between two angles. The angle of a slice is its
+    /// latitude: a slice at the height z of a ball of radius r has the angle asin(z / r). The area
+    /// of a slice is a smooth function of this angle, even at the ends of a solid that is round
+    /// there.
     fn group(&self, ends: [V3; 2], [from, to]: [f64; 2]) -> Integrals<3> {
         let (center, half) = ((ends[0].z + ends[1].z) * 0.5, (ends[1].z - ends[0].z) * 0.5);
         let (middle, step, mut sum) = ((from + to) * 0.5, (to - from) * 0.5, Integrals::none());

@@ -34,7 +34,8 @@ fn sign(determinant: f64) -> i64 {
 }
 
 /// Returns the contribution of a segment in 2D, whose left is inside. A point on a segment across
-/// the ray may go undetected; the winding number is then that of a point beside the segment.
+/// the ray may go undetected; the result is then the contribution around a point beside the
+/// segment.
 pub(super) fn of_segment(
     ends: [Point<f64, 2>; 2],
     point: &Point<f64, 2>,
@@ -59,8 +60,8 @@ pub(super) fn of_segment(
 }
 
 /// Returns the contribution of a triangle in 3D, whose front is outside. A point on a triangle
-/// parallel to the ray may go undetected; the winding number is then that of a point beside the
-/// triangle.
+/// parallel to the ray may go undetected; the result is then the contribution around a point beside
+/// the triangle.
 pub(super) fn of_triangle(
     corners: [Point<f64, 3>; 3],
     point: &Point<f64, 3>,
@@ -112,7 +113,9 @@ mod tests {
         })
     }
 
-    /// Tests an outline of the 8 outer points of a grid of three by three.
+    /// Around grid points inside and outside an outline of 8 segments, the rays along all axes give
+    /// the right winding number, even if they run along segments and through corners. Points on the
+    /// outline are not checked.
     #[test]
     fn an_outline_along_the_ray() {
         let ring = [[0, 0], [1, 0], [2, 0], [2, 1], [2, 2], [1, 2], [0, 2], [0, 1]];
@@ -134,7 +137,9 @@ mod tests {
         }
     }
 
-    /// Tests a surface of the 8 corners, the edge midpoints and the face centres of a cube.
+    /// Around grid points inside and outside a cube whose faces are divided at the edge midpoints
+    /// and face centres, the rays along all axes give the right winding number, even if they run
+    /// along triangles and through corners. Points on the surface are not checked.
     #[test]
     fn a_surface_along_the_ray() {
         let mut triangles = Vec::new();

@@ -17,8 +17,9 @@ impl<N: Real> TriMesh<N, 3> {
     /// bounds, or on the mesh; `None` if the mesh [does not bound a volume](Self::is_volume).
     ///
     /// True if and only if [`Self::signed_distance`], which defines the inside, is zero or
-    /// negative. A point that is not finite is never inside. The cost is O(log n) plus the
-    /// triangles over the point along one axis.
+    /// negative. A point that is not finite is never inside. The cost is O(log n), plus a test of
+    /// each triangle whose box is crossed by the ray from the point to the nearest face of the
+    /// overall box.
     #[must_use]
     pub fn encloses(&self, point: &Point<N, 3>) -> Option<bool> {
         self.is_volume().then(|| {
@@ -40,8 +41,7 @@ impl<N: Real> TriMesh<N, 3> {
     ///
     /// All other queries, also those of [`PointQuery`](crate::query::PointQuery), treat the mesh as
     /// a surface, unless it is [solid](Self::solid). A point that is not finite is infinitely far
-    /// away. The cost is a search for the nearest triangle, and a search for the triangles over the
-    /// point along one axis.
+    /// away. The cost is a search for the nearest triangle, plus the cost of [`Self::encloses`].
     ///
     /// ```
     /// use impinge::dim3::math::Point;
@@ -65,7 +65,8 @@ impl<N: Real> TriMesh<N, 3> {
         self.winding_of(point, |_| true)
     }
 
-    /// Returns the winding number of the triangles for which `counts` is true.
+    /// Returns the winding number, around the point, of the triangles for which `counts` returns
+    /// `true`; `None` if the point lies on one of these.
     pub(crate) fn winding_of(
         &self,
         point: &Point<N, 3>,
@@ -87,8 +88,9 @@ impl<N: Real> Polyline<N, 2> {
     /// or on the line; `None` if the line [does not bound an area](Self::is_outline).
     ///
     /// True if and only if [`Self::signed_distance`], which defines the inside, is zero or
-    /// negative. A point that is not finite is never inside. The cost is O(log n) plus the segments
-    /// beside the point along one axis.
+    /// negative. A point that is not finite is never inside. The cost is O(log n), plus a test of
+    /// each segment whose box is crossed by the ray from the point to the nearest side of the
+    /// overall box.
     #[must_use]
     pub fn encloses(&self, point: &Point<N, 2>) -> Option<bool> {
         self.is_outline().then(|| {
@@ -124,7 +126,8 @@ impl<N: Real> Polyline<N, 2> {
         self.winding_of(point, |_| true)
     }
 
-    /// Returns the winding number of the segments for which `counts` is true.
+    /// Returns the winding number, around the point, of the segments for which `counts` returns
+    /// `true`; `None` if the point lies on one of these.
     pub(crate) fn winding_of(
         &self,
         point: &Point<N, 2>,

@@ -75,14 +75,14 @@ pub struct PointProjection<N: Real, const D: usize> {
 /// meaningless.
 ///
 /// A composite is the union of its parts: a point is inside if it is inside a part. For a point
-/// outside, the nearest part decides. For a point inside, the part in which it is deepest decides,
-/// with the nearest point of that part's own boundary, which may lie inside another part. So the
-/// depth is at most the depth in the union, and equal to it where parts do not overlap. Of several
-/// parts with equal results the one with the lowest index wins. Triangles in 3D and segments are
-/// surfaces, which contain the points on them and enclose nothing (but closed meshes have
-/// [`signed_distance`](crate::shape::TriMesh::signed_distance)). Distances from triangles and
-/// segments are as accurate far from the mesh's origin as near it. A composite without parts is
-/// infinitely far from every point.
+/// outside, the result is for the nearest part. For a point inside, the result is for the part in
+/// which the point is deepest: the nearest point of that part's own boundary, which may lie inside
+/// another part. So the depth is at most the depth in the union, and equal to it where parts do not
+/// overlap. Of several parts with equal results the one with the lowest index wins. Triangles in 3D
+/// and segments are surfaces, which contain the points on them and enclose nothing (but closed
+/// meshes have [`signed_distance`](crate::shape::TriMesh::signed_distance)). Distances from
+/// triangles and segments are as accurate far from the mesh's origin as near it. A composite
+/// without parts is infinitely far from every point.
 ///
 /// For a composite, the cost is a search for the parts near the point.
 ///
@@ -109,7 +109,7 @@ pub trait PointQuery<N: Space<D>, const D: usize> {
     /// weights of its corners.
     ///
     /// With `solid`, the projection of a point inside is the point itself, with the weights of that
-    /// point. The feature is still that of the nearest point of the boundary.
+    /// point. The feature is still the feature that contains the nearest point of the boundary.
     ///
     /// ```
     /// use impinge::dim3::math::Point;
@@ -163,7 +163,7 @@ pub trait PointQuery<N: Space<D>, const D: usize> {
     ) -> N {
         let local = entries::point_within(&R::view(m).pose(), point);
         let distance = self.signed_distance_to_local_point(&local);
-        // The comparison keeps NaN.
+        // NaN fails the comparison and is returned.
         if solid && distance < N::ZERO { N::ZERO } else { distance }
     }
 

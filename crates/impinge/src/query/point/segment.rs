@@ -30,7 +30,8 @@ pub(crate) fn nearest<N: Real, const D: usize>(
     if from_a > N::ZERO { (*b, N::ONE) } else { (*a, N::ZERO) }
 }
 
-/// Returns the components along `along` of two vectors whose sum is `along`, both in the same unit.
+/// Returns the components along `along` of two vectors whose sum is `along`, both multiplied by one
+/// positive factor: only their signs and their ratio are meaningful.
 fn shares<N: Real, const D: usize>(along: &Vector<N, D>, parts: [&Vector<N, D>; 2]) -> (N, N) {
     let [from_a, to_b] = parts.mapped(|part| part.dot(along));
     let whole = from_a + to_b;

@@ -47,8 +47,8 @@ impl<N: Real, const D: usize> SurfacePoint<N, D> {
         if near { Self { point: *query, ..self } } else { self }
     }
 
-    /// Converts to the public form. A point that is its own projection is inside, whatever the
-    /// value of `is_inside`, so that zero distance and being inside are equivalent.
+    /// Converts to the public form. A point that is its own projection is inside, even if
+    /// `self.is_inside` is false. So a point outside has a positive distance.
     pub(crate) fn projection(self, query: &Point<N, D>) -> (PointProjection<N, D>, FeatureId) {
         let finite = query.iter().all(|x| x.is_finite_number());
         let touches = self.is_inside || length(&(query - self.point)) == N::ZERO;

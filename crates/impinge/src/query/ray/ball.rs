@@ -1,4 +1,5 @@
-//! A line and a ball: the quadratic equation that the round parts of all solids share.
+//! Ray casts against a ball. All round parts of solids use the same quadratic equation, which this
+//! file solves.
 
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;

@@ -1,4 +1,4 @@
-//! Batches of rays.
+//! Batches of rays that are cast against one shape.
 
 use core::ops::{ControlFlow, Range};
 

@@ -1,4 +1,4 @@
-//! A line and a capsule.
+//! Ray casts against a capsule: the span of time during which the ray's line is inside.
 
 use super::ball::{around, roots};
 use super::clip::in_order;

@@ -1,4 +1,4 @@
-//! A line and a cone.
+//! Ray casts against a cone: the span of time during which the ray's line is inside.
 
 use super::clip::clipped;
 use super::cylinder::{cap, span as cylinder_span};
@@ -26,8 +26,9 @@ pub(super) fn span<N: Real>(cone: &Cone<N>, ray: &Ray<N, 3>) -> Option<Span<N, 3
 
 /// The infinite cone below the apex, and a line through it.
 ///
-/// `cosine` and `sine` are those of half the opening angle. A point at the distance `x` from the
-/// axis and the height `y ≤ 0` over the apex is inside where `cosine · x ≤ -sine · y`.
+/// `cosine` and `sine` are the cosine and the sine of half the opening angle. A point at the
+/// distance `x` from the axis and the height `y ≤ 0` over the apex is inside where `cosine · x ≤
+/// -sine · y`.
 struct Nappe<N: Real> {
     cosine: N,
     sine: N,

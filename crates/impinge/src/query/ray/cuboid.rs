@@ -1,4 +1,4 @@
-//! A line and a box.
+//! Ray casts against a box: the span of time during which the ray's line is inside.
 
 use super::clip::{HalfSpace, clipped};
 use super::span::Span;

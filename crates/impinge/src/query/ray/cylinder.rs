@@ -1,4 +1,4 @@
-//! A line and a cylinder.
+//! Ray casts against a cylinder: the span of time during which the ray's line is inside.
 
 use super::ball::roots;
 use super::clip::{HalfSpace, clipped};

@@ -1,4 +1,5 @@
-//! A line and an ellipsoid, in any dimension.
+//! Ray casts against an ellipsoid, in any dimension: the span of time during which the ray's line
+//! is inside.
 
 use super::ball::roots;
 use super::span::{Crossing, Span};

@@ -1,8 +1,8 @@
 //! First hits of rays on a mesh in 3D, with a fast path for hits in the interior of a triangle.
 //!
-//! The results are bitwise equal to those of [`each_hit`](crate::query::composite::each_hit). For
-//! speed, the normal is computed once, at the end, the code is compiled in one piece, and rays are
-//! traced in groups.
+//! The results are bitwise equal to the first hits that
+//! [`each_hit`](crate::query::composite::each_hit) finds. For speed, the normal is computed once,
+//! at the end, the code is compiled in one piece, and rays are traced in groups.
 
 use super::triangle3::{InnerHit, TriangleRay};
 use super::{Answers, RayBatch, RayCast, RayIntersection, first_that};
@@ -104,9 +104,10 @@ struct Met<N: Real> {
 }
 
 impl<'a, N: Space<3>> MeshCast<'a, N> {
-    /// Returns a ray before its first triangle. `None` if the query is solid and the mesh has
-    /// bodies, if the mesh has no bounds, if the ray has no direction or is not finite, and if
-    /// `max_time` is negative or NaN.
+    /// Starts the cast of a ray: tests only the triangles whose boxes are unbounded. `None` if
+    /// [`first_that`] must compute the result: if the query is solid and the mesh has bodies, if
+    /// the mesh has no bounds, if the ray has no direction or is not finite, and if `max_time` is
+    /// negative or NaN.
     #[inline(always)]
     fn new(mesh: &TriMesh<N, 3>, ray: &'a Ray<N, 3>, max_time: N, solid: bool) -> Option<Self> {
         let is_finite = filled(|axis| ray.dir[axis].is_finite_number()) == [true; 3];
@@ -130,7 +131,7 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
         loosened(self.latest)
     }
 
-    /// Tests a triangle, and keeps it if it is hit first.
+    /// Tests a triangle. Keeps it if its hit is the first so far.
     #[inline(always)]
     fn propose(&mut self, part: u32, corners: &[Point<N, 3>; 3]) {
         let Some(inner) = self.own.inner_hit(corners) else {
@@ -240,8 +241,8 @@ mod tests {
         })
     }
 
-    /// Checks that the results for single rays and for batches equal those of casts against each
-    /// part.
+    /// Checks that the results for single rays and for batches are bitwise equal to the results of
+    /// casts against each part.
     fn agrees<N: Space<3>>(scale: f64, speed: f64) {
         let (state, mut hits) = (&mut 5, 0);
         for count in [1, 12, 300, 5000] {

@@ -116,7 +116,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
     /// Returns the first hit in the local frame, if it is at `max_time` or before. `None` if there
     /// is none, and if `max_time` is negative or NaN. The time is in units of the ray's direction.
     ///
-    /// The results of the other methods agree with this one.
+    /// The results of all other methods agree with the results of this method.
     #[doc(alias = "cast_local_ray")]
     fn cast_local_ray_until(
         &self,
@@ -467,7 +467,7 @@ pub(crate) fn at_start<N: Real, const D: usize>(feature: FeatureId) -> RayInters
 
 /// Implements the common part of all casts: non-finite and zero directions, and scaling.
 ///
-/// `project` is called if a ray may start inside; it returns `None` if the ray certainly does not.
+/// `project` is called if the ray may start inside; it returns `None` if the ray starts outside.
 /// `span` is called for finite rays whose direction was divided by a power of two, so that its
 /// largest component is between 1 and 2 and its powers stay in range.
 fn cast<N: Real, const D: usize>(

@@ -1,5 +1,6 @@
-//! Fast rejection tests. They find rays that certainly miss a ball or a box, and points that a
-//! solid certainly does not contain. Most rays that hit the bounding box of a solid miss the solid.
+//! Fast rejection tests for rays that certainly miss a ball or a box, and for points that a solid
+//! certainly does not contain. They save most exact tests of rays that hit the bounding box of a
+//! solid but miss the solid.
 
 use crate::bounding_volume::Ray;
 use crate::math::{Point, Real, Vector, max, max_component, min};
@@ -9,7 +10,7 @@ use crate::shape::{Geometry, Kind, Triangle};
 /// directions: several times the margin of the exact test.
 const SLACK: f64 = 64.0;
 
-/// Returns whether the cast of a ray against a ball or a box certainly finds nothing, whatever its
+/// Returns whether a ray certainly misses a ball or a box, so that a cast finds nothing with any
 /// options. Always false for other shapes, and near overflow or underflow.
 #[inline(always)]
 pub(crate) fn surely_misses<N: Real, const D: usize>(
@@ -144,7 +145,8 @@ mod tests {
         *state >> 33
     }
 
-    /// Returns a small integer, so that rays touch faces and edges, or an arbitrary number.
+    /// Returns a small integer, so that rays touch faces and edges; or a number close to one, so
+    /// that they barely touch or miss; or an arbitrary number.
     fn number<N: Real>(state: &mut u64) -> N {
         let small = bits(state) as f64 % 9.0 - 4.0;
         let any = bits(state) as f64 / f64::from(1_u32 << 30) - 1.0;

@@ -1,4 +1,4 @@
-//! A line and a half-space.
+//! Ray casts against a half-space: the span of time during which the ray's line is inside.
 
 use super::clip::{HalfSpace, clipped};
 use super::span::Span;

@@ -1,4 +1,5 @@
-//! A line and a convex polygon or hull.
+//! Ray casts against a convex polygon or hull: the span of time during which the ray's line is
+//! inside.
 
 use super::clip::{HalfSpace, clipped};
 use super::span::Span;

@@ -1,4 +1,5 @@
-//! A line and a segment, in any dimension.
+//! Ray casts against a segment, in any dimension: the span of time during which the ray's line is
+//! on the segment.
 
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;

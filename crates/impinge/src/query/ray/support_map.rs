@@ -1,6 +1,7 @@
 //! Ray casts against a convex solid known by support points alone.
 //!
-//! The number of steps is limited; a returned time is never later than the hit.
+//! A returned time is never later than the hit. The number of steps is limited; a search that needs
+//! more steps finds no hit.
 
 use super::ball::roots;
 use super::span::{Crossing, Span};
@@ -54,8 +55,10 @@ pub(super) struct RaySolid<'a, N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> RaySolid<'_, N, D> {
-    /// Returns the span of the line; `None` if the line misses the solid, or leaves it before time
-    /// zero.
+    /// Returns the span of the line, as far as the first hit of the ray needs it: if the line
+    /// enters the solid at time zero or later, the end of the span is infinite. `None` if the line
+    /// misses the solid, if it leaves the ball around the solid before time zero, or if the search
+    /// takes too many steps.
     pub(super) fn span(&self, ray: &Ray<N, D>) -> Option<Span<N, D>> {
         // The radius is enlarged, since it is only accurate up to rounding.
         let around = roots(&ray.origin.coords, &ray.dir, self.radius * N::lit(1.0625))?;
@@ -90,8 +93,8 @@ struct Advance<'a, N: Real, const D: usize> {
 
 impl<N: Real, const D: usize> Advance<'_, N, D> {
     /// Moves the point to the supporting plane between it and the solid, repeatedly, until the
-    /// distance is within the precision. `None` if the point moves away from such a plane, or
-    /// reaches the end of `duration` first.
+    /// distance is within the precision. `None` if the point moves away from such a plane, reaches
+    /// the end of `duration` first, or needs more than [`ROUNDS`] steps.
     ///
     /// The planes follow G. van den Bergen, "Ray Casting against General Convex Objects with
     /// Application to Continuous Collision Detection" (2004), but are computed anew in each step.

@@ -1,4 +1,5 @@
-//! A line and a tapered capsule, in any dimension.
+//! Ray casts against a tapered capsule, in any dimension: the span of time during which the ray's
+//! line is inside.
 
 use super::ball::around;
 use super::clip::in_order;

@@ -1,4 +1,5 @@
-//! A line and a filled triangle in 2D.
+//! Ray casts against a filled triangle in 2D: the span of time during which the ray's line is
+//! inside.
 
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;
@@ -10,8 +11,8 @@ use crate::shape::{FeatureId, Triangle};
 struct RayCorner<N: Real> {
     /// The time at which the line is nearest to the corner.
     t: N,
-    /// The signed distance of the corner from the line, positive on its left, in units of the
-    /// direction's length.
+    /// The signed distance of the corner from the line, positive on its left, multiplied by the
+    /// length of the direction.
     side: N,
 }
 

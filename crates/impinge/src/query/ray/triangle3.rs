@@ -1,4 +1,5 @@
-//! A line and a triangle in 3D.
+//! Ray casts against a triangle in 3D: the span of time during which the ray's line is on the
+//! triangle.
 
 use super::segment::{RayFeatures, span as segment_span};
 use super::span::{Crossing, Span};
@@ -33,7 +34,7 @@ pub(super) fn span<N: Real>(triangle: &Triangle<N, 3>, ray: &Ray<N, 3>) -> Optio
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TriangleRay<N: Real> {
     shear: Shear<N>,
-    /// The power of two by which the ray's direction is divided, as for all spans.
+    /// The power of two by which the ray's direction is divided before a span is computed.
     unit: N,
 }
 

@@ -34,7 +34,7 @@ impl<'a, N: Space<D>, const D: usize> EnclosedBody<'a, N, D> {
         Self { pose: pose.compose(&self.pose), first: first + self.first, ..*self }
     }
 
-    /// Returns the range of part indices, in the composite, of the boundary.
+    /// Returns the range of indices that the parts of the boundary have in the composite.
     pub(crate) fn parts(&self) -> Range<u32> {
         self.first..self.first + self.boundary.num_parts()
     }
@@ -83,8 +83,8 @@ fn root(above: &mut [u32], mut at: u32) -> u32 {
 /// is negative if its front faces inwards. A piece that is negative beyond rounding errors must
 /// bound a cavity.
 ///
-/// `cone(part)` returns the signed content between a part and a fixed point; `is_cavity(part)`
-/// returns whether the other pieces wind around that part.
+/// `cone(part)` returns the signed area or volume between a part and a point that is fixed for its
+/// piece; `is_cavity(part)` returns whether the other pieces wind around that part.
 ///
 /// # Errors
 /// [`MeshError::InsideOut`] with the first part of a piece that is negative and bounds no cavity.
@@ -106,8 +106,8 @@ pub(super) fn check_fronts(
     Ok(())
 }
 
-/// The rounding error of a signed area or volume, as a fraction of the sum of the magnitudes of its
-/// terms.
+/// An upper bound of the rounding error of a signed area or volume, as a fraction of the sum of the
+/// magnitudes of its terms.
 const NONE: f64 = 1024.0 * f64::EPSILON;
 
 #[cfg(test)]

@@ -16,9 +16,9 @@ use crate::shape::{
 /// The union of shapes, its children, each placed in the compound's frame.
 ///
 /// Children may be of any kind: convex solids, half-spaces, meshes, height fields, compounds. The
-/// compound's parts are the parts of its children, indexed in order: first those of child 0, then
-/// those of child 1, … A child that is not a composite is one part. The path to a part is the index
-/// of the child, then the path within the child.
+/// compound's parts are the parts of its children, indexed in order: first the parts of child 0,
+/// then the parts of child 1, … A child that is not a composite is one part. The path to a part is
+/// the index of the child, then the path within the child.
 ///
 /// Seams are handled within the surface of a child, not between children. A search uses the tree
 /// over the boxes of the children, then runs in each composite child that it finds, with the search
@@ -57,7 +57,8 @@ pub struct Compound<N: Space<D>, const D: usize> {
     depth: u32,
     /// The union of the boxes of the children.
     aabb: Aabb<N, D>,
-    /// The tree over the boxes of the children, enlarged by the rounding errors of placing them.
+    /// The tree over the boxes of the children. Each box is enlarged by the rounding errors of
+    /// placing its child; see [`search_box`].
     pub(in crate::shape) tree: BoxTree<N, D>,
     sphere: BoundingSphere<N, D>,
     /// Whether any child is a composite with a surface, and so has seams.
@@ -203,7 +204,7 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
 /// `None` if the child would be sheared.
 ///
 /// With M the signs and P the magnitudes of the factors, and R the child's rotation: `M P R = (M R
-/// M) (M (Rᵀ P R))`. This is a rotation after a scale if `Rᵀ P R` is diagonal.
+/// M) (M (Rᵀ P R))`. The product is a rotation after a scale if `Rᵀ P R` is diagonal.
 fn scaled_pose<N: Real, const D: usize>(
     pose: &Pose<N, D>,
     scale: Scale<'_, N, D>,
@@ -233,7 +234,8 @@ fn own_factors<N: Real, const D: usize>(
     (!all.any(is_beside)).then(|| rotated.diagonal())
 }
 
-/// Computes [`Compound::firsts`].
+/// Returns [`Compound::firsts`]: the index of the first part of each child, then the number of
+/// parts.
 ///
 /// # Errors
 /// If the parts do not fit 32-bit indices.
@@ -429,8 +431,9 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Compound<N, D> {
         self.aabb
     }
 
-    /// Returns the union of the boxes of the children, or, if there are more than `FEW_CHILDREN`,
-    /// the box around the rotated local box.
+    /// Returns the union of the boxes of the children, where the box of a composite child is the
+    /// box around its rotated local box. If there are more than `FEW_CHILDREN`, returns the box
+    /// around the rotated local box of the compound.
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         if self.children.len() > FEW_CHILDREN {
             return self.local_aabb().transformed_by(pose);

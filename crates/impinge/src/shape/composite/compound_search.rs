@@ -1,7 +1,8 @@
 //! The search of a compound: first among the boxes of its children, then within each composite
 //! child.
 //!
-//! Lower bounds reported by nested searches are also lower bounds in the frame of the compound.
+//! A nested search gets a box that contains the search box, so the lower bounds that it reports are
+//! also lower bounds for the compound.
 
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::outward::slack_of;
@@ -84,8 +85,8 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
 
 /// Returns the box by which the search finds a child. The box is enlarged by the rounding errors of
 /// the child in the frames in which the pair algorithms place it. These errors are proportional to
-/// the child's own coordinates and its position. Both may be much larger than the coordinates of
-/// the placed box.
+/// the child's own coordinates and to its position, which may be much larger than the coordinates
+/// of the placed box.
 pub(in crate::shape) fn search_box<N: Space<D>, const D: usize>(
     shape: &dyn Shape<N, D>,
     pose: &Pose<N, D>,

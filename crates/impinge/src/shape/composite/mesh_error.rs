@@ -67,13 +67,13 @@ pub enum MeshError {
         /// The vertices at the ends of the edge; for a line, the vertex twice.
         edge: [u32; 2],
     },
-    /// The front of a closed surface faces its inside, and the surface is not a cavity in another
-    /// closed surface.
+    /// The front of a closed surface faces its inside, and the surface does not bound a cavity in
+    /// another closed surface.
     InsideOut {
         /// The index of the first part of the surface.
         part: usize,
     },
-    /// A scale is zero, infinite or NaN: no area or length would remain.
+    /// A factor of a scale is zero, infinite or NaN.
     BadScale {
         /// The index of the axis: 0 for x.
         axis: usize,
@@ -187,7 +187,7 @@ pub(in crate::shape) fn check_scale<N: Real, const D: usize>(
     }
 }
 
-/// Returns the mesh, or panics with the text of the error.
+/// Returns the mesh or polyline, or panics with the text of the error.
 #[track_caller]
 pub(in crate::shape) fn or_panic<S>(result: Result<S, MeshError>) -> S {
     match result {

@@ -2,8 +2,8 @@
 //!
 //! Parts are indexed from 0. The parts of nested composites are numbered consecutively, so that one
 //! index identifies a part at any depth; `path_to_part` on `dyn Shape` converts an index to a path.
-//! No algorithm processes a composite as a whole: it searches for candidate parts ([`PartSearch`])
-//! and processes each as a separate solid.
+//! A query of a composite with another shape searches for candidate parts ([`PartSearch`]) and
+//! processes each as a separate solid.
 
 pub(crate) mod body;
 pub(crate) mod compound;
@@ -127,7 +127,7 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
         None
     }
 
-    /// Returns the composite as a triangle mesh; `None` if it is another shape.
+    /// Returns the composite as a triangle mesh; `None` if the composite is of another type.
     #[doc(hidden)]
     fn as_mesh(&self) -> Option<&TriMesh<N, D>> {
         None
@@ -176,7 +176,7 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
     }
 }
 
-/// One of the solids that a composite is made of.
+/// A part of a composite: a convex solid or a half-space, and its pose.
 ///
 /// ```
 /// use impinge::dim3::math::Isometry;
@@ -238,8 +238,8 @@ impl<N: Real, const D: usize> PartSolid<'_, N, D> {
 /// A search structure over the parts of a composite, by their boxes.
 ///
 /// A box may be larger than its part: callers test each reported part. Each part is reported at
-/// most once; near parts first is faster, but no order is required. A search with a NaN or infinite
-/// argument reports no parts, except that faces of its box may be infinite.
+/// most once; near parts first is faster, but no order is required. A search with a NaN argument or
+/// an infinite velocity reports no parts. Faces of the box, and the limit, may be infinite.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::Aabb;
@@ -313,8 +313,9 @@ pub trait Surface<N: Real, const D: usize>: Send + Sync {
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, D>) -> bool;
 
     /// Returns the normal that replaces `normal`, which [`Self::admits`] rejected: the face normal
-    /// of the part, on the side of `normal` if the surface has two sides. `None` if the part is not
-    /// on the border of the surface, such as a piece inside a filled shape.
+    /// of the part, on the side of `normal` if the surface has two sides. `None` if the part has no
+    /// normal, such as a triangle without area, or does not lie on the border of the surface, such
+    /// as a piece inside a filled shape.
     fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>>;
 
     /// Returns whether the part can touch a solid whose centre is `center`. False if the surface is

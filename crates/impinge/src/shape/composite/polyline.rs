@@ -19,10 +19,10 @@ use crate::shape::{Revision, Segment};
 /// [`Segment`]; all coordinates are in the frame of the line. Segments join where the positions of
 /// their ends are equal, regardless of vertex indices.
 ///
-/// **Sides.** A line is a skin without an inside. In 2D `encloses` and `signed_distance` use the
-/// area inside, and `solid` makes a closed line a body. In 2D contacts arise on both sides, or only
-/// on the right after `one_sided`. The left is then the solid side, as for an outline that runs
-/// counter-clockwise.
+/// **Sides.** For most queries a line is a skin without an inside. In 2D `encloses` and
+/// `signed_distance` compute what a closed line encloses, and `solid` makes a closed line a body.
+/// In 2D contacts arise on both sides, or only on the right after `one_sided`. The left is then the
+/// solid side, as for an outline that runs counter-clockwise.
 ///
 /// **Seams.** Contacts treat the line as one surface (see [`Surface`](crate::shape::Surface)): at a
 /// joint only normals of the whole line are admitted, so that solids do not catch on the joints of
@@ -198,8 +198,8 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
 
 #[cfg(feature = "serde")]
 impl<N: Real, const D: usize> Polyline<N, D> {
-    /// Replaces the joints by those of a saved line, whose vertices were moved apart after
-    /// construction.
+    /// Replaces the joints by the joints of a saved line whose vertices were moved after
+    /// construction, so that positions no longer determine the joints.
     pub(in crate::shape) fn move_joints(&mut self, joints: Joints) {
         let is_whole = joints.are_together(&self.vertices);
         self.is_cycle = is_whole && is_cycle(self.vertices.len(), &self.segments, &joints);
@@ -226,7 +226,7 @@ impl<N: Real, const D: usize> Polyline<N, D> {
         self.segments.len()
     }
 
-    /// Returns one segment.
+    /// Returns the segment with the index `index`.
     ///
     /// # Panics
     /// If `index` is not below the number of segments.
@@ -340,8 +340,8 @@ impl<N: Real> Polyline<N, 2> {
     /// # Errors
     /// - [`MeshError::NotClosed`] or [`MeshError::NotOriented`] if the line is not an
     ///   [outline](Self::is_outline), with the first vertex at fault.
-    /// - [`MeshError::InsideOut`] if an outline runs clockwise and lies in no other outline, with a
-    ///   segment of it.
+    /// - [`MeshError::InsideOut`] if an outline runs clockwise and lies in no other outline, with
+    ///   the first segment of that outline.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -378,7 +378,8 @@ impl<N: Real> Polyline<N, 2> {
         Ok(self.one_sided())
     }
 
-    /// Returns a power of two near the largest coordinate of the line.
+    /// Returns a power of two near the largest magnitude of a coordinate. Coordinates are divided
+    /// by it so that areas neither overflow nor underflow.
     fn scale(&self) -> f64 {
         let corners = self.tree.bounds().map(|bounds| [*bounds.mins(), *bounds.maxs()]);
         let largest = |corner: &Point<N, 2>| max_component(&corner.coords);

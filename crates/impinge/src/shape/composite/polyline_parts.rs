@@ -16,8 +16,8 @@ pub(in crate::shape) fn right_of<N: Real>(along: &Vector<N, 2>) -> Vector<N, 2> 
     -perp(along)
 }
 
-/// Returns the unit vector perpendicular to a line, towards the side of `vector`, which may have
-/// any length; `None` if the perpendicular component is only rounding error and gives no side.
+/// Returns the direction of the component of `vector` that is perpendicular to the unit vector
+/// `along`; `vector` may have any length. `None` if this component is zero or only rounding error.
 pub(in crate::shape) fn across<N: Real, const D: usize>(
     along: &Vector<N, D>,
     vector: &Vector<N, D>,
@@ -135,8 +135,9 @@ impl<N: Real, const D: usize> Polyline<N, D> {
         front.map_or(N::ZERO, |front| front.dot(vector))
     }
 
-    /// Returns whether the joint admits `normal`: no segment that leaves the joint rises along
-    /// `normal`, and the segments at the joint are not collinear.
+    /// Returns whether the joint admits `normal` ([`Seam::admits`]): no segment that leaves the
+    /// joint rises along `normal`, the segments do not continue each other straight, and on a
+    /// one-sided line the highest segment has its front towards `normal`.
     fn joint_admits(&self, part: u32, end: u32, normal: &Vector<N, D>) -> bool {
         let joint = self.joints.of(self.segments[part as usize][end as usize]);
         let own = self.along(part).unwrap_or_else(Vector::<N, D>::zeros);
@@ -156,13 +157,13 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Polyline<N, D> {
         Geometry(Kind::Composite(self))
     }
 
-    /// Returns the smallest box, in O(1).
+    /// Returns the smallest box around the segments. O(1).
     fn local_aabb(&self) -> Aabb<N, D> {
         self.tree.bounds().copied().unwrap_or_else(Aabb::unbounded)
     }
 
-    /// Returns the smallest box, up to rounding. O(log n) for a nearly convex line, up to O(n) if
-    /// the parts extend almost equally far.
+    /// Returns the smallest box around the segments placed at `pose`, up to rounding. O(log n) for
+    /// a nearly convex line, up to O(n) if many segments extend almost equally far along an axis.
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         aabb_at(pose, &self.segments, &self.vertices, &self.tree)
     }

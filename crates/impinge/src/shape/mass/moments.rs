@@ -1,10 +1,11 @@
-//! Mass, centre of mass and principal moments in double precision, whatever the scalar of the body.
+//! Mass, centre of mass and principal moments in double precision, for bodies of either scalar
+//! type.
 
 use crate::math::eigen::symmetric_eigen;
 use crate::math::{Matrix, Vector};
 
-/// Moments of at most this fraction of the largest moment are rounding errors of the sums, and
-/// become zero.
+/// A moment of at most this fraction of the largest moment counts as a rounding error of the sums
+/// and becomes zero.
 const THIN: f64 = 16.0 * f64::EPSILON;
 
 /// The mass of a body, its centre of mass, and its principal moments, in the body's frame.
@@ -46,7 +47,8 @@ impl<const D: usize> Moments<D> {
         Self { mass: 0.0, center, axes, principal }
     }
 
-    /// Returns a body from its second moments along its principal axes.
+    /// Returns a body from its second moments `∫ xᵢ² dm` about the centre, one for each principal
+    /// axis `i`.
     pub(crate) fn along_axes(
         mass: f64,
         center: Vector<f64, D>,
@@ -82,7 +84,7 @@ impl<const D: usize> Moments<D> {
         Self { center, axes: rotation * self.axes, ..*self }
     }
 
-    /// Returns the body with all densities multiplied by `density`.
+    /// Returns the body with its density multiplied by `density`, and so its mass and its moments.
     pub(crate) fn of_density(&self, density: f64) -> Self {
         Self { mass: self.mass * density, principal: self.principal * density, ..*self }
     }

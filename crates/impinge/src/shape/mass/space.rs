@@ -22,8 +22,9 @@ impl<N: Real> MassProperties<N, 3> {
     /// Returns a body with the given centre of mass, mass, and inertia tensor about that centre, in
     /// the axes of the frame.
     ///
-    /// Only the symmetric part of the tensor is used. It is not checked whether such a body is
-    /// physical, that is, whether no principal moment exceeds the sum of the other two.
+    /// Only the symmetric part of the tensor is used. A body with this tensor may be unphysical,
+    /// which is not checked: in a physical body no principal moment exceeds the sum of the other
+    /// two.
     ///
     /// # Errors
     /// If a number is not finite, the mass is negative, or a principal moment is negative by more

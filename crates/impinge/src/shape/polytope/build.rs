@@ -41,7 +41,7 @@ fn grouped<T: Copy + Default>(
 }
 
 impl<N: Real, const D: usize> Polytope<N, D> {
-    /// Returns a polytope with vertices only; the caller adds faces, edges and fans.
+    /// Returns a polytope with vertices only; the caller adds faces, planes, edges and fans.
     fn from_vertices(vertices: Vec<Point<N, D>>) -> Self {
         Self {
             center: center_of(&vertices),
@@ -199,9 +199,9 @@ struct DirectedSide {
 /// is none. If a side occurs twice, at least one of the two occurrences is not the twin of its
 /// twin.
 ///
-/// A pair of twins is found from the side at whose end no more sides leave than at its start. On a
-/// closed surface this takes linear time: Chiba and Nishizeki, "Arboricity and Subgraph Listing
-/// Algorithms" (1985).
+/// A side looks for its twin among the sides that leave its end, but only if these are no more than
+/// the sides that leave its start; otherwise its twin finds it. On a closed surface this takes
+/// linear time: Chiba and Nishizeki, "Arboricity and Subgraph Listing Algorithms" (1985).
 fn twins(vertices: usize, sides: &[DirectedSide]) -> Vec<u32> {
     let leaving = (0..).zip(sides).map(|(index, side)| (side.from, [side.to, index]));
     let (starts, leaving) = grouped::<[u32; 2]>(vertices, leaving);

@@ -53,7 +53,8 @@ const ROUGHLY: f64 = 1e-3;
 
 #[cfg(feature = "serde")]
 impl<N: Real, const D: usize> Polytope<N, D> {
-    /// Returns whether no vertex is far above a face: the check of restored solids for damage.
+    /// Returns whether no vertex is above a face by more than `ROUGHLY` times the reach. A saved
+    /// solid that fails this test is damaged.
     pub(in crate::shape) fn is_roughly_convex(&self) -> bool {
         let most = N::lit(ROUGHLY) * self.reach;
         // A height that is NaN counts as convex: an overflow of lengths is no damage.

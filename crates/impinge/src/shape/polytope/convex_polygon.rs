@@ -28,7 +28,8 @@ pub struct ConvexPolygon<N: Real> {
 }
 
 impl<N: Real> ConvexPolygon<N> {
-    /// Returns the polygon with a given convex outline, in either order; see [`Self::try_new`].
+    /// Returns the polygon with a given convex outline, counter-clockwise or clockwise; see
+    /// [`Self::try_new`].
     ///
     /// # Panics
     /// If [`Self::try_new`] returns an error.

@@ -100,9 +100,10 @@ pub(in crate::shape) const LANES: usize = 8;
 /// target.
 pub(in crate::shape) const QUARTET: usize = 4;
 
-/// Vertices in packets of 8, one row per axis; one packet is stored inline.
+/// Vertices in packets of 8, one row per axis; a single packet is stored inline, more on the heap.
 type Blocks<N, const D: usize> = SmallVec<[[[N; LANES]; D]; 1]>;
-/// Vertices in packets of 4, one row per axis; two packets are stored inline.
+/// Vertices in packets of 4, one row per axis; up to two packets are stored inline, more on the
+/// heap.
 type Quartets<N, const D: usize> = SmallVec<[[[N; QUARTET]; D]; 2]>;
 
 /// The planes of 8 faces, one row of normals per axis.
@@ -244,9 +245,9 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         FeatureId::flat::<D>(1, index)
     }
 
-    /// Returns the face over which `point` has the greatest signed height, and that height: the
-    /// index of the first such face. The height is positive if and only if the point is outside, up
-    /// to rounding.
+    /// Returns the index of the face over which `point` has the greatest signed height, the first
+    /// if there are several, and that height. The height is positive if and only if the point is
+    /// outside, up to rounding.
     pub(crate) fn highest_face(&self, point: &Point<N, D>) -> (u32, N) {
         let highest = polytope_support::plane(Level::new(), &self.planes, point);
         (count32(highest), self.faces[highest].height_of(point))

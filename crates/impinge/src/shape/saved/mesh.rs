@@ -15,7 +15,7 @@ pub(crate) struct MeshRecord<N: Real> {
     pub(in crate::shape) vertices: Numbers<N>,
     /// The vertex indices of each part, one part after the other.
     pub(in crate::shape) parts: Vec<u32>,
-    /// The number of ghosts; they are the last of `parts`.
+    /// The number of ghosts, which are the last triangles in `parts`; 0 for a polyline.
     pub(in crate::shape) ghosts: u32,
     /// The joint of each vertex if vertices were moved after construction, else `None`. Joints of
     /// unmoved vertices follow from the positions.

@@ -132,7 +132,7 @@ pub(crate) struct FieldRecord<N: Real> {
     pub(in crate::shape) scale: Numbers<N>,
     /// The rule of the diagonals: 0 for forward, 1 for backward, 2 for zigzag.
     pub(in crate::shape) diagonals: u8,
-    /// The marks of each cell, or empty if no cell has any. Bits 0 and 1 mark holes, bit 2 a
+    /// The marks of each cell; empty if no cell was ever marked. Bits 0 and 1 mark holes, bit 2 a
     /// diagonal that differs from the rule, bit 3 a ghost.
     pub(in crate::shape) marks: Vec<u8>,
     pub(in crate::shape) is_one_sided: bool,
@@ -154,7 +154,8 @@ impl<N: Real> ShapeRecords<N> {
         Self { numbers: BTreeMap::new(), limit: PartLimit::default(), records: Vec::new() }
     }
 
-    /// Returns the number of a shape, and saves the shape if it has no number yet.
+    /// Returns the number of a shape. If the shape has no number yet, saves it first, and before it
+    /// the shapes that it holds.
     pub(crate) fn number<const D: usize>(
         &mut self,
         shape: &ShapeHandle<N, D>,
@@ -272,7 +273,7 @@ fn make<N: Space<D>, const D: usize>(
     })
 }
 
-/// Returns the shape with the number `number`.
+/// Returns the shape with the number `number`; an error if there is none.
 pub(crate) fn shape_of<N: Real, const D: usize>(
     shapes: &[ShapeHandle<N, D>],
     number: u32,

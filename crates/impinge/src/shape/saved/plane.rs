@@ -7,7 +7,7 @@ use crate::shape::composite::polyline::Front;
 use crate::shape::composite::polyline_parts::right_of;
 use crate::shape::{ConvexPolygon, HeightField, Shape, ShapeHandle};
 
-/// Returns the function from the direction of a segment to the normal on its front.
+/// Returns the function that maps the direction of a segment to the normal on its front.
 pub(crate) fn front2<N: Real>() -> Option<Front<N, 2>> {
     Some(right_of)
 }

@@ -1,4 +1,4 @@
-//! Capsules.
+//! Capsules: the points within a radius of a segment.
 
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::{Point, Pose, Real, Vector};

@@ -12,7 +12,7 @@ use crate::shape::{
     SupportMap,
 };
 
-/// The points between the apex at `(0, half_height, 0)` and the disk of `radius` around
+/// The convex hull of the apex at `(0, half_height, 0)` and the horizontal disk of `radius` around
 /// `(0, -half_height, 0)`.
 ///
 /// Sizes may be zero; the cone is then a disk, a segment or a point. `Vertex(0)` is the apex,

@@ -10,7 +10,7 @@ use crate::shape::{
     ShapeHandle, SideOrVertex, SupportMap, tilt::Tilt,
 };
 
-/// The points whose coordinate on each axis has at most the magnitude of the half extent.
+/// The points whose coordinate on each axis is at most the half extent in magnitude.
 ///
 /// Half extents may be zero: the box is then a rectangle, a segment or a point.
 ///
@@ -100,7 +100,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
         (free != CuboidPart::<D>::ALL).then(|| part.id())
     }
 
-    /// Returns the feature id for `2 · D` bits: the free axes, and above them the positive axes.
+    /// Returns the id of the part with the lower `D` bits as `free` and the upper `D` as `corner`.
     #[inline]
     pub(crate) const fn id_of_bits(bits: u8) -> FeatureId {
         CuboidPart::<D>::IDS[bits as usize & ((1 << (2 * D)) - 1)]
@@ -168,8 +168,8 @@ impl<const D: usize> CuboidPart<D> {
         ids
     };
 
-    /// Returns the supporting feature for a unit vector. Frees axes in the order of increasing
-    /// components, while `tilt` admits the sum of squares: the rule of [`SupportMap::core_feature`].
+    /// Returns the supporting feature for a unit vector. Frees axes from the smallest component up,
+    /// while `tilt` admits the sum of squares (see [`SupportMap::core_feature`]).
     pub(in crate::shape) fn toward<N: Real>(direction: &Vector<N, D>, tilt: Tilt<N>) -> Self {
         let (mut free, mut sine_squared) = (0, N::ZERO);
         for _ in 1..D {
@@ -320,7 +320,7 @@ impl<const D: usize> CuboidPart<D> {
     }
 }
 
-/// The corners of a feature, as bit sets of axes: four at most.
+/// The corners of a feature, at most four, each as the set of its positive axes.
 #[derive(Clone, Copy)]
 pub(in crate::shape) struct CuboidRing {
     pub(in crate::shape) corners: [u32; 4],

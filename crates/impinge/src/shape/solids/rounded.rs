@@ -13,9 +13,9 @@ use crate::shape::{
 /// The points within `radius` of a convex shape, such as a box with rounded edges.
 ///
 /// The solid is *larger* than the shape by the radius on all sides. The radius may be zero. The
-/// features are those of the shape: a surface point nearest to `Edge(3)` of a box is on `Edge(3)`
-/// of the rounded box, which is a piece of a cylinder there. Every distance to the solid, also from
-/// inside, is the distance to the shape minus the radius, and as accurate.
+/// features have the ids of the shape's features: a surface point nearest to `Edge(3)` of a box is
+/// on `Edge(3)` of the rounded box, which is a piece of a cylinder there. Every signed distance to
+/// the solid is the signed distance to the shape minus the radius, and as accurate.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Vector};

@@ -1,4 +1,4 @@
-//! Segments.
+//! Segments, and helper functions for lengths and boxes of points.
 
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Vector, centroid, max, min, unit};
@@ -87,7 +87,7 @@ pub(in crate::shape) fn length_of<N: Real, const D: usize>(v: &Vector<N, D>) -> 
     unit(v).map_or(N::ZERO, |(_, length)| length)
 }
 
-/// Returns the larger distance of two points from the origin.
+/// Returns the larger of the distances of two points from the origin.
 pub(in crate::shape) fn farther<N: Real, const D: usize>(a: &Point<N, D>, b: &Point<N, D>) -> N {
     max(length_of(&a.coords), length_of(&b.coords))
 }

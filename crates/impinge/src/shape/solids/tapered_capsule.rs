@@ -115,15 +115,15 @@ impl<N: Real, const D: usize> TaperedCapsule<N, D> {
         if index == 0 { self.segment.a() } else { self.segment.b() }
     }
 
-    /// Returns the radii of the core's balls; one of them is zero.
+    /// Returns the radii of the core's balls; at least one of them is zero.
     fn core_radii(&self) -> [N; 2] {
         self.radii.mapped(|radius| radius - self.rounding())
     }
 }
 
-/// The side of a tapered capsule. In every half-plane through the axis it is a line that touches
-/// both balls, with a unit normal whose component is `cosine` away from the axis and `sine` along
-/// it.
+/// The side of a tapered capsule. In every half-plane that the axis bounds, it is a line that
+/// touches both balls. Its unit normal has the component `cosine` away from the axis and `sine`
+/// along it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Taper<N: Real, const D: usize> {
     /// The unit vector from the first end to the second.

@@ -28,9 +28,10 @@ pub(in crate::shape) const EDGES: [[u32; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2
 /// to 5 join the vertices 0 1, 0 2, 0 3, 1 2, 1 3 and 2 3.
 ///
 /// A tetrahedron without volume (a height of at most 4096 epsilon times its size) is still the hull
-/// of its corners, and distances to it are as accurate. Its features are then the whole outline,
-/// with the id of one of the faces, and the edges and vertices of the outline. If the corners lie
-/// on a line, the only feature is the longest edge; if they coincide, the first vertex.
+/// of its corners, and distances to it are as accurate as to one with a volume. Its features are
+/// then the whole outline, with the id of one of the faces, and the edges and vertices of the
+/// outline. If the corners lie on a line, the only feature is the longest edge; if they coincide,
+/// the first vertex.
 ///
 /// ```
 /// use impinge::dim3::math::Point;
@@ -137,22 +138,23 @@ pub(in crate::shape) fn scaled<N: Real>(corners: &[Point<N, 3>; 4]) -> [Vector<f
     from_first.map(|corner| corner / unit)
 }
 
-/// Returns the corners as doubles, divided by a power of two near the largest coordinate, without
-/// rounding.
+/// Returns the corners as doubles, divided by a power of two near the largest magnitude of a
+/// coordinate, without rounding.
 fn doubles<N: Real>(corners: &[Point<N, 3>; 4]) -> [Point<f64, 3>; 4] {
     let corners = corners.map(|corner| corner.coords.map(N::as_f64));
     let unit = power_of_two_below(&corners);
     corners.map(|corner| Point::from(corner / unit))
 }
 
-/// Returns a power of two near the largest coordinate. This code always uses doubles, even if the
-/// crate is built without `f64` shapes.
+/// Returns a power of two near the largest magnitude of a coordinate; the least normal number if
+/// all are zero. This code always uses doubles, even if the crate is built without `f64` shapes.
 fn power_of_two_below(corners: &[Vector<f64, 3>; 4]) -> f64 {
     let largest = corners.iter().fold(0.0, |size: f64, corner| size.max(corner.amax()));
     f64::from_bits(largest.to_bits() & 0x7ff0_0000_0000_0000).max(f64::MIN_POSITIVE)
 }
 
-/// Returns the polytope of four corners in any position.
+/// Returns the polytope of four corners, which may be coplanar. `is_mirrored` is as in
+/// [`TetrahedronExtent`].
 fn polytope<N: Real>(corners: [Point<N, 3>; 4], is_mirrored: bool) -> Polytope<N, 3> {
     let positions = doubles(&corners);
     let faces = FACES.map(|[a, b, c]| if is_mirrored { [a, c, b] } else { [a, b, c] });

@@ -5,7 +5,8 @@ use crate::shape::solids::tetrahedron::{EDGES, scaled};
 use crate::shape::tilt::Tilt;
 use crate::shape::{Feature, FeatureId};
 
-/// Corners closer to a line than `STRAIGHT` epsilon times the size are treated as on the line.
+/// The corners are treated as collinear if twice the area of their largest triangle is at most
+/// `STRAIGHT` epsilon times the squared size.
 const STRAIGHT: f64 = 4096.0;
 
 /// The corners of the outline, counter-clockwise seen from the side to which `normal` points; two

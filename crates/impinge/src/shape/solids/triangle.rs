@@ -10,8 +10,8 @@ use crate::shape::{
     Feature, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap,
 };
 
-/// The convex hull of three corners, which may be given in either order and may coincide or lie on
-/// a line.
+/// The convex hull of three corners, which may be given in any order and may coincide or lie on a
+/// line.
 ///
 /// In 3D the triangle has no thickness and two sides. The vertices 0, 1, 2 are `a`, `b`, `c`. Side
 /// `i` leads from vertex `i` to the next vertex; sides are faces in 2D and edges in 3D. In 3D
@@ -19,9 +19,10 @@ use crate::shape::{
 /// opposite side.
 ///
 /// As features, sides are oriented so that their loop runs counter-clockwise: in 2D with the
-/// triangle on the left, in 3D seen from where the direction points. The normal of a side or edge
-/// lies in the triangle's plane and points out. A triangle without area has its longest side as its
-/// only feature besides the vertices. A triangle whose corners coincide has only its first vertex.
+/// triangle on the left, in 3D seen from the side to which the direction of the query points. The
+/// normal of a side or edge lies in the triangle's plane and points out. A triangle without area
+/// has its longest side as its only feature besides the vertices. A triangle whose corners coincide
+/// has only its first vertex.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Point};

@@ -124,8 +124,8 @@ impl<N: Real, const D: usize> Triangle<N, D> {
     }
 
     /// Returns the id of the corner, side or face on which a surface point lies, up to `tolerance`.
-    /// In 3D the face is the one on the side to which the unit vector `direction` points. `None` if
-    /// the corners lie on a line, and in 2D for a point inside.
+    /// In 3D the face is on the side to which the unit vector `direction` points. `None` for a
+    /// point near several sides but no corner, as on a thin triangle, and in 2D for a point inside.
     pub(crate) fn part_at(
         &self,
         point: &Point<N, D>,
@@ -195,7 +195,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         out.normal = span.normal_toward(direction);
     }
 
-    /// Writes side `side` with its normal.
+    /// Writes side `side`; in 2D, where it is a face, with its normal.
     fn fill_side(&self, side: usize, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
         out.set_segment(side_id::<D>(side), self.side_ends(side, direction));
         let normal = self.side_normal(side).filter(|normal| normal.dot(direction) > N::ZERO);
@@ -294,7 +294,7 @@ fn side_id<const D: usize>(index: usize) -> FeatureId {
     FeatureId::flat::<D>(1, u32::try_from(index).expect("there are three sides"))
 }
 
-/// Returns the index of the side between two different corners, in either order.
+/// Returns the index of the side between the corners `from` and `to`, which must differ.
 fn side_between(from: usize, to: usize) -> usize {
     if (from + 1) % 3 == to { from } else { to }
 }

@@ -1,11 +1,12 @@
 //! The edge between two triangles: the contact normals that it admits, computed from its face
 //! normals.
 //!
-//! On the front, a convex edge (ridge) admits the normals between those of its two faces, and a
-//! concave edge (hollow) admits none; on the back the two exchange roles. If the triangles are not
-//! thin and not far from the origin for their size, the face normals alone decide this, without the
-//! directions from the edge into the faces that the rule of [`seam`](super::seam) needs. Cases near
-//! a limit are left to the rule of `seam`.
+//! On the front, a convex edge (ridge) admits the normals between the normals of its two faces, and
+//! a concave edge (hollow) admits none. On the back, a ridge admits none, and a hollow admits the
+//! normals between the back normals of its faces. If the triangles are not thin and not far from
+//! the origin for their size, the face normals alone decide this, without the directions from the
+//! edge into the faces that the rule of [`seam`](super::seam) needs. Cases near a limit are left to
+//! the rule of `seam`.
 
 use crate::math::{Mapped, Point, Real, Vector, cross, max, max_component, min};
 use crate::shape::surface::seam::{FLAT_SINE, slack};
@@ -28,11 +29,11 @@ pub(in crate::shape) struct Bend<N: Real> {
 /// The shape of an edge, seen from the front of its faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::shape) enum BendShape {
-    /// The angle between the faces is below `FLAT_SINE`.
+    /// The sine of the angle between the fronts is below `FLAT_SINE`.
     Flat,
-    /// Each face lies behind the plane of the other.
+    /// Each face lies behind the plane of the other face.
     Ridge,
-    /// Each face lies in front of the plane of the other.
+    /// Each face lies in front of the plane of the other face.
     Hollow,
 }
 
@@ -60,8 +61,8 @@ impl<N: Real> Bend<N> {
     }
 
     /// Returns whether the edge admits the unit vector `normal`, which must differ from both face
-    /// normals. `None` close to a limit, and for a vector that is not on the same side of both
-    /// faces.
+    /// normals. `None` close to a limit, for a vector that is not on the same side of both faces,
+    /// and for a vector behind a concave edge of a one-sided surface, between the two back normals.
     pub(in crate::shape) fn admits(
         &self,
         normal: &Vector<N, 3>,
@@ -202,7 +203,7 @@ mod tests {
         for round in 0..20_000 {
             let (a, b) = (random.vector::<f64>(1.0), random.vector::<f64>(1.0));
             let tip1 = random.vector::<f64>(1.0);
-            // Every fifth edge is exactly flat, and others nearly.
+            // Of every five edges one is exactly flat and two are nearly flat.
             let flat = [1.0, 0.1, 0.01, 0.003, 0.0][round % 5];
             let tip2 = a + b - tip1 + random.vector::<f64>(1.0) * flat;
             let point = |v: Vector<f64, 3>| Point::from(v.map(N::lit));

@@ -1,5 +1,5 @@
-//! Additional methods of the library's own surfaces. Most of them make contacts faster to compute
-//! and do not change them; others tell the algorithms about bodies and ghosts.
+//! Additional methods of the library's own surfaces. Most of them only make contacts faster to
+//! compute; the others report which parts bound a body or lie beside a ghost.
 
 use core::fmt;
 
@@ -10,7 +10,8 @@ use crate::shape::{FaceSeams, FeatureId, Sidedness, Surface};
 /// contacts are found; the other methods change only the cost.
 pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
     /// Calls [`Surface::admits`] for two normals, for the second only if the first is rejected
-    /// (else the second result is false). The neighbourhood of the feature is evaluated once.
+    /// (else the second result is false). An implementation may evaluate the neighbourhood of the
+    /// feature once for both.
     fn admits_in_turn(
         &self,
         part: u32,
@@ -62,14 +63,15 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
 
     /// Returns whether a surface in 3D has two properties: parts are adjacent if and only if they
     /// have corners at one position, and a seam admits no normal along which a direction into an
-    /// adjacent part rises.
+    /// adjacent part rises. Then a ball's contact with a triangle can be skipped if an adjacent
+    /// triangle hides it.
     fn has_regular_seams(&self) -> bool {
         false
     }
 }
 
 /// The surface of a composite for the algorithms of the library. A surface of the library also has
-/// the methods of `OwnSurface`; a user's surface has only those of [`Surface`].
+/// the methods of `OwnSurface`; a user's surface has only the methods of [`Surface`].
 ///
 /// Public only because a hidden method returns this type; users can neither construct nor use it.
 #[derive(Clone, Copy)]

@@ -5,9 +5,10 @@
 //! set rises: the polar cone of these directions. For an edge between two triangles this is the arc
 //! between their normals on the convex side; for a vertex it is the cone over the normals of a
 //! convex corner; on the concave side it is empty. So the rule depends only on the directions that
-//! leave the seam, not on winding or sides. Contacts with other normals are ghosts of single
-//! pieces: Catto, "Ghost Collisions" (2020), for chains; Terdiman, "Contact generation for meshes"
-//! (2015); and the active edges of Jolt and Box3D.
+//! leave the seam, not on winding or sides. Contacts with other normals are computed from single
+//! pieces as if these had no neighbours. They are called ghost collisions: Catto, "Ghost
+//! Collisions" (2020), for chains; Terdiman, "Contact generation for meshes" (2015); and the active
+//! edges of Jolt and Box3D.
 //!
 //! ```text
 //!   n1   n2         ╲           ╱            n1
@@ -115,8 +116,8 @@ pub(in crate::shape) struct Seam<N: Real, const D: usize> {
     /// A piece lies on the side to which the normal tilts if a direction into it rises along `tilt`
     /// by more than `margin`.
     margin: N,
-    /// Whether the normal is that of the queried face or segment, and all pieces added so far are
-    /// coplanar with that face or segment, within `FLAT_SINE`.
+    /// Whether the normal is a normal of the queried face or segment, and all pieces added so far
+    /// are coplanar with that face or segment, within `FLAT_SINE`.
     is_flat: bool,
     /// Whether a coplanar piece lies on the side to which the normal tilts, so that the seam is not
     /// a rim there.

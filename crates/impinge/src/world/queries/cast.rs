@@ -16,9 +16,9 @@ use crate::world::{CollisionObject, CollisionWorld};
 /// objects of the world are at rest.
 ///
 /// An [`Impact`] is in the world frame, with both solids at the time of impact; its first solid is
-/// the moving one. Contacts at time zero follow the rules of [`impact`]: a solid that does not
-/// approach an object does not hit it. If a number of the position or velocity is not finite,
-/// nothing is hit.
+/// the moving one. Contacts at time zero follow the rules of [`impact`]: by default, a solid that
+/// moves away from an object does not hit it. If a number of the position or velocity is not
+/// finite, nothing is hit.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns the object that a moving solid hits first, and the impact; at equal times the object
     /// with the smallest handle. `None` if the solid hits nothing by the maximum time of `options`.
@@ -71,8 +71,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         found.map(|(object, _, impact)| (object, impact))
     }
 
-    /// Returns all objects on the path of a moving solid that no object stops, each with its first
-    /// impact, in ascending order of time, then of handle. See [`Self::cast_shape`] for the
+    /// Returns all objects that a solid hits if it moves on through every object, each with its
+    /// first impact, in ascending order of time, then of handle. See [`Self::cast_shape`] for the
     /// arguments.
     #[must_use]
     pub fn cast_shape_all(

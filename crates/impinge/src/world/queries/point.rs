@@ -115,8 +115,8 @@ fn near<N: Space<D>, const D: usize>(point: &Point<N, D>) -> Option<WorldProbe<N
     usable.then(|| WorldProbe::Near(Aabb::at(*point)))
 }
 
-/// Returns the distance between a point and an object, and the projection of the point; `None` if
-/// the distance exceeds `farthest`.
+/// Returns the distance between a point and an object, and the projection of the point. `None` if
+/// the distance exceeds `farthest` or the shape is empty.
 fn projection<N: Space<D>, const D: usize>(
     body: &WorldBody<N, D>,
     point: &Point<N, D>,

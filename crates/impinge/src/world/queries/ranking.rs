@@ -1,7 +1,7 @@
 //! The best results of a query that ranks objects by a key.
 //!
 //! Results are ordered by (key, handle), whatever the order in which objects are proposed. A box is
-//! skipped only if its key proves that its object has no better result.
+//! skipped only if its key is a proof that its object has no result among the best.
 
 use core::cmp::Ordering;
 use std::collections::BinaryHeap;

@@ -29,9 +29,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             .filter_map(move |object| Some((object, cast(&object.body, &ray, N::INFINITY, true)?)))
     }
 
-    /// Returns the object that a ray hits first, and the intersection; see [`Self::first_ray_hit`].
-    /// There is no maximum time, and a ray that starts inside an object hits it at time zero.
-    /// Considers the objects that may interact with `groups`.
+    /// Returns the object that a ray hits first, and the intersection; `None` if the ray hits none.
+    /// See [`Self::first_ray_hit`]. There is no maximum time, and a ray that starts inside an
+    /// object hits it at time zero. Considers the objects that may interact with `groups`.
     #[must_use]
     pub fn first_interference_with_ray(
         &self,

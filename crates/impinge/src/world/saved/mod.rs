@@ -206,7 +206,8 @@ impl<'de, N: Real, const D: usize, T: Deserialize<'de>> Deserialize<'de> for Sav
 }
 
 struct WorldVisitor<N, T, const D: usize> {
-    /// Whether the format can skip a value of unknown type.
+    /// Whether the format can skip a value of unknown type. If it can, a world of another version
+    /// is read to its end.
     can_skip: bool,
     world: PhantomData<(N, T)>,
 }
@@ -245,8 +246,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Costs a copy of the saved data.
     ///
     /// # Errors
-    /// If the world has a custom phase, a custom dispatcher, or a shape of a user's type that does
-    /// not implement [`Shape::saved`](crate::shape::Shape::saved).
+    /// If the world has a custom phase, a custom dispatcher, a compound with too many parts, or a
+    /// shape of a user's type that does not implement [`Shape::saved`](crate::shape::Shape::saved);
+    /// see [`SaveError`].
     pub fn saved(&self) -> Result<SavedWorld<N, D, &T>, SaveError> {
         Ok(SavedWorld { header: Header::of::<N, D>(), record: Some(self.record()?) })
     }

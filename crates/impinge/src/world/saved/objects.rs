@@ -267,7 +267,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         Ok(())
     }
 
-    /// Checks that the broad phase has the right volume for each object that is not dirty.
+    /// Checks that the broad phase has, for each object that is not dirty, the volume that follows
+    /// from the object's state.
     pub(super) fn check_boxes(&self, broad_phase: &DefaultBroadPhase<N, D>) -> Result<(), Damage> {
         let is_right = |body: &WorldBody<N, D>| {
             let is_dirty = self.changes.is_dirty(body);
@@ -287,7 +288,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     }
 }
 
-/// The proxy of an object whose proxy has not been restored yet.
+/// A placeholder for the proxy of an object, until the broad phase is restored.
 const NOT_YET: ProxyHandle = ProxyHandle::new(u32::MAX, u16::MAX);
 
 /// Returns the record of the present properties of an object.

@@ -1,4 +1,4 @@
-//! Tests progress and cancellation of every batch method.
+//! Tests that every batch method reports its progress and ends when its callback cancels it.
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -16,7 +16,7 @@ use super::scene::on_threads;
 
 const COUNT: usize = 1000;
 
-/// Calls `call` for each method, with its name.
+/// Calls `call` for each batch method, with the method's name and a function that runs it.
 fn each_method(call: impl Fn(&str, &dyn Fn(&Control<'_>) -> Result<(), BatchError>)) {
     let ball = Ball::new(1.0_f64);
     let at = |index: usize| Pose::from_translation(Vector::<f64, 2>::new(3.0 * index as f64, 0.0));

@@ -8,7 +8,7 @@ use impinge::shape::Ball;
 use super::scene::{Scene, on_threads, scene2, scene3};
 
 /// Returns the least distance of the pairs from index `from` on, with its index; at equal distances
-/// the lowest index.
+/// the lowest index. `None` if no distance is finite.
 fn least<N: Space<D>, R: AbstractRotation<N, D> + Sync, const D: usize>(
     scene: &Scene<N, R, D>,
     from: usize,

@@ -61,7 +61,7 @@ fn hits_are_those_of_single_calls() {
     check(&scene3::<f64>(0.0));
 }
 
-/// Casts 200 rays from one origin at each shape in turn.
+/// Compares a batch of 200 rays from one origin with single casts, for each shape in turn.
 #[test]
 fn a_fan_from_one_origin() {
     let scene = scene3::<f64>(0.0);

@@ -178,7 +178,7 @@ fn distances_that_are_none_are_refused() {
 
 /// Places every two shapes side by side along an axis, so that the gap of their boxes is their
 /// distance up to rounding. The tree must propose each pair at exactly the distance of the single
-/// call, in whichever direction that was rounded.
+/// call, whether that was rounded up or down.
 fn at_their_own_distance<N: Space<D>, R: AbstractRotation<N, D> + Copy + Sync, const D: usize>(
     scene: &Scene<N, R, D>,
 ) {

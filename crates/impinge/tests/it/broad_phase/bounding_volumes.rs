@@ -1,5 +1,5 @@
-//! Tests, with 31 digits, that bounding volumes contain their contents to the last bit and are
-//! hardly larger.
+//! Tests, in arithmetic with 31 digits, that bounding volumes contain their contents exactly and
+//! exceed them by no more than rounding errors.
 
 use impinge::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use impinge::math::na::{Quaternion, UnitQuaternion};

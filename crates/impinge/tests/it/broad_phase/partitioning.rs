@@ -101,8 +101,9 @@ fn boxes_and_points<N: Space<D>, const D: usize>() {
     assert_common("points that miss", misses, asked);
 }
 
-/// Returns the time at which a ray enters a box: the least time at which it crosses a face while it
-/// is in the box. With the numbers of these tests nothing rounds.
+/// Returns the time at which a ray enters a box: the least time, from zero on, at which it is in
+/// the box and on one of its faces; zero if it starts in the box, and `None` if it never meets it.
+/// With the numbers of these tests nothing rounds.
 fn entry<const D: usize>([lo, hi]: &Corners<D>, from: &[f64; D], dir: &[f64; D]) -> Option<f64> {
     let crossing = |axis: usize| [lo, hi].map(|face| (face[axis] - from[axis]) / dir[axis]);
     let crossings = (0..D).filter(|&axis| dir[axis] != 0.0).flat_map(crossing);

@@ -86,7 +86,8 @@ fn distance_squared<const D: usize>(a: &Corners<D>, b: &Corners<D>) -> f64 {
 }
 
 /// Returns the time at which a moving box first touches another: the least time at which two faces
-/// are level while the boxes touch.
+/// are level while the boxes touch; zero if they touch at the start, and `None` if they never
+/// touch.
 fn touching<const D: usize>(own: &Corners<D>, other: &Corners<D>, v: &[f64; D]) -> Option<f64> {
     let level = |axis: usize| {
         let faces = [other[0][axis] - own[1][axis], other[1][axis] - own[0][axis]];
@@ -219,7 +220,7 @@ fn limits<N: Space<D>, const D: usize>() {
     assert!(nearest(&none, &Aabb::unbounded(), N::INFINITY).is_empty(), "there is nothing");
 }
 
-/// Tests distances whose squares overflow the scalar.
+/// Asserts that the order and the limit hold for distances whose squares overflow the scalar.
 fn huge<N: Space<D>, const D: usize>() {
     let unit = N::MAX.as_f32().min(f32::MAX / 8.0);
     let unit = f64::from(unit) / 64.0;

@@ -36,8 +36,8 @@ fn down<N: Real>(field: &HeightField<N, 3>, [x, z]: [f64; 2]) {
     assert!(hit.normal.y > N::ZERO, "from above at {x} {z}");
 }
 
-/// Casts vertical rays exactly on borders of cells, where rapier's rays missed: first at the
-/// reported coordinates, then on all borders and corners.
+/// Casts vertical rays exactly on borders of cells, where rapier's rays missed, and asserts that
+/// they hit: first at the reported coordinates, then on all borders and corners.
 fn rapier_165<N: Real>() {
     let field = waves::<N>();
     let reported =

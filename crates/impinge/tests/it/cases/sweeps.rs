@@ -39,7 +39,7 @@ fn sweep<N: Real>(case: &Value, tolerance: f64) {
         };
         assert_eq!(within(0.0), None, "it only nears");
         let least = number::<f64>(&expected["min_signed_distance"]);
-        // In the corpus, the angle of many turns has fewer digits.
+        // The corpus gives the angle of many turns with fewer digits, so its tolerance is greater.
         let tolerance = if turned == 1 { tolerance.max(1e-3) } else { tolerance };
         assert_eq!(within(least - tolerance), None, "not so near");
         let at = number::<f64>(&expected["at"]);

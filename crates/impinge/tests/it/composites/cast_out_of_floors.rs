@@ -79,8 +79,9 @@ fn solids_leave_height_fields() {
     leave::<f64>(&field::<f64>(16, 0.5), "field", 8);
 }
 
-/// Casts solids out of a floor in 2D: first with the numbers of a bug report, then at random
-/// positions.
+/// Casts solids that have sunk into a floor in 2D: first with the numbers of a bug report, then at
+/// random positions. Asserts that they leave the floor without an impact, and that casts into the
+/// floor hit it at once, with a normal up to rounding.
 fn leave_line<N: Space<2, Isometry = Isometry2<N>>>(floor: &dyn Shape<N, 2>) {
     let w = |x: f64, y: f64| Vector::<N, 2>::new(N::lit(x), N::lit(y));
     let still = Moving::still(&Isometry2::identity(), floor);

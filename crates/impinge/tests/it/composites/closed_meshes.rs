@@ -174,8 +174,9 @@ fn signs_are_those_of_solid_angles_and_pseudonormals() {
     assert!(counts.iter().all(|&count| count > 700), "{counts:?} inside and outside");
 }
 
-/// Compares a union of boxes with its closed form at all points of a grid. The grid contains the
-/// corners, so many points share coordinates with corners or are equally near to several faces.
+/// Compares the signed distance of a mesh of several boxes with its closed form, at all points of a
+/// grid. The grid contains the corners, so many points share coordinates with corners or are
+/// equally near to several faces.
 fn check_grid<N: Real>(bodies: &[([f64; 3], [f64; 3])], offset: f64) {
     let moved = |corner: [f64; 3]| corner.map(|x| x + offset);
     let all: Vec<_> = bodies.iter().map(|&(low, high)| cuboid(moved(low), moved(high))).collect();
@@ -206,8 +207,8 @@ fn to_box(at: [f64; 3], low: &[f64; 3], high: &[f64; 3]) -> f64 {
     beyond.iter().map(|x| f64::max(*x, 0.0).powi(2)).sum::<f64>().sqrt()
 }
 
-/// Returns the signed distance to a union from the signed distances to its two bodies: the smaller
-/// magnitude, negative if the point is in one of them.
+/// Returns the signed distance from a point to the nearer of the surfaces of two bodies, of which
+/// the signed distances are given: negative if the point is in one of them.
 fn nearer(a: f64, b: f64) -> f64 {
     let size = f64::min(a.abs(), b.abs());
     if a < 0.0 || b < 0.0 { -size } else { size }

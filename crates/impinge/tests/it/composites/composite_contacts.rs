@@ -1,4 +1,5 @@
-//! Tests laws of contacts with composites, which need no expected contacts.
+//! Tests laws of contacts with composites, which need no expected contacts: queries agree, and
+//! swapping the shapes flips each contact.
 
 use crate::support::slides;
 

@@ -39,8 +39,8 @@ impl<N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Two<'_, N, R, D> {
         witness(self.m1, self.g1, self.m2, self.g2, limit)
     }
 
-    /// Checks the laws that hold for every pair of shapes; `noise` is the rounding error allowed in
-    /// lengths.
+    /// Asserts that all distance queries of the pair agree, and that swapping the shapes flips the
+    /// witness; `noise` is the rounding error allowed in lengths.
     fn check(&self, noise: N) {
         let Self { m1, g1, m2, g2 } = *self;
         let found = self.witness(N::INFINITY).expect("they are some distance apart");
@@ -208,7 +208,8 @@ fn against_half_spaces() {
     against_planes(&space);
 }
 
-/// Tests that a composite of one part, in the frame of that part, has the result of the part.
+/// Tests that a composite of one part, in the frame of that part, has the distance of the part up
+/// to rounding.
 fn wrapped<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(maker: &Maker<N, R, D>) {
     for seed in 0..60 {
         let random = &mut Random(seed, false);

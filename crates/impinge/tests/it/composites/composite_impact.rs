@@ -1,4 +1,5 @@
-//! Tests the first impact of moving composites, which must be the same to the bit in both orders.
+//! Compares the first impact of moving composites with the first impact of any two of their parts.
+//! Swapping the composites must give the same bits.
 
 use crate::support::composite_support;
 use crate::support::query_support;
@@ -97,8 +98,8 @@ fn moved<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     m
 }
 
-/// Asserts that the shapes are farther apart than the target distance before the impact, and at
-/// that distance at the impact.
+/// Asserts that the distance of the shapes is at least the target distance before the impact, and
+/// at most the target distance at the impact.
 fn stepped<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     one: &Mover<'_, N, R, D>,
     two: &Mover<'_, N, R, D>,
@@ -267,8 +268,8 @@ fn thread<N: Space<3>>(radius: f64, pitches: u32) -> Pieces<N, 3> {
     Pieces::mesh(&points, &triangles)
 }
 
-/// Tests a screw that rotates in its nut and rises by approximately one pitch per turn, so that
-/// flanks slide along flanks.
+/// Tests with [`slides`] a screw that rotates in its nut and rises by approximately one pitch per
+/// turn, so that flanks slide along flanks.
 fn screw_in_nut<N: Space<3, Isometry = Isometry3<N>>>()
 where
     ConstantVelocities<N, 3>: RigidMotion<N, 3>,
@@ -287,8 +288,8 @@ where
     assert!(hits >= 2, "{hits}");
 }
 
-/// Tests a round outline of segments that spins within a slightly larger outline, and drifts toward
-/// it much more slowly.
+/// Tests with [`slides`] a round outline of segments that spins within a slightly larger outline,
+/// and drifts toward it much more slowly.
 fn spins_in_ring<N: Space<2, Isometry = Isometry2<N>>>()
 where
     ConstantVelocities<N, 2>: RigidMotion<N, 2>,
@@ -358,8 +359,9 @@ fn screws_are_looked_at_a_few_times() {
     }
 }
 
-/// Asserts that the impact of two composites is the first impact of any two parts, each advanced as
-/// a separate solid. All parts have the identity as their pose.
+/// Asserts that the impact of two composites has the time, within 1/1000, of the first impact of
+/// any two parts, each advanced as a separate solid. All parts have the identity as their pose.
+/// Returns `true` if there is an impact.
 fn both_turn<N: Space<D>, const D: usize>(
     motions: &[ConstantVelocities<N, D>; 2],
     shapes: &[Pieces<N, D>; 2],
@@ -382,8 +384,8 @@ where
     found.is_finite_number()
 }
 
-/// Tests two patches in 3D, and two chains in 2D, that lie close to each other. Both bodies move
-/// and rotate, each about its own centre, or only the first body moves.
+/// Tests with [`both_turn`] two patches in 3D, and two chains in 2D, that lie close to each other.
+/// Both bodies move and rotate, each about its own centre, or only the first body moves.
 fn patches_that_turn<N: Space<2, Isometry = Isometry2<N>> + Space<3, Isometry = Isometry3<N>>>() {
     let (random, mut hits) = (&mut Random(31, false), [0, 0]);
     for round in 0..40 {

@@ -47,8 +47,9 @@ fn on_side<N: Real>(random: &mut Random, corners: &[Point<N, 3>; 3]) -> Point<N,
     a + (b - a) * share
 }
 
-/// Casts rays from within a closed surface, and from far outside through its centre, exactly at
-/// edges and corners. Asserts that each ray has a hit; returns the number of rays.
+/// Casts rays from within a closed surface, and back from outside through its centre, exactly at
+/// edges and corners. Asserts that the surface stops each ray from within and that rays from
+/// outside enter and leave; returns the number of rays.
 fn through_closed<N: Real>(world: f64) -> usize {
     let mut shots = 0;
     let random = &mut Random(7, false);

@@ -151,8 +151,8 @@ fn names_last_while_parts_and_features_do() {
     assert!(ids(&stage).iter().all(|id| !before.contains(id)), "new contacts have new names");
 }
 
-/// Returns a surface of two half-planes that meet along z and rise outwards with these slopes: a
-/// valley, or a roof for negative slopes.
+/// Returns a surface of two planes that meet along z and rise outwards with these slopes: a valley,
+/// or a roof for negative slopes.
 fn fold(left: f64, right: f64) -> TriMesh<f64, 3> {
     let slope = move |x: f64, _: f64| if x < 0.0 { -x * left } else { x * right };
     grid::<f64>(12, 0.5, [0.0; 3], Pattern::Zigzag, slope)

@@ -36,7 +36,8 @@ fn turns<N: Real>() -> Vec<UnitQuaternion<N>> {
     axes.into_iter().map(turn).collect()
 }
 
-/// Slides all solids over a floor around `center`, in many directions.
+/// Slides all solids over a flat floor around `center`, in many directions. Asserts that each
+/// contact has the floor's normal and the depth `depth`, in a single manifold.
 fn slide_all<N: Real + Space<3, Isometry = Isometry3<N>>>(
     floor: &dyn Shape<N, 3>,
     center: [f64; 3],

@@ -36,6 +36,7 @@ fn lowest<N: Real>(solid: &dyn Shape<N, 2>, turn: UnitComplex<N>) -> N {
 }
 
 /// Slides all solids along a floor at y = 0 around x = `center`, to the left or right at random.
+/// Asserts that each contact has the floor's normal and the depth `depth`, in a single manifold.
 fn slide_all<N: Real + Space<2, Isometry = Isometry2<N>>>(
     floor: &dyn Shape<N, 2>,
     (center, depth, is_below): (f64, f64, bool),

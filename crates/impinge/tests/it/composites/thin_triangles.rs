@@ -1,6 +1,6 @@
-//! Compares nearest points on thin triangles in 3D, down to segments and points, with the exact
-//! result. Tests single triangles, meshes and faces of hulls. Errors are in units of epsilon times
-//! the size of the scene.
+//! Compares nearest points on thin triangles, down to segments and points, with the exact result.
+//! Tests single triangles, meshes and faces of hulls in 3D, and outlines in 2D. Errors are in units
+//! of epsilon times the size of the scene.
 
 use std::collections::BTreeMap;
 
@@ -277,7 +277,8 @@ fn volume([a, b, c, d]: [&Vector<3>; 4]) -> Quad {
     minor(1, 2) * w[0] + minor(2, 0) * w[1] + minor(0, 1) * w[2]
 }
 
-/// Tests tetrahedra with a thin triangle as a face, as solids and as closed meshes.
+/// Compares the signed distances of tetrahedra with a thin triangle as a face, as solids, as hulls
+/// and as closed meshes, with the exact distance. For meshes only the magnitude counts.
 fn tetrahedra<N: Space<3>>(seed: u64) {
     let (mut random, mut worst, mut count) = (Random::new(seed), Worst::default(), 0);
     for _ in 0..2000 {
@@ -331,7 +332,8 @@ fn tetrahedra_in_double_precision() {
     tetrahedra::<f64>(4);
 }
 
-/// Tests thin triangles in 2D, and segments.
+/// Compares the distances of points from the outlines of thin triangles in 2D, and from segments,
+/// with the exact distance.
 fn outlines<N: Space<2>>(seed: u64) {
     let (mut random, mut worst) = (Random::new(seed), Worst::default());
     for _ in 0..4000 {

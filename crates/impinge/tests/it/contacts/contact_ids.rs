@@ -360,7 +360,8 @@ fn motion<const D: usize>(seed: u32) -> ([f64; D], [f64; 3]) {
     (velocity, spin)
 }
 
-/// Tests predictions for all kinds of features that exist in both dimensions.
+/// Asserts that the contacts predicted by kinematics are exact up to rounding, for all kinds of
+/// features that exist in both dimensions.
 fn kinematics_predict<N: Move<D>, const D: usize>() {
     let turned = (ACROSS, 0.1);
     let level = (ACROSS, 0.0);
@@ -397,7 +398,8 @@ fn kinematics_of_flat_and_round_solids_are_exact() {
     kinematics_predict::<f64, 3>();
 }
 
-/// Tests predictions in 3D for crossing edges and round solids.
+/// Asserts in 3D that predictions for crossing edges are exact, that predictions for crossed
+/// cylinders are exact to half of the digits, and that the errors for rims are of second order.
 fn kinematics_predict_in_space<N: Move<3>>() {
     let cylinder = SceneShape::Cylinder { half_height: 0.5, radius: 0.25 };
     let (cube, cylinder) = (cuboid::<N, 3>([0.5; 3]), shape_of::<N, 3>(&cylinder, 1.0));

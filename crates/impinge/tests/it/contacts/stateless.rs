@@ -1,4 +1,5 @@
-//! Tests manifolds of two placed shapes without a world.
+//! Tests that the manifolds of two placed shapes without a world equal those of a new world and of
+//! a new generator.
 
 use crate::support::query_support::random::Random;
 use crate::support::shape_table::{self, Shapes};
@@ -76,7 +77,8 @@ fn assert_same<N: Real, const D: usize>(
     }
 }
 
-/// Tests every pair of shapes in both orders at several poses.
+/// Compares the manifolds of every pair of shapes without a world, at random poses, with those of a
+/// new world and of a new generator. Swapping the shapes must flip every contact.
 fn every_pair<N, R, const D: usize>(shapes: &Shapes<N, D>, turn: fn(&mut Random) -> R)
 where
     N: Space<D, Isometry = Isometry<N, R, D>>,

@@ -24,7 +24,7 @@ fn vector<N: Real, const D: usize>(v: [f64; D]) -> Vector<N, D> {
     Vector::<N, D>::from_fn(|axis, _| N::lit(v[axis]))
 }
 
-/// Returns the first index with the least key, and that key.
+/// Returns the first index with the least key, and that key; `None` if there is no key.
 fn first<N: Real>(keys: impl Iterator<Item = Option<N>>) -> Option<(usize, N)> {
     let mut best: Option<(usize, N)> = None;
     for (index, key) in keys.enumerate() {

@@ -265,7 +265,8 @@ fn sizes_of_zero<N: Stage<D>, const D: usize>() {
     assert!(stopped.iter().all(|event| matches!(event, ContactEvent::Stopped(..))), "stopped");
 }
 
-/// Tests sizes and positions near the limit of the scalar, whose squares overflow.
+/// Asserts that a world stays valid with sizes and positions near the limit of the scalar, whose
+/// squares overflow, and that a ray still hits.
 fn enormous<N: Stage<D>, const D: usize>() {
     let huge = N::MAX.as_f64() / 4.0;
     let mut world = World::<N, D>::new(N::lit(0.02));

@@ -24,7 +24,7 @@ fn floor() -> Plane<f64, 2> {
     Plane::new(Unit::new_unchecked(V2::y()))
 }
 
-/// Returns the impact of a moving shape with a shape that rests at the origin.
+/// Returns the impact of a moving shape with a shape that rests at the origin, if there is one.
 fn onto(
     still: &dyn Shape<f64, 2>,
     place: Isometry2<f64>,
@@ -200,7 +200,8 @@ fn what_is_not_finite_never_hits() {
     assert_eq!(impact(&moving1, &moving2, &ImpactOptions::new()), None, "no difference");
 }
 
-/// Tests speeds from the least to the greatest numbers: the unit of time must not matter.
+/// Asserts that the unit of time does not matter, for speeds from the least to the greatest
+/// numbers.
 #[test]
 fn speeds_of_every_size() {
     let ball = Ball::new(1.0);
@@ -232,7 +233,8 @@ fn only_differences_count() {
     assert_eq!(cast(0.0, 1e6), Some(6.75), "both fast");
 }
 
-/// Tests a solid that narrowly passes, and one that narrowly hits.
+/// Asserts that a solid that narrowly passes has no impact, and that one that narrowly hits has its
+/// impact at the right time.
 #[test]
 fn grazing_passes() {
     let (ball, square) = (Ball::new(1.0), Cuboid::new(V2::new(1.0, 1.0)));

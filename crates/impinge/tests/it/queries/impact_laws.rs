@@ -104,7 +104,8 @@ where
     }
 
     /// Asserts that nothing touches before the impact and that the solids touch at it; `noise` is
-    /// the rounding error allowed in distances.
+    /// the rounding error allowed in distances. Returns `true` if the solids are apart at the start
+    /// and their impact has the status `Reached`.
     fn check(&self, found: Option<&Impact<N, D>>, gap: &dyn Fn(N) -> N, noise: N) -> bool {
         let what = &self.what;
         let end = found.map_or(self.options.max_time, |found| found.toi);
@@ -169,7 +170,8 @@ where
         max(N::EPSILON * N::lit(1024.0), N::lit(1e-9)) * self.extent()
     }
 
-    /// Tests the laws for bodies that also rotate; `told` converts their motions.
+    /// Tests the laws for bodies that also rotate; `told` converts their motions. Returns the
+    /// status of the impact, if there is one.
     fn turning(&self, setting: &Setting, told: Told<N, D>) -> Option<ImpactStatus> {
         let [one, two] = self.motions.map(told);
         let [shape1, shape2] = &self.shapes;
@@ -214,8 +216,8 @@ impl<N: Space<D>, M: RigidMotion<N, D>, const D: usize> RigidMotion<N, D> for Op
     }
 }
 
-/// Tests both laws for all pairs of kinds, and asserts how many impacts of each sort occur and how
-/// few searches are given up.
+/// Tests the laws for straight and rotating motions of all pairs of kinds. Asserts that many of the
+/// motions have an impact, and that few searches are given up.
 fn laws<N, R, const D: usize>(kinds: &[ShapeKind], maker: &Maker<N, R, D>)
 where
     N: Space<D, Isometry = Isometry<N, R, D>>,
@@ -247,13 +249,12 @@ where
 }
 
 /// Places two solids so that they touch, or are at the target distance, with a known normal, and
-/// moves the second solid back along its path. Asserts that the impact has that position and
-/// normal, both for the solid and for a composite with the solid as its only part.
+/// moves the second solid back along its path. Asserts that the impact has the time of that path
+/// and the known normal, both for the solid and for a composite with the solid as its only part.
 ///
-/// Before the impact, the planes perpendicular to the normal at the nearest points separate the
-/// solids. At least one of the solids is round, or the target distance is positive, so that the
-/// normal is unique.
-/// round, or the target distance is positive, so that the normal is unique.
+/// Until then, the planes perpendicular to the normal at the nearest points separate the solids, so
+/// there is no earlier impact. At least one of the solids is round, or the target distance is
+/// positive, so that the normal is unique.
 fn known_normals<N, R, const D: usize>(kinds: &[ShapeKind], maker: &Maker<N, R, D>)
 where
     N: Space<D, Isometry = Isometry<N, R, D>>,

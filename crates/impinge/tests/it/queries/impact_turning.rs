@@ -50,7 +50,7 @@ fn rod(from: f64, to: f64) -> Segment<f64, 2> {
 /// The motion and the shape of a body.
 type Body<'a, N, const D: usize> = (&'a dyn RigidMotion<N, D>, &'a dyn Shape<N, D>);
 
-/// Returns the impact; asserts that exchanging the bodies gives the flipped impact.
+/// Returns the impact, if there is one; asserts that exchanging the bodies flips it.
 fn both<N: Space<D>, const D: usize>(
     one: Body<'_, N, D>,
     two: Body<'_, N, D>,
@@ -388,7 +388,7 @@ fn what_is_not_finite_never_hits() {
     }
 }
 
-/// A motion whose speed bound is not a valid number.
+/// A motion whose speed bound is NaN, infinite or negative.
 struct Unbounded(f64);
 
 impl RigidMotion<f64, 2> for Unbounded {
@@ -415,8 +415,8 @@ fn bounds_that_are_none_are_never_trusted() {
     }
 }
 
-/// Returns the time of impact of a rotating segment in units of `time`. The segment has length
-/// `2 * size`, and rotates by one radian per `time`.
+/// Returns the time, in units of `time`, at which a segment of length `2 * size`, which rotates by
+/// one radian per `time` about one end, reaches a half-plane at the distance `size`.
 fn scaled<N: Space<2, Isometry = Isometry2<N>>>(size: N, time: N, offset: N) -> N {
     let rod = Segment::new(Point::<N, 2>::origin(), Point::<N, 2>::new(N::TWO * size, N::ZERO));
     let wall = Plane::new(Unit::new_unchecked(-Vector::<N, 2>::y()));
@@ -564,7 +564,7 @@ fn within_the_tolerance_bodies_count_as_touching() {
 }
 
 /// The end of a segment passes a half-plane at a tiny distance, and only bounds of its speed are
-/// known. A distance below a millionth of the size counts as contact.
+/// known. With the default tolerance, of about a millionth of the size, it counts as touching.
 #[test]
 fn what_grazes_within_a_millionth_touches() {
     let (rod, wall) = (rod(0.0, 2.0), half_plane(0.0, -1.0));

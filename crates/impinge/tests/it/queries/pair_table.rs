@@ -31,7 +31,7 @@ struct Setting {
     turned: bool,
 }
 
-/// A function that returns a motion from a pose with a given angular speed.
+/// A function that returns the motion which starts at a pose and rotates with an angular speed.
 type Spin<N, R, const D: usize> = fn(&Isometry<N, R, D>, N) -> Box<dyn RigidMotion<N, D>>;
 
 /// The shapes, the rotation and the motion of one dimension.
@@ -42,7 +42,7 @@ struct Stage<N: Real, R, const D: usize> {
 }
 
 impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Stage<N, R, D> {
-    /// Returns the number of pairs with a wrong result or a panic.
+    /// Tests all pairs of shapes and each shape alone; returns how many of these tests fail.
     fn all_pairs(&self, setting: &Setting) -> usize {
         let shapes = (self.shapes)(N::lit(setting.scale));
         let mut wrong = Vec::new();
@@ -62,7 +62,8 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Stage<N, R,
         wrong.len()
     }
 
-    /// Tests the queries of two shapes.
+    /// Asserts that all queries of two shapes have results that agree with each other, in both
+    /// orders.
     fn together(&self, setting: &Setting, [g1, g2]: [&dyn Shape<N, D>; 2], same: bool) {
         let (m1, m2) = self.places(setting, g1, g2);
         check(&Two { m1: &m1, g1, m2: &m2, g2, same }, setting);
@@ -102,7 +103,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Stage<N, R,
         (m1, Isometry::from_parts((origin + by).into(), second))
     }
 
-    /// Tests the queries of one shape.
+    /// Asserts that the point and ray queries of one shape agree with each other.
     fn alone(&self, setting: &Setting, shape: &dyn Shape<N, D>) {
         let (m, _) = self.places(setting, shape, shape);
         let scale = N::lit(setting.scale);
@@ -134,7 +135,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Stage<N, R,
         }
     }
 
-    /// Tests impacts of rotating bodies.
+    /// Asserts that exchanging two rotating bodies flips their impact.
     fn turning(
         &self,
         (m1, g1): (&Isometry<N, R, D>, &dyn Shape<N, D>),

@@ -65,7 +65,9 @@ where
     check_normal(expected, found.normal.map(Real::as_f64), exact)
 }
 
-/// Asserts that the separation along the normal equals the signed distance up to the tolerance.
+/// Compares the separation along the normal, which is at most the signed distance, with the signed
+/// distance. With a half-space, which has no farthest point, compares the normal with that of the
+/// case.
 fn check_normal<Q: AbstractRotation<f64, D>, const D: usize>(
     expected: &Expected,
     normal: Vector<f64, D>,
@@ -89,7 +91,8 @@ where
     Err(format!("the normal {normal:?} loses {lost}"))
 }
 
-/// Runs a case with both scalars; `None` if a shape does not exist in this dimension.
+/// Runs a case with both scalars and returns the complaints; `None` if a shape does not exist in
+/// this dimension.
 fn run<const D: usize, R32, R64>(
     case: &Value,
     expected: &[Expected; 2],
@@ -117,7 +120,8 @@ where
     Some(results.into_iter().flatten().collect())
 }
 
-/// Runs a case of either dimension, with the shapes of the library and with those of the tests.
+/// Runs a case of either dimension, with the shapes of the library and with those of the tests, and
+/// returns the complaints; `None` if a shape does not exist in this dimension.
 fn run_any(case: &Value, expected: [Expected; 2]) -> Option<Vec<String>> {
     let run_one = |case: &Value, expected: &[Expected; 2]| {
         if case["dim"] == 2 {
@@ -133,8 +137,8 @@ fn run_any(case: &Value, expected: [Expected; 2]) -> Option<Vec<String>> {
     Some(complaints)
 }
 
-/// Returns the case with the tests' own shapes, for the kinds that have both forms; `None` if the
-/// case has no such kind.
+/// Returns the case with shapes that only the tests have, for the kinds of which both forms exist;
+/// `None` if the case has no shape of these kinds.
 fn by_support(case: &Value) -> Option<Value> {
     let mut twin = case.clone();
     for name in ["shape1", "shape2"] {
@@ -205,8 +209,8 @@ fn narrow_phase_failures_of_others() {
     judge(&results, 1600);
 }
 
-/// Computes the time of impact of a case with one scalar, in both orders, and compares it with the
-/// expected time.
+/// Computes the time of impact of a case with one scalar, in both orders. Returns the complaints if
+/// it is not the expected time; `None` if a shape does not exist in this dimension.
 fn cast<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     case: &Value,
     scalar: &str,
@@ -238,7 +242,8 @@ fn cast<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     Some(complaints)
 }
 
-/// Compares the normal at the impact with the expected one, in both orders, if the case has one.
+/// Compares the normal at the impact with that of the case, in both orders. Returns a complaint if
+/// they differ; `None` if they agree or the case has no normal.
 fn cast_normal<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     case: &Value,
     scalar: &str,

@@ -86,14 +86,16 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Maker<N, R,
     }
 }
 
-/// Returns the contact of a pair at any distance.
+/// Returns the contact of a pair at any distance; `None` for two half-spaces that overlap without
+/// bound.
 fn contact_of<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     [solid1, solid2]: &[Placed<N, R, D>; 2],
 ) -> Option<Contact<N, D>> {
     contact(&solid1.pose, &*solid1.shape, &solid2.pose, &*solid2.shape, N::INFINITY)
 }
 
-/// Moves the second solid along the normal until the signed distance is about `target`.
+/// Moves the second solid along the normal until the signed distance is about `target`. Does
+/// nothing to a pair without a contact.
 fn bring_to<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     pair: &mut [Placed<N, R, D>; 2],
     target: N,
@@ -138,7 +140,8 @@ fn of_alike<N: Real, const D: usize>(setting: &Setting) -> N {
     max(N::EPSILON * N::lit(128.0), N::lit(1e-12))
 }
 
-/// Tests all laws for one pair.
+/// Asserts that all distance queries of a pair agree, in both orders, and that limits are
+/// inclusive.
 fn check<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     setting: &Setting,
     pair: &[Placed<N, R, D>; 2],
@@ -289,7 +292,8 @@ fn check_moved<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     assert!(same, "{before} becomes {after} {setting:?}");
 }
 
-/// A moving pair does not touch before the time of impact and touches at it.
+/// Asserts that a moving pair does not touch before the time of impact and touches at it. Returns
+/// `true` if there is an impact.
 fn check_impact<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     setting: &Setting,
     pair: &[Placed<N, R, D>; 2],
@@ -340,7 +344,7 @@ fn check_impact<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     found.is_some()
 }
 
-/// Tests all laws for all kinds and regimes.
+/// Asserts that no law is violated for any pair of kinds in any regime.
 fn laws<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     kinds: &[ShapeKind],
     maker: &Maker<N, R, D>,

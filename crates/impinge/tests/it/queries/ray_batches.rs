@@ -11,7 +11,7 @@ use impinge::shape::{Ball, CompositeShape, Part, Plane, Polyline, Shape, ShapeHa
 use impinge::world::{CollisionGroups, CollisionWorld, QueryFilter};
 use query_support::random::Random;
 
-/// Size and offset from the origin of a triangle soup.
+/// Sizes of the triangle soups, and their offsets from the origin.
 const PLACES: [(f64, f64); 6] =
     [(1.0, 0.0), (1.0, 1e6), (1e-3, 40.0), (1e6, 0.0), (1e-18, 0.0), (1e25, -3e25)];
 
@@ -51,7 +51,8 @@ fn aimed<N: Real>(random: &mut Random, mesh: &TriMesh<N, 3>, size: f64) -> Ray<N
     }
 }
 
-/// Returns the first hit, by a cast at each part alone.
+/// Returns the first hit, from a cast at each part alone; of several parts hit first, that with the
+/// lowest index.
 fn slow<N: Space<D>, const D: usize>(
     shape: &impl CompositeShape<N, D>,
     batch: &RayBatch<'_, N, D>,

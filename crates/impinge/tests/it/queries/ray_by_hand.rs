@@ -12,7 +12,8 @@ type P3 = Point<f64, 3>;
 type V2 = Vector<f64, 2>;
 type V3 = Vector<f64, 3>;
 
-/// Origin and direction, and the time of the hit of a solid and of a hollow shape.
+/// The origin and the direction of a ray, and the expected times at which it hits the solid and the
+/// hollow shape; `None` for a miss.
 type Case<const D: usize> = ([f64; D], [f64; D], Option<f64>, Option<f64>);
 
 fn check<const D: usize>(shape: &dyn Shape<f64, D>, cases: &[Case<D>])

@@ -62,7 +62,7 @@ fn pose3<N: Real>(value: &Value) -> Isometry3<N> {
     Isometry3::from_parts(vector::<N, 3>(&value["t"]).into(), rotation)
 }
 
-/// Returns a flat height field or a mesh.
+/// Returns a flat height field or a mesh; `None` for other types of shapes.
 fn surface<N: Real>(shape: &Value) -> Option<ShapeHandle<N, 3>> {
     match shape["type"].as_str()? {
         "heightfield" => {
@@ -85,7 +85,8 @@ fn tri_mesh<N: Real>(shape: &Value) -> TriMesh<N, 3> {
     TriMesh::new(corners(&shape["vertices"]), triangles.collect())
 }
 
-/// Returns a cylinder or cone along y, and the rotation that takes y to the axis of the case.
+/// Returns a cylinder or cone along y, and the rotation that takes y to the axis of the case;
+/// `None` for other types of shapes.
 fn round<N: Real>(shape: &Value) -> Option<(ShapeHandle<N, 3>, Isometry3<N>)> {
     let (half_height, radius) = (number::<N>(&shape["half_height"]), number(&shape["radius"]));
     let handle = match shape["type"].as_str()? {
@@ -216,8 +217,9 @@ fn reordered(case: &Value) -> Vec<Value> {
     orders.iter().map(|order| reorder(order)).collect()
 }
 
-/// Compares the signed distance of a point from a closed mesh with the case, with the original and
-/// with reversed windings.
+/// Compares the signed distance of a point from a closed mesh, and whether the mesh contains it,
+/// with the case. The result must not depend on the windings, so the mesh is also tested with
+/// reversed windings.
 fn check_mesh<N: Real>(case: &Value) {
     let (params, expected) = (&case["params"], &case["expected"]);
     let asked = point::<N, 3>(&params["point"]);
@@ -259,8 +261,8 @@ fn corners<N: Real>(list: &Value) -> Vec<Point<N, 3>> {
     list.as_array().expect("a list").iter().map(point).collect()
 }
 
-/// Compares the hulls of the convex meshes with the cases: signs and distances must not depend on
-/// the faces.
+/// Compares points in the hulls of the cases' cube meshes with the same expected results: signs and
+/// distances must not depend on the faces of the meshes.
 fn convex_meshes<N: Space<3>>() {
     let mut checked = 0;
     for case in cases() {

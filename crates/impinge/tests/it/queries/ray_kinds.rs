@@ -1,4 +1,5 @@
-//! Tests properties common to every kind of shape, in both dimensions and with both scalars.
+//! Tests that every kind of shape is hit from above at its top, in both dimensions and with both
+//! scalars, and that hulls agree with cuboids.
 
 use crate::support::solids;
 
@@ -14,7 +15,8 @@ fn point<N: Real, const D: usize>(coordinates: [f64; D]) -> Point<N, D> {
     Point::from(Vector::<f64, D>::from(coordinates).map(N::lit))
 }
 
-/// Returns one shape of each kind, all with their top at y = 1 above the origin.
+/// Returns one shape of each kind that exists in both dimensions. Above the origin, all have their
+/// top at y = 1, except for the half-space, which has it at y = 0.
 fn common<N: Real, const D: usize>(
     left: Point<N, D>,
     right: Point<N, D>,

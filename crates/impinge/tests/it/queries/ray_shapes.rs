@@ -78,11 +78,13 @@ fn crossing<N: Real, const D: usize>(
 struct Expected {
     hit: bool,
     solid: f64,
-    /// `None` if the ray starts inside and does not leave.
+    /// `None` if the ray misses the solid, or starts inside and does not leave.
     hollow: Option<f64>,
 }
 
-/// Returns the expected hit; `None` if rounding decides, because it is too close or too far away.
+/// Returns the expected hit or miss; `None` if rounding might decide: if the ray starts near the
+/// boundary, grazes the solid, meets it far away, or is nearly parallel to the half-space it
+/// misses.
 fn expected<N: Real, const D: usize>(solid: &Solid<N, D>, shot: &Shot<N, D>) -> Option<Expected> {
     let unclear = 0.02 * solid.size;
     let start = solid.at(&shot.origin);
@@ -227,8 +229,8 @@ fn solids_far_from_the_world_origin_agree_with_the_oracle() {
     run(space_solids::<f64>, |rng| pose3(rng, 1e6), 13);
 }
 
-/// Asserts that a ray from far away, aimed at a solid or past it, finds the boundary as precisely
-/// as its own coordinates are.
+/// Asserts that a ray from far away, aimed at the centre of a solid, finds the boundary as
+/// precisely as its own coordinates are.
 fn far_rays<N: Space<D>, const D: usize>(solids: Vec<Solid<N, D>>, away: f64) {
     let mut rng = Rng::new(5);
     for solid in solids.iter().filter(|solid| solid.name != "plane") {

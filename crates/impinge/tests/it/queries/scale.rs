@@ -84,7 +84,7 @@ fn check_worlds<N: Play<D>, const D: usize>(
 }
 
 /// Asserts that rays, points and boxes find the same objects in both worlds, and that the times of
-/// rays are in proportion.
+/// rays are in proportion. Returns the number of ray hits.
 fn check_queries<N: Play<D>, const D: usize>(
     usual: &World<N, D>,
     scaled: &World<N, D>,

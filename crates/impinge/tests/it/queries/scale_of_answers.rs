@@ -44,7 +44,8 @@ impl<const D: usize> Draw<D> {
         Vector::<N, D>::from(sizes)
     }
 
-    /// Returns a shape of this kind, of the kinds that exist in both dimensions.
+    /// Returns a shape of the kind, if it is one that exists in both dimensions; `None` for the
+    /// other kinds.
     fn shape<N: Space<D>>(&self, scale: f64) -> Option<ShapeHandle<N, D>> {
         let p = self.points::<N>(scale);
         Some(match self.kind {
@@ -149,7 +150,8 @@ fn are_scaled<N: Real>(usual: &[N], scaled: &[N], scale: N) -> bool {
     usual.len() == scaled.len() && usual.iter().zip(scaled).all(is_scaled)
 }
 
-/// Compares the results for random shapes with the results for the same shapes at other scales.
+/// Asserts that random shapes at other scales have the same results as at scale 1, with scaled
+/// lengths.
 fn hold<N: Space<D>, const D: usize>(
     seed: u64,
     answers: impl Fn([&dyn Shape<N, D>; 2], Vector<N, D>, N) -> (Vec<N>, Vec<N>, String),
@@ -190,7 +192,8 @@ fn answers_on_a_grid_of_space_scale() {
     hold::<f64, 3>(54, answers3);
 }
 
-/// Tests the numbers of a bug report, also at sizes that are not powers of two.
+/// Asserts that segments that cross and touch have the depth of the crossing, with the numbers of a
+/// bug report, also at sizes that are not powers of two.
 #[test]
 fn segments_that_cross_and_touch_have_the_depth_of_the_crossing() {
     fn check<N: Space<2, Isometry = Isometry2<N>>>() {

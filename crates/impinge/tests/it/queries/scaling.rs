@@ -1,5 +1,5 @@
-//! Compares scaled shapes with their scaled points, and tests how the cost of contacts grows with
-//! the number of parts near the other solid.
+//! Compares the extents of scaled shapes with the extents of their scaled points. Also tests
+//! half-spaces, fronts, compounds, and factors that are refused.
 
 use crate::support::query_support;
 

@@ -50,7 +50,7 @@ fn meeting<N: Real, const D: usize>(random: &mut Random, round: usize) -> [Vec<P
     [around(random, &corner, &side, on_grid), around(random, &corner, &other, on_grid)]
 }
 
-/// Returns shapes made from some points; the flat ones use the first three.
+/// Returns shapes with these points as corners; triangles and segments use the first three.
 fn shapes2<N: Space<2>>(p: &[Point<N, 2>]) -> Vec<ShapeHandle<N, 2>> {
     let identity = N::isometry(&impinge::math::Pose::identity());
     let triangle = ShapeHandle::new(Triangle::new(p[0], p[1], p[2]));
@@ -114,8 +114,9 @@ fn corners2<N: Space<2, Isometry = Isometry2<N>>>() {
     }
 }
 
-/// Returns whether a segment has an end among the points; other shapes always contain the shared
-/// corner.
+/// Returns `true` if a shape contains the common corner of two lists of points, of which `points`
+/// is the other one. A segment contains it if one of its ends is among these points; all other
+/// shapes contain it.
 fn is_in<N: Space<D>, const D: usize>(shape: &ShapeHandle<N, D>, points: &[Point<N, D>]) -> bool {
     shape
         .as_shape::<Segment<N, D>>()
@@ -192,7 +193,7 @@ fn meet(one: &Piece, other: &Piece) -> bool {
 }
 
 /// Asserts that pieces on a grid, which often meet at corners and on sides, touch exactly if
-/// integer arithmetic finds a common point.
+/// integer arithmetic finds a common point. Returns the number of pairs that touch.
 fn grids<N: Space<2, Isometry = Isometry2<N>>>() -> u32 {
     let random = &mut Random(63, false);
     let mut touching = 0;
@@ -233,7 +234,8 @@ fn pieces_of_a_grid_touch_by_integers() {
     assert!(found.iter().all(|&touching| touching > 7000), "{found:?} touch");
 }
 
-/// Tests a pair of polygons cut into triangles, with the numbers of a bug report.
+/// Asserts that two polygons with a common vertex touch however they are cut into triangles, with
+/// the numbers of a bug report.
 #[test]
 fn polygons_that_share_a_vertex_touch() {
     let quad = |corners: [[f64; 2]; 4], triangles: [[u32; 3]; 2]| {

@@ -1,5 +1,5 @@
-//! Tests streams of contacts: compares the indices in the lists of the fill before with a map from
-//! ids.
+//! Tests contact streams. The index of each contact in the points of the previous fill is compared
+//! with a map from contact ids to indices.
 
 use crate::support::{scene_stage, world_stage};
 
@@ -15,12 +15,14 @@ use impinge_scenes::{Scene, mixed_shapes, pile, shaken, spawn_and_despawn};
 use scene_stage::{Play, Player, assert_stream_agrees};
 use world_stage::{Stage, add, contacts, cube};
 
-/// A stream, and the index of each contact of its last fill.
+/// A stream, and the indices that the points of the next fill must refer to.
 struct Checked<N: Space<D>, const D: usize> {
     stream: ContactStream<N, D>,
+    /// The index of each contact in the points of the last fill.
     indices: HashMap<ContactId, usize>,
-    /// Number of contacts found in the fill before, and of new contacts, over all fills.
+    /// Number of contacts that the previous fill had too, summed over all fills.
     kept: usize,
+    /// Number of contacts that the previous fill did not have, summed over all fills.
     new: usize,
 }
 
@@ -29,7 +31,8 @@ impl<N: Space<D>, const D: usize> Checked<N, D> {
         Self { stream: ContactStream::new(), indices: HashMap::new(), kept: 0, new: 0 }
     }
 
-    /// Fills the stream, and asserts that each contact has the index that its id had before.
+    /// Fills the stream. Asserts that it has the contacts of the world, and that each point refers
+    /// to the index that its id had in the previous fill.
     fn fill<T>(&mut self, world: &CollisionWorld<N, D, T>) {
         world.read_contacts(&mut self.stream);
         assert_stream_agrees(world, &self.stream);
@@ -47,7 +50,7 @@ impl<N: Space<D>, const D: usize> Checked<N, D> {
     }
 }
 
-/// A pile in which contacts begin and end at each step.
+/// Returns a pile of `count` boxes that is shaken, so that contacts begin and end at each step.
 fn shaken_pile<const D: usize>(count: usize) -> Scene<D> {
     shaken(pile(count), 0.25)
 }
@@ -58,7 +61,7 @@ fn follows_scenes<N: Play<D>, const D: usize>() {
         let (mut player, mut checked) = (Player::<N, D>::new(make(150), 1.0), Checked::new());
         for step in 0..12 {
             player.step();
-            // A reader that misses some updates.
+            // The stream is not filled after every update.
             if step % 5 != 3 {
                 checked.fill(&player.world);
             }
@@ -68,8 +71,8 @@ fn follows_scenes<N: Play<D>, const D: usize>() {
     }
 }
 
-/// Tests a row of boxes, many of which are removed at once, so that the pairs of other boxes move
-/// into the memory of their pairs.
+/// Tests a row of boxes. Many boxes are removed at once, so that the remaining pairs move into the
+/// memory of the removed pairs.
 fn finds_pairs_that_moved_in_memory<N: Stage<D>, const D: usize>() {
     let mut world = CollisionWorld::<N, D, ()>::new(N::lit(0.01));
     let mut handles: Vec<_> =
@@ -79,7 +82,8 @@ fn finds_pairs_that_moved_in_memory<N: Stage<D>, const D: usize>() {
     checked.fill(&world);
     let all = checked.new;
     assert!(all >= 199, "each box touches the next");
-    // Removes more boxes in a row than the stream searches ahead, and two single boxes.
+    // Removes 60 consecutive boxes, which is more than the window in which the stream searches, and
+    // two single boxes.
     world.remove(&handles.drain(20..80).collect::<Vec<_>>());
     world.remove(&[handles.remove(3), handles.remove(90)]);
     checked.fill(&world);
@@ -109,7 +113,8 @@ fn finds_pairs_that_moved_in_memory<N: Stage<D>, const D: usize>() {
     assert_eq!(checked.kept, kept, "nothing is known after clearing");
 }
 
-/// A box with a skin that slides over a zigzag has several manifolds with one surface.
+/// Tests a box that slides over a zigzag, in the second half with a skin. The pair has several
+/// manifolds in at least one fill.
 fn follows_patches<N: Stage<D>, const D: usize>(zigzag: ShapeHandle<N, D>) {
     let mut world = CollisionWorld::<N, D, ()>::new(N::lit(0.01));
     add(&mut world, 0.0, &zigzag, contacts(0.0));
@@ -155,7 +160,8 @@ fn patches_3d() {
     follows_patches::<f64, 3>(zigzag());
 }
 
-/// A removed object is in no stream, even before the next update.
+/// Tests that a removed object is in no stream, even before the next update, and that an object
+/// that reuses its index is not in the stream either.
 fn skips_removed_objects<N: Stage<D>, const D: usize>() {
     let mut world = CollisionWorld::<N, D, ()>::new(N::lit(0.01));
     let handles = [0.0, 0.75].map(|x| add(&mut world, x, &cube(0.5), contacts(0.0)));

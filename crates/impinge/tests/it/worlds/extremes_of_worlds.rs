@@ -28,7 +28,8 @@ fn shifted<const D: usize>(mut scene: Scene<D>, shift: f64) -> Scene<D> {
     scene
 }
 
-/// A contact of a step: the objects, the number of points, the depth and the normal.
+/// A manifold of a step: the objects, the number of points, and the depth and the normal of the
+/// deepest point.
 type Seen<N, const D: usize> = ((usize, usize), usize, N, Vector<N, D>);
 
 fn contacts_seen<N: Play<D>, const D: usize>(player: &Player<N, D>) -> Vec<Seen<N, D>> {
@@ -104,7 +105,8 @@ fn one_far_object<N: Stage<D>, const D: usize>() {
     }
 }
 
-/// 100000 objects come and go within one step, with and without an update between.
+/// Adds `count` objects and removes all but three, in the first round with an update between and in
+/// the second within one step. Nothing may be left of the removed objects.
 fn mass_arrival<N: Stage<D>, const D: usize>(count: u32) {
     let mut world = World::<N, D>::new(N::lit(0.02));
     let shape = ball(0.25);

@@ -27,8 +27,8 @@ fn play<N: Play<D>, const D: usize>(player: &mut Player<N, D>, steps: u32) -> (u
     (digest.finish(), found)
 }
 
-/// Asserts that a scene that is saved after 20 steps and restored continues for 200 steps with the
-/// results of an unsaved scene, both as text and as bytes.
+/// Saves a scene in its 21st step, before the update, and restores it, both as text and as bytes.
+/// Asserts that the next 200 steps have the results of an unsaved scene.
 fn goes_on<N: Play<D>, const D: usize>(scene: &Scene<D>, is_reusing: bool) {
     let after = |steps, save: Option<bool>| {
         let mut player = Player::<N, D>::new(scene.clone(), 1.0);

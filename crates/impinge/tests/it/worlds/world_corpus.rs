@@ -24,7 +24,8 @@ const CASES: &str = include_str!("../../data/regression_cases.json");
 /// Scripts with steps in words; each has its own test below.
 const IN_WORDS: [&str; 2] = ["parry-409-remove-to-single-leaf", "melonjs-1580-octree-depth"];
 
-/// Parent of an object, in the one script that filters by it.
+/// Parent of an object, in the one script that filters by it; `None` for an object without a
+/// parent.
 type Parent = Option<String>;
 
 fn numbers<const D: usize>(value: &Value) -> [f64; D] {

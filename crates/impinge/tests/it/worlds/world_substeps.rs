@@ -1,4 +1,5 @@
-//! Tests single pairs computed between updates, and contacts with skins.
+//! Tests that a pair computed between updates has the result of an update, and that contacts with
+//! skins are those of grown shapes.
 
 use crate::support::world_stage;
 
@@ -27,7 +28,7 @@ fn capsule<N: Real, const D: usize>() -> ShapeHandle<N, D> {
     ShapeHandle::new(Capsule::<N, D>::new(N::ONE, N::HALF))
 }
 
-/// Returns a shape for each representation of contacts.
+/// Returns a ball, a box, another convex shape and a composite.
 fn shapes<N: Stage<D>, const D: usize>() -> [ShapeHandle<N, D>; 4] {
     [ball(1.0), cube(1.0), capsule(), table()]
 }
@@ -81,7 +82,8 @@ fn check_readers<N: Space<D>, const D: usize>(
     assert_eq!(seen.collect::<Vec<_>>(), all, "seen from the second");
 }
 
-/// A pair computed between updates has the result of an update, and everything else is unchanged.
+/// A pair computed between updates has the contacts that an update would give it, and the contacts
+/// of other pairs are unchanged.
 fn a_pair_is_computed_as_an_update_would<N: Stage<D>, const D: usize>() {
     for reuses in [false, true] {
         for (index, shape) in shapes::<N, D>().into_iter().enumerate() {
@@ -230,7 +232,8 @@ fn an_object_with_itself_is_a_pair<N: Stage<D>, const D: usize>() {
     assert_eq!(points(&world, knot, knot), after, "as the update has it");
 }
 
-/// Returns a world of two shapes, the second one at a pose.
+/// Returns a world of two shapes, the first at the origin and the second at a pose, and their
+/// handles.
 fn two<N: Stage<D>, const D: usize>(
     shapes: [&ShapeHandle<N, D>; 2],
     at: N::Isometry,
@@ -242,7 +245,8 @@ fn two<N: Stage<D>, const D: usize>(
     (world, [one, other])
 }
 
-/// Contacts with skins equal the contacts of shapes rounded by the same radius.
+/// The deepest contact of shapes with skins equals, up to rounding, that of shapes rounded by the
+/// same radii.
 fn skins_round_shapes<N: Stage<D>, const D: usize>() {
     let (skins, slack) = ([0.25, 0.125], N::lit(64.0) * N::EPSILON);
     let rounded = |shape: &ShapeHandle<N, D>, radius: f64| -> ShapeHandle<N, D> {
@@ -277,7 +281,7 @@ fn skins_round_shapes<N: Stage<D>, const D: usize>() {
     assert!((all_pairs / 4..all_pairs).contains(&touching), "{touching} of {all_pairs} touch");
 }
 
-/// Returns the deepest contact of a pair.
+/// Returns the deepest contact of a pair; `None` if there is no pair or it has no contact.
 fn deepest<N: Space<D>, const D: usize>(
     world: &World<N, D>,
     one: CollisionObjectHandle,
@@ -288,8 +292,8 @@ fn deepest<N: Space<D>, const D: usize>(
     points.reduce(|best, next| if next.contact.depth > best.contact.depth { next } else { best })
 }
 
-/// Calls [`check_readers`] if there is a pair, and asserts that kinematics at the poses of the
-/// update give the contact.
+/// Calls [`check_readers`] if there is a pair, and asserts that the kinematics of each contact give
+/// that contact again at the poses of the update, up to rounding.
 fn check_readers_of_pair<N: Space<D>, const D: usize>(
     world: &World<N, D>,
     one: CollisionObjectHandle,

@@ -139,8 +139,8 @@ fn keeping<N: Space<3>>(
     generator.reusing(tolerance)
 }
 
-/// Follows pairs for some steps, reusing contacts within the tolerance if that is positive; returns
-/// how many manifolds were compared.
+/// Compares the contacts of a world with those of the generators for some steps, reusing contacts
+/// within the tolerance if that is positive; returns how many manifolds were compared.
 fn follow<N: Space<3, Isometry = Isometry3<N>>>(
     seed: u64,
     [scale, tolerance]: [f64; 2],

@@ -1,4 +1,4 @@
-//! 2D.
+//! Tests in 2D.
 
 mod bodies;
 mod scenes;

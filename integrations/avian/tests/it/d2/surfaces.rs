@@ -31,8 +31,8 @@ fn bump<B: Backend>(floor: B::Collider, body: B::Collider, height: f32, friction
     [fastest, farthest, velocity(&app, body).x]
 }
 
-/// Returns the bumps of a ball and of a box on a polyline, on an area of triangles, and on a
-/// half-plane.
+/// Returns the results of [`bump`] for a ball and for a box, on a polyline, on an area of
+/// triangles, and on a half-plane.
 fn bumps<B: Backend>() -> [[[f32; 3]; 2]; 3] {
     let floors = [line::<B>(40, 0.5, |_| 0.0), strip::<B>(40, 0.5), B::half_space()];
     floors.map(|floor| {

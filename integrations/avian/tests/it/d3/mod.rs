@@ -1,4 +1,4 @@
-//! 3D.
+//! Tests in 3D.
 
 mod bodies;
 mod mass;

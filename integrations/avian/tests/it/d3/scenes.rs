@@ -39,7 +39,8 @@ fn a_pyramid_stands() {
     pyramid_stands::<Impinge>();
 }
 
-/// The chain swings down and comes to rest on the floor, with its links still joined.
+/// Asserts that a chain stays joined while it swings down to the floor, and that no link is in the
+/// floor at the end.
 fn chain_holds<B: Backend>() {
     let mut app = app::<B>();
     floor::<B>(&mut app);

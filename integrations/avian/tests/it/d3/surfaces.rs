@@ -32,13 +32,13 @@ fn bump<B: Backend>(floor: B::Collider, body: B::Collider, height: f32, friction
     [fastest, farthest, velocity(&app, body).x]
 }
 
-/// Returns the bumps of a ball and of a box on a floor.
+/// Returns the results of [`bump`] for a ball and for a box on a floor.
 fn bumps_on<B: Backend>(floor: B::Collider) -> [[f32; 3]; 2] {
     let ball = bump::<B>(floor.clone(), B::sphere(0.5), 0.5, 0.5);
     [ball, bump::<B>(floor, B::cuboid(1.0, 0.6, 0.8), 0.3, 0.0)]
 }
 
-/// Returns the bumps on a mesh and on a half-space.
+/// Returns the results of [`bumps_on`] a mesh and a half-space.
 fn bumps<B: Backend>() -> [[[f32; 3]; 2]; 2] {
     [sheet::<B>(40, 0.5, |_, _| 0.0), B::half_space()].map(bumps_on::<B>)
 }

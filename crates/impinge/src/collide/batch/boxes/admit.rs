@@ -50,15 +50,15 @@ pub(super) struct Limits<V> {
     pub(super) prediction: V,
     /// Sine of the angle by which the boxes may rotate.
     pub(super) sine: V,
-    /// Lengths up to this are rounding errors.
+    /// Lengths up to this count as rounding errors.
     pub(super) tolerance: V,
 }
 
 /// State of the admission while slots are filled.
 ///
 /// A candidate is admitted if its height is within the prediction, or if a rotation brings it
-/// within. The boxes rotate about the pivot: the centroid of the candidates whose height is the
-/// gap, up to rounding.
+/// within. The boxes rotate about the pivot: the mean position of the candidates whose height is
+/// the gap, up to rounding.
 ///
 /// ```text
 ///     other box     .-o   height <= prediction + sine * arm

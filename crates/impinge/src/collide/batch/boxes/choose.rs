@@ -29,9 +29,10 @@ pub(super) struct SlotChoice<'a, N: Real, const D: usize, const COUNT: usize, co
     pub(super) valid: u32,
     /// Bits of the slots whose height is the gap, up to rounding.
     pub(super) level: u32,
-    /// Signed distance of the boxes. The deepest point gets exactly this distance.
+    /// Signed distance of the boxes. The slot that [`Self::deepest`] returns gets exactly this
+    /// distance.
     pub(super) gap: N,
-    /// Lengths up to this are rounding errors.
+    /// Lengths up to this count as rounding errors.
     pub(super) tolerance: N,
     /// Length scale of the pair, as `collide::size` defines it.
     pub(super) size: N,
@@ -226,8 +227,8 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         )
     }
 
-    /// Updates positions and distances of the points in place; slots, features and order are
-    /// unchanged.
+    /// Updates positions and distances of the points in place; slots and features are unchanged. A
+    /// point that jumped gets a new id, and the points are then sorted again.
     #[inline(always)]
     fn put_all(&self, deepest: usize, raw: &mut RawManifold<N, D>) {
         let mut has_jumped = false;

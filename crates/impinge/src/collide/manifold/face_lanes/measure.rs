@@ -1,6 +1,6 @@
-//! Measures a solid's supporting feature and 8 triangles along the normals: the distances of the
-//! corners of each outline from the sides of the other outline, and the distances between both
-//! along the normal.
+//! Measures how a solid's supporting feature and each of 8 triangles overlap, projected along the
+//! normal: the distances of the corners of each outline from the sides of the other, and the
+//! distances of the corners from the plane of the other along the normal.
 //!
 //! ```text
 //!      v3 ──────────── v2     seen along the normal n of the lane, which points into the page
@@ -143,7 +143,7 @@ impl<N: Real> FaceClip<N> {
         }
     }
 
-    /// Measures the lanes of one SIMD run.
+    /// Measures the triangles in the lanes of one SIMD run.
     pub(super) fn measure(
         &mut self,
         run: Run,
@@ -204,8 +204,8 @@ impl<N: Real> FaceClip<N> {
     }
 
     /// Measures the corners of the triangles against the sides and the plane of the ring. Returns
-    /// the lanes where all sides of the ring are longer than two tolerances and the distances from
-    /// its plane are not NaN.
+    /// the lanes where all sides of the ring are longer than two tolerances in projection, and the
+    /// distances from its plane are not NaN.
     #[inline(always)]
     fn measure_face<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,

@@ -1,5 +1,5 @@
-//! Contacts of a face, an edge or a corner of one solid with up to 8 triangles, each along a
-//! normal of its own.
+//! Contacts of one feature of a solid (a face, an edge or a corner) with up to 8 triangles, each
+//! along a normal of its own.
 //!
 //! ```text
 //!        v3────────────v2     The face of the solid, v, and a triangle, c, seen along the normal.
@@ -31,7 +31,7 @@ use crate::math::simd::Level;
 use crate::math::{Matrix, Real, Vector};
 use crate::shape::{FaceRing, FeatureId, Geometry, Kind, SupportMap};
 
-/// Input of the clip for one triangle.
+/// Clip request for one triangle.
 #[derive(Clone, Copy)]
 pub(in crate::collide) struct ClipRequest<N: Real> {
     /// Unit normal from the triangle to the solid, in the frame of the solid.
@@ -72,10 +72,12 @@ pub(in crate::collide) struct FaceSolid<'a, N: Real> {
 }
 
 impl<N: Real> FaceSolid<'_, N> {
-    /// Appends the points of each of up to 8 triangles, whose corners are in the frame that `turn`
-    /// and `origin` refer to. For each lane, calls `visit` with the lane and the smallest distance
-    /// of its points (infinite without points), or `None` if the lane is undecided. Lanes are
-    /// visited in groups with the same supporting feature of the solid.
+    /// Computes the contact points of up to 8 triangles, with one request each, and appends them to
+    /// `points`. The corners of the triangles are in the frame that `turn` and `origin` refer to;
+    /// the points are in the frame of the solid. For each lane, calls `visit` with the lane and the
+    /// smallest distance of its points (infinite without points), or with `None` if the lane is
+    /// undecided. Lanes with the same supporting feature of the solid are visited one after
+    /// another.
     pub(in crate::collide) fn each_clip(
         &self,
         triangles: &PartPacket<N, 3>,

@@ -61,8 +61,8 @@ fn manifold<N: Real>(pair: &Pair<'_, N, 3>, points: usize) -> RawManifold<N, 3> 
     out
 }
 
-/// Asserts that each expected corner is a contact, and each contact an expected corner, by the x
-/// and y coordinates on the first solid.
+/// Asserts that each expected corner is the position of a contact, and each contact is at an
+/// expected corner. Compares the x and y coordinates of the points on the first solid.
 fn has_corners<N: Real>(found: &RawManifold<N, 3>, expected: &Outline, tolerance: f64, what: &str) {
     let off = |point: &Point<N, 3>, [x, y]: &[f64; 2]| {
         (point.x.as_f64() - x).abs().max((point.y.as_f64() - y).abs())

@@ -1,5 +1,6 @@
-//! Compares the contacts of a solid's face with triangles, computed 8 at a time in SIMD lanes, with
-//! the exact overlap of both outlines. Also tests edges and corners of the solid.
+//! Tests the contacts of a solid's face and triangles, which are computed 8 at a time in SIMD
+//! lanes: they must span the exact overlap of both outlines, at every SIMD level. Also tests edges
+//! and corners of the solid, and bounds of the distance.
 
 use super::clip::{Outline, common, prism, regular};
 use crate::collide::manifold::face_lanes::{ClipRequest, FaceClip, FaceSolid};
@@ -198,8 +199,8 @@ fn triangles<N: Real>(random: &mut Xorshift, on_grid: bool) -> Vec<Corners<N>> {
     all.filter(is_wide).collect()
 }
 
-/// Checks the contact points of a solid with random triangles. In its own frame, the bottom of the
-/// solid is at height `-lift`. Returns the numbers of undecided and of decided triangles.
+/// Runs [`check`] on the contact points of a solid and random triangles. In the solid's own frame,
+/// its bottom is at height `-lift`. Returns the numbers of undecided and of decided triangles.
 fn check_all<N: Real>(
     outline: &Outline,
     (solid, lift): (&dyn Shape<N, 3>, N),

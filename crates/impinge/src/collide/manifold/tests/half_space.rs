@@ -53,10 +53,12 @@ fn solid<N: Real>(kind: usize, scale: f64, random: &mut Random) -> Cornered<N> {
     }
 }
 
-/// Asserts that all corners within the prediction are contacts, at their positions, unless they lie
-/// inside the outline of the contacts or four old points may be kept. There must be no other
-/// contacts, and a feature that lasts must keep its id over three steps. The corners of steep
-/// segments and capsules are not checked.
+/// Moves a solid for three steps. Asserts that each corner within the prediction is a contact, at
+/// the corner's position; for a solid with a radius, only that there is a contact. A corner need
+/// not be a contact if it is inside the outline of the contacts, or if the previous manifold has at
+/// least four points, which may be kept. The corners of steep segments and capsules are not
+/// checked. A solid without a radius must not have more contacts than near corners. A feature in
+/// contact in two successive steps must keep its id.
 fn corners_count<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
     let (random, mut points) = (&mut Random(seed), 0);
     for round in 0..700_usize {
@@ -139,7 +141,7 @@ fn corners_near_a_half_space_are_its_contacts() {
     }
 }
 
-/// A rounded box touches with four corners of its face, on the rounded surface.
+/// Asserts that a rounded box touches with four corners of its face, on the rounded surface.
 #[test]
 fn a_rounded_box_lies_on_four_corners() {
     let solid = Rounded::new(Cuboid::new(Vector::<f64, 3>::new(1.0, 0.5, 2.0)), 0.25);

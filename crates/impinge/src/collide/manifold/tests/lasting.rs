@@ -110,7 +110,7 @@ fn a_stack_at_rest_keeps_its_ids() {
     }
 }
 
-/// Contacts that ended come back with new ids.
+/// Asserts that contacts that end and begin again get new ids.
 #[test]
 fn a_number_is_never_given_twice() {
     let solid = Cuboid::new(Vector::<f64, 2>::new(0.5, 0.5));

@@ -1,4 +1,5 @@
-//! Properties of the manifolds of all pairs of kinds, at random poses near touching.
+//! Tests properties of the manifolds of all pairs of kinds, at random poses near touching: the
+//! number and positions of points, their distances and ids, and the effect of swaps and scaling.
 
 use super::scene::{Scene, describe, fact, for_all_pairs, manifold, off_surface, request};
 use crate::collide::{ManifoldRequest, Pair, RawManifold, RawPoint};

@@ -301,8 +301,8 @@ fn a_prism_of_many_sides_stands_on_four_points() {
     assert_eq!(standing.counts(&wish), [20; 2], "all of them, if requested");
 }
 
-/// Tests a hull whose bottom is a flat V: the ridge is nearest to the half-space, and the near
-/// vertices belong to two faces.
+/// A hull whose bottom is a flat V, with the ridge nearest to the half-space: asserts that vertices
+/// of both faces are contacts if they are within the prediction, or may come within it by rotation.
 #[test]
 fn near_vertices_of_several_faces_count_above_a_half_space() {
     let corners = [[-1.0, 0.01, 0.0], [1.0, 0.01, 0.0], [0.0, 0.0, -1.0], [0.0, 0.0, 1.0]];

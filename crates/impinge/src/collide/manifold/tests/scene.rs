@@ -22,8 +22,8 @@ pub(crate) trait Scene<const D: usize>: Simplicial<D> {
     /// radians. In 2D the last component is the angle.
     fn pose(translation: Vector<Self, D>, turn: [f64; 3]) -> Pose<Self, D>;
 
-    /// Returns a random polytope, and the solids that exist in this dimension only, in the order of
-    /// kinds.
+    /// Returns a random polytope, and a random solid of each kind that exists in this dimension
+    /// only, in the order of kinds.
     fn own(scale: f64, random: &mut Random) -> Vec<Box<dyn Shape<Self, D>>>;
 }
 
@@ -147,7 +147,7 @@ pub(crate) fn off_surface<N: Scene<D>, const D: usize>(
     convex::separation(solid, &Ball::new(N::ZERO), &at, N::INFINITY).expect("finite").distance
 }
 
-/// Builds the manifold of a pair alone, from its separation.
+/// Computes the separation of a pair and builds its manifold, without a previous manifold.
 pub(crate) fn manifold<N: Scene<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     request: &ManifoldRequest<N>,
@@ -179,8 +179,9 @@ pub(crate) fn near_pose<N: Scene<D>, const D: usize>(
     pose12
 }
 
-/// Runs a check on every pair of kinds, for `count` sets of random solids, each pair at a random
-/// pose within `0.1 * scale` of touching. The half-space is always second.
+/// Calls `check` with every pair of kinds, for `count` sets of random solids, each pair at a random
+/// pose. The distance of each pair is at most `0.1 * scale`, or approximately this if the solids
+/// overlap. The half-space is always second.
 pub(crate) fn for_all_pairs<N: Scene<D>, const D: usize>(
     count: u64,
     scale: f64,

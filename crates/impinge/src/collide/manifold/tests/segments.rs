@@ -1,5 +1,5 @@
-//! Compares the closed forms for segments and capsules against flat-faced solids, cylinders and
-//! cones with the general algorithm.
+//! Tests that the separation algorithms for a segment or capsule and a flat-faced or rounded solid,
+//! a cylinder or a cone give the same results as the general algorithm, up to a tolerance.
 
 use super::scene::{Random, Scene, describe};
 use crate::collide::Pair;
@@ -72,7 +72,7 @@ fn turn(round: usize, random: &mut Random) -> [f64; 3] {
     }
 }
 
-/// Returns the separation by the general algorithm.
+/// Returns the separation by the general algorithm, the reference of the tests.
 fn truth<N: Scene<3>>(pair: &Pair<'_, N, 3>) -> Separation<N, 3> {
     let [first, second] =
         [pair.first, pair.second].map(|kind| Geometry(kind).as_support_map().expect("a solid"));
@@ -105,8 +105,9 @@ fn visit<N: Scene<3>>(
     }
 }
 
-/// Asserts that the distances of both algorithms agree, that the normal is a unit vector, that the
-/// points lie at the distance from each other along the normal, and that limits are respected.
+/// Asserts that the distances of both algorithms agree, that the normal is a unit vector, and that
+/// the points lie at the distance from each other along the normal. Asserts that a limit slightly
+/// above the distance does not change it, and that a limit slightly below it gives `None`.
 fn separations<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
     visit::<N>((seed, scale), |pair, round, _| {
         let tolerance = tolerance(pair, scale);

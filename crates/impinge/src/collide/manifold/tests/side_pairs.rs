@@ -45,8 +45,8 @@ fn benches<N: Real>([low, high]: [f64; 2]) -> Vec<Bench<N>> {
     ]
 }
 
-/// Returns the pose of a solid at `[x, y]`, rotated by an angle about the world's origin and then
-/// moved.
+/// Returns the pose of a solid at `[x, y]`, rotated by `angle` about the world's origin and then
+/// translated by `by`.
 fn placed<N: Real>([x, y]: [f64; 2], angle: f64, by: [f64; 2]) -> Pose<N, 2> {
     let own = Isometry2::new(Vector::<f64, 2>::new(x, y), 0.0);
     let rotated = Isometry2::new(Vector::<f64, 2>::new(by[0], by[1]), angle) * own;
@@ -70,7 +70,8 @@ impl Stack {
         [low1.max(low2), high1.min(high2)]
     }
 
-    /// Visits all pairs of these kinds, with the pose of the first solid.
+    /// Calls `visit` with a pair for each two kinds of [`benches`], and with the world pose of the
+    /// lower solid, the first of the pair.
     fn visit<N: Real>(&self, mut visit: impl FnMut(&Pair<'_, N, 2>, &Pose<N, 2>)) {
         let [[low, high], [left, right]] = self.sides;
         let pivot = self.overlap()[0];
@@ -89,7 +90,8 @@ impl Stack {
     }
 }
 
-/// Returns whether `flipped`, the manifold of the swapped pair, has the same points and features.
+/// Returns whether `flipped`, the manifold of the swapped pair, has the same points, up to `close`,
+/// and the same features as `raw`.
 fn is_flipped<N: Real>(
     pair: &Pair<'_, N, 2>,
     raw: &RawManifold<N, 2>,

@@ -6,8 +6,8 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Point, Real, Vector, Wide};
 use crate::shape::{Polytope, SupportMap};
 
-/// Core of one solid of each pair, in its own frame and in units of the pair. All lanes have the
-/// same kind.
+/// Core (a solid without its rounding radius) of one solid of each pair, in the solid's own frame
+/// and in units of the pair (see [`super::FlatPair::units`]). All lanes have the same kind.
 pub(super) enum LaneCore<'a, N: Real, V> {
     /// Half extents of each lane's box.
     Cuboid([V; 3]),
@@ -25,12 +25,12 @@ pub(super) struct CorePoints<'a, N: Real> {
     pub(super) hull: Option<&'a Polytope<N, 3>>,
 }
 
-/// Vertices tied for the farthest along a direction, up to a tolerance.
+/// Vertices of a core that are farthest along a direction, up to a tolerance.
 pub(super) struct LaneTies<V> {
     /// Number of tied vertices, as a value of the scalar type. Coinciding vertices may count twice.
     pub(super) count: V,
-    /// Vector parallel to the line through the tied vertices, if there are exactly two; of any
-    /// length and either sign.
+    /// Vector parallel to the line through the tied vertices, of any length and either sign, if
+    /// there are exactly two of them. Meaningless for other counts.
     pub(super) along: [V; 3],
 }
 

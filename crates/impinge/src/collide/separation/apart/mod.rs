@@ -4,11 +4,11 @@
 //! The search follows E. Gilbert, D. Johnson and S. Keerthi ("A Fast Procedure for Computing the
 //! Distance Between Complex Objects in Three-Dimensional Space", 1988), without branches: each step
 //! computes all features of the simplex at its newest corner and selects the nearest ([`simplex`]).
-//! A result is returned only with a proof: up to rounding, its points are as far apart as two
-//! supporting planes. Without a proof the pair falls back to the algorithm of its kinds. This
-//! happens for cores nearer than 2⁻⁶ of the pair's size (`MIN_GAP`) or overlapping, for several
-//! pairs of nearest points, for hulls of more than [`MAX_VERTICES`] vertices, and if the bounds do
-//! not agree.
+//! A result is returned only with a proof: up to rounding, the distance of its points equals the
+//! distance between two parallel planes that separate the cores. Without a proof the pair falls
+//! back to the algorithm of its kinds. This happens if the cores overlap or are nearer than 2⁻⁶ of
+//! the pair's size (`MIN_GAP`), if there are several pairs of nearest points, for hulls of more
+//! than [`MAX_VERTICES`] vertices, and if the bounds do not agree.
 //!
 //! ```text
 //!        core 1             core 2        normal = nearest / |nearest|
@@ -50,7 +50,7 @@ const LANES: usize = 8;
 const MAX_VERTICES: usize = 128;
 
 /// Returns the separation of two triangles, boxes or hulls: by the search if they are well apart,
-/// else by the algorithm of their kinds.
+/// else by the algorithm of their kinds. `None` if they are farther apart than `limit`.
 ///
 /// For two boxes and a finite `limit`, the separating axis test runs first. Most such pairs touch,
 /// and the test proves this in less time than the search needs to give up. For hulls the test takes
@@ -72,8 +72,8 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     result(pair, limit, false).separation(pair, limit)
 }
 
-/// Returns the distance of [`separation`], or zero if `limit` is zero or more and the cores
-/// certainly overlap.
+/// Returns the distance of [`separation`], but zero if `limit` is zero or more and the cores
+/// certainly overlap. `None` if the distance exceeds `limit`.
 pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     result(pair, limit, limit >= N::ZERO).distance(pair, limit)
 }
@@ -97,8 +97,8 @@ pub(crate) fn distances<'p, 'a: 'p, N: Real>(
 }
 
 /// Searches up to [`LANES`] pairs and applies `convert` to the result of each. Returns `None` for
-/// all pairs if [`Level::vectors`] returns `None`, or if a hull or triangle is not the same object
-/// in all pairs.
+/// all pairs if [`Level::vectors`] returns `None`, if a hull or triangle is not the same object in
+/// all pairs, or if the search supports none of the pairs.
 #[inline]
 fn each<'p, 'a: 'p, N: Real, T: Copy>(
     pairs: impl Iterator<Item = &'p Pair<'a, N, 3>> + Clone,
@@ -121,7 +121,8 @@ pub(crate) const fn is_faceted<N: Real>(kind: &Kind<'_, N, 3>) -> bool {
     matches!(kind, Kind::Triangle(_) | Kind::Cuboid(_) | Kind::Polytope(_))
 }
 
-/// Returns the algorithm for the kinds of a pair that also handles contact and overlap.
+/// Returns the algorithm for the kinds of a pair, which handles contact and overlap, too, unlike
+/// the search.
 fn nearer<N: Real>(pair: &Pair<'_, N, 3>) -> Algorithm<N, 3> {
     match (pair.first, pair.second) {
         (Kind::Cuboid(_), Kind::Cuboid(_)) => cuboid_cuboid::separation,

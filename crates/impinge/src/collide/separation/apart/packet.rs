@@ -60,7 +60,7 @@ struct PacketGap<N: Real> {
 
 /// Computes the results of up to 8 pairs of the same kinds, bit-identical to [`super::result`] and
 /// independent of the instruction set. `None` if a hull or triangle is not the same object in all
-/// pairs.
+/// pairs, or if [`FlatPair::of`] rejects all pairs.
 pub(super) fn results<'p, 'a: 'p, N: Real>(
     vectors: Vectors,
     pairs: impl Iterator<Item = &'p Pair<'a, N, 3>>,

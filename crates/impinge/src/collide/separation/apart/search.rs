@@ -62,8 +62,8 @@ pub(super) struct LaneGap<V, M> {
 }
 
 impl<N: Real, V: Copy> LaneCores<'_, N, V> {
-    /// Runs the search. Without `with_overlap`, lanes nearer than [`MIN_GAP`] stop immediately,
-    /// without a result.
+    /// Runs the search. Without `with_overlap`, a lane stops without a result as soon as its upper
+    /// bound of the distance is at most [`MIN_GAP`].
     ///
     /// A finished lane keeps its values, so no lane depends on other lanes.
     #[inline(always)]

@@ -112,8 +112,9 @@ impl<V: Copy> LaneSimplex<V> {
         }
     }
 
-    /// Adds a corner. Returns the simplex around the new nearest point, and the lanes where the
-    /// hull of the four corners contains the ball of radius [`CLEAR`] around the origin.
+    /// Adds a corner. Returns the corners of the feature nearest to the origin as the new simplex,
+    /// and the lanes where the hull of all four corners contains the ball of radius [`CLEAR`]
+    /// around the origin.
     ///
     /// In a lane with two corners the third is a copy, which adds no nearer point. If no lane has
     /// three corners with a weight, the features of the third corner are skipped.
@@ -155,8 +156,8 @@ impl<'a, V: Copy> Fan<'a, V> {
         Self { old, newest, edges, squares, turns }
     }
 
-    /// Returns the nearest point on the edge to an old corner, ends included, and the lanes where
-    /// the edge has a length.
+    /// Returns the point nearest to the origin on the edge from the newest corner to the old corner
+    /// `old`, ends included, and the lanes where this edge has a length.
     #[inline(always)]
     fn edge<S: Simd, N: Real>(&self, simd: S, old: usize) -> (BestFeature<V>, V::Mask)
     where
@@ -178,8 +179,9 @@ impl<'a, V: Copy> Fan<'a, V> {
         (feature, has_length)
     }
 
-    /// Returns the point nearest to the origin in the plane of a face at the newest corner, and the
-    /// lanes where this point lies inside the face and the face has an area.
+    /// Returns the point nearest to the origin in the plane through the newest corner and the old
+    /// corners `one` and `two`, and the lanes where this point lies inside their triangle and the
+    /// triangle has an area.
     #[inline(always)]
     fn face<S: Simd, N: Real>(&self, simd: S, [one, two]: [usize; 2]) -> (BestFeature<V>, V::Mask)
     where

@@ -32,7 +32,8 @@ fn poses<N: Real>(random: &mut Random, count: usize) -> Vec<Pose<N, 3>> {
     (0..count).map(pose).collect()
 }
 
-/// Calls `visit` with the pairs of every two solids, in the order of kinds, at all poses.
+/// Calls `visit` once for each two solids whose kinds are in canonical order, with a list of this
+/// pair at all poses.
 fn each_pair<N: Real>(mut visit: impl FnMut(&[Pair<'_, N, 3>])) {
     let random = &mut Random(9);
     let solids = solids::<N>(random);

@@ -18,8 +18,9 @@ use crate::shape::{Cone, Kind};
 
 /// Returns the separation of a ball from a cone.
 ///
-/// A centre inside leaves through the nearer of base and side, through the base in a tie. From the
-/// axis, it leaves the side towards positive x.
+/// If the centre is inside the cone, the ball is pushed out through the nearer of base and side; in
+/// a tie, through the base. A centre on the axis that is nearer to the side is pushed towards
+/// positive x.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -59,8 +60,9 @@ impl<N: Real> Section<N> {
 
     /// Returns the largest height of `p` above a side, and the normal of that side.
     ///
-    /// The directions +x and +y are also tried, after the sides. A cone without height or radius is
-    /// a disk or a segment, and no normal of a side points at points beyond its rim or apex.
+    /// The directions +x and +y are also tried, after the sides. They are needed for a cone without
+    /// height (a disk) or without radius (a segment): there, no normal of a side points from the
+    /// rim or the apex to the points beyond it.
     fn highest(&self, p: &Vector<N, 2>) -> (N, Vector<N, 2>) {
         let (x, y) = (Vector::<N, 2>::x(), Vector::<N, 2>::y());
         let mut best = (self.height(&-y, p), -y);
@@ -73,7 +75,7 @@ impl<N: Real> Section<N> {
         best
     }
 
-    /// Returns the point of the outline nearest to `p`.
+    /// Returns the point of the base or the slanted side nearest to `p`; the base wins a tie.
     fn nearest(&self, p: &Vector<N, 2>) -> Vector<N, 2> {
         let p = Point::from(*p);
         let (rim, apex) = (Point::from(self.rim), Point::from(self.apex));

@@ -9,8 +9,8 @@ use crate::shape::Kind;
 
 /// Returns the separation of a ball from a box.
 ///
-/// A centre inside leaves through the nearest face. In a tie, the lowest axis and its positive side
-/// win.
+/// If the centre is inside the box, the ball is pushed out through the nearest face. In a tie, the
+/// lowest axis and its positive side win.
 pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,

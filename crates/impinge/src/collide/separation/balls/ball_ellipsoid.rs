@@ -13,8 +13,8 @@ const STEPS: usize = 64;
 
 /// Returns the separation of a ball from an ellipsoid.
 ///
-/// From the centre, the ball leaves along the shortest half axis, towards its positive side; the
-/// first of several shortest axes wins a tie.
+/// If the two centres coincide, the ball is pushed out along the shortest half axis, towards its
+/// positive side; the first of several shortest axes wins a tie.
 pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -30,11 +30,11 @@ pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
 ///
 /// After D. Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid"
 /// (2013): the point `x` of the surface nearest to `y` has `x = e² y / (e² + s)` in each
-/// coordinate, where `e` is the half axis and `s` the root of one convex function. Here
-/// `t = s + least²` is solved for, counted from the shortest half axis, so that flat and
-/// needle-like ellipsoids are as accurate as round ones. Newton's method runs on the inverse of the
-/// function's square root, which is nearly straight (J. Moré and D. Sorensen, "Computing a Trust
-/// Region Step", 1983).
+/// coordinate, where `e` is the half axis and `s` the root of one convex function. The unknown here
+/// is `t = s + least²`, where `least` is the shortest half axis, so that flat and needle-like
+/// ellipsoids are as accurate as round ones. Newton's method runs on the inverse of the function's
+/// square root, which is nearly straight (J. Moré and D. Sorensen, "Computing a Trust Region Step",
+/// 1983).
 pub(crate) fn project<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     point: &Point<N, D>,
@@ -64,7 +64,8 @@ fn from_afar<N: Real, const D: usize>(
     Projection { distance, outward, point: nearest }
 }
 
-/// An ellipsoid scaled so that its longest half axis is about 1, and a point.
+/// An ellipsoid scaled by a power of two, so that its longest half axis is at least 1 and less than
+/// 2, and a point scaled by the same factor.
 struct ScaledEllipsoid<N: Real, const D: usize> {
     half_axes: Vector<N, D>,
     /// The shortest half axis.
@@ -138,7 +139,8 @@ impl<N: Real, const D: usize> ScaledEllipsoid<N, D> {
     }
 
     /// Projects the point if f(t) = 1 has no positive root: the point lies in the symmetry plane
-    /// perpendicular to that axis and close enough to the centre, or that half axis is zero.
+    /// perpendicular to the shortest half axis and close enough to the centre, or the shortest half
+    /// axis is zero.
     fn across(&self) -> Projection<N, D> {
         let shortest = |axis: &usize| self.excess[*axis] == N::ZERO;
         let first = (0..D).find(shortest).unwrap_or(0);

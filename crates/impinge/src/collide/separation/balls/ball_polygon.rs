@@ -10,8 +10,9 @@ use crate::shape::{Kind, Polytope, PolytopeFace, SupportMap};
 
 /// Returns the separation of a ball from a convex polygon.
 ///
-/// Inside, the centre leaves through the nearest side. Outside, the nearest point lies on a side
-/// that has the centre in front of it. Cost: linear in the number of sides.
+/// If the centre is inside the polygon, the ball is pushed out through the nearest side. If it is
+/// outside, the nearest point lies on a side that has the centre in front of it. Cost: linear in
+/// the number of sides.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 2>,
     limit: N,
@@ -38,8 +39,9 @@ pub(in crate::collide::separation) fn project<N: Real>(
     Projection { distance, outward, point: center - outward * distance }
 }
 
-/// Projects a point outside; `highest` is the side with the largest height of the point. In most
-/// cases the nearest point lies on that side, and the supporting line there proves it.
+/// Projects a point that is outside the polygon; `highest` is the side with the largest height of
+/// the point. In most cases the nearest point lies on that side, and the supporting line there
+/// proves it.
 fn project_from_outside<N: Real>(
     polygon: &Polytope<N, 2>,
     center: &Point<N, 2>,
@@ -106,7 +108,8 @@ mod tests {
     #[test]
     fn a_corner_that_the_highest_side_does_not_end_at() {
         let p = Point::<f64, 2>::new;
-        // The long slope is the highest side, but its own end is not the nearest corner.
+        // For some of the points the long slope is the side with the largest height, but neither of
+        // its ends is the nearest corner.
         let corners = [p(0.0, 0.0), p(10.0, 0.0), p(0.5, 1.0), p(0.0, 1.0)];
         let polygon = ConvexPolygon::new(&corners);
         for step in -20_i32..60 {

@@ -10,8 +10,9 @@ use crate::shape::{Kind, Polytope, PolytopeFace, SupportMap};
 
 /// Returns the separation of a ball from a convex hull.
 ///
-/// Inside, the centre leaves through the nearest face, whose distance is the exact depth. Outside,
-/// the nearest point lies on one of the faces that have the centre in front of them; the centre is
+/// If the centre is inside the hull, the ball is pushed out through the face whose plane is
+/// nearest; the distance to that plane is the exact depth of the centre. If it is outside, the
+/// nearest point lies on one of the faces that have the centre in front of them; the centre is
 /// projected onto each of these. Cost: linear in the number of faces.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
@@ -37,8 +38,8 @@ pub(in crate::collide::separation) fn project<N: Real>(
     if distance > N::ZERO { project_from_outside(hull, center, highest, &flat) } else { flat }
 }
 
-/// Projects a point outside. `highest` is the face with the largest height of the point, `flat` the
-/// projection onto its plane.
+/// Projects a point that is outside the hull. `highest` is the face with the largest height of the
+/// point, `flat` the projection onto its plane.
 ///
 /// In most cases the nearest point lies on that face, and the supporting plane there proves it.
 fn project_from_outside<N: Real>(

@@ -11,8 +11,9 @@ use crate::shape::{Kind, Segment};
 
 /// Returns the separation of a ball from a segment or capsule.
 ///
-/// A centre on the segment leaves along a fixed perpendicular. If the segment has no length and the
-/// centre coincides with it, the centre leaves along the first axis of the segment's frame.
+/// If the centre lies on the segment, the ball is pushed out along a fixed perpendicular of the
+/// segment. If the segment is a single point and the centre coincides with it, the ball is pushed
+/// out along the first axis of the segment's frame.
 pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -44,7 +45,8 @@ pub(in crate::collide::separation) fn project<N: Real, const D: usize>(
     Foot::new(*ends, center).projection()
 }
 
-/// The point of a segment nearest to the projected point, and its offset.
+/// The point of a segment nearest to the projected point, and the offset of the projected point
+/// from it.
 pub(in crate::collide::separation) struct Foot<N: Real, const D: usize> {
     ends: [Point<N, D>; 2],
     /// The nearest point of the segment.

@@ -11,10 +11,11 @@ use crate::shape::{FeatureId, Kind, TaperedCapsule};
 
 /// Returns the separation of a ball from a tapered capsule.
 ///
-/// A centre on the axis leaves along a normal of the side, in a fixed direction around the axis. If
-/// rounding puts a centre at an end of the axis beyond the side, it leaves along the axis, away
-/// from the other end. If one ball contains the other, the centre of the larger ball leaves along
-/// the first axis.
+/// If the ball's centre lies on the capsule's axis, the ball is pushed out along a normal of the
+/// side, in a fixed direction around the axis. If the centre coincides with an end of the axis and
+/// rounding puts it beyond the side, the ball is pushed out along the axis, away from the other
+/// end. If one end ball contains the other end ball, and the centre coincides with the centre of
+/// the larger one, the ball is pushed out along the first axis.
 pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -26,7 +27,8 @@ pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     project(capsule, &center).0.of_ball(ball.radius(), &pair.pose12, limit)
 }
 
-/// Projects a point onto a tapered capsule; also returns the nearest part of its surface.
+/// Projects a point onto a tapered capsule. Also returns the feature that the nearest point lies
+/// on: `Vertex(0)` or `Vertex(1)` for the ball at that end, `Edge(0)` for the side.
 ///
 /// In the half-plane through axis and point, the side of the capsule is a segment. The
 /// perpendiculars at its ends pass through the centres of the balls and bound the region of the
@@ -110,7 +112,7 @@ mod tests {
 
     #[test]
     fn the_centre_of_an_end() {
-        // By rounding, the end may seem to lie beyond the side.
+        // Because of rounding, the centre of an end may seem to lie beyond the side.
         let (a, b) = (P::new(0.3, 0.1, 0.7), P::new(0.1, -0.2, 0.5));
         for radii in [[0.0, 0.0], [0.2, 0.0], [0.0, 0.2], [0.1, 0.3]] {
             let one = TaperedCapsule::try_from_ends(a, b, radii).expect("finite");

@@ -12,8 +12,8 @@ use crate::shape::Kind;
 
 /// Returns the separation of a ball from a triangle in 3D.
 ///
-/// A centre on the triangle leaves on the side from which the corners run counter-clockwise. If the
-/// triangle has no area, the centre leaves as from its longest side.
+/// If the centre lies on the triangle, the ball is pushed out to the side from which the corners
+/// run counter-clockwise. A triangle without area is handled as the segment of its longest side.
 pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     let (Kind::Ball(ball), Kind::Triangle(triangle)) = (&pair.first, &pair.second) else {
         wrong_kinds(pair)
@@ -67,8 +67,8 @@ fn height_over<N: Real>(
     is_over.then(|| (max((center - corners[0]).dot(&normal), N::ZERO), normal))
 }
 
-/// Returns the point nearest to `center` of a triangle that is a segment up to rounding, on its
-/// longest side: the other two sides lie on that side.
+/// Returns the point of the longest side nearest to `center`. Used for triangles that are segments
+/// up to rounding, whose longest side contains the other two sides.
 fn on_longest_side<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Foot<N, 3> {
     let side = longest_side(corners);
     Foot::new([corners[side], corners[(side + 1) % 3]], center)

@@ -64,8 +64,8 @@ impl<N: Real> DirectedEdge<N> {
 /// Projects a point onto a triangle, whose corners may be in either order; `None` for a triangle
 /// that is a segment up to rounding, and for NaN.
 ///
-/// Inside, the point leaves through the nearest side; in a tie, the first in the outline, which
-/// begins with the first corner.
+/// A point inside is projected onto the nearest side. In a tie, the first side of the
+/// counter-clockwise outline wins, which begins at the first corner.
 pub(in crate::collide::separation) fn project<N: Real>(
     &[a, b, c]: &[Point<N, 2>; 3],
     center: &Point<N, 2>,
@@ -167,7 +167,8 @@ mod tests {
         assert_eq!(project(&corners, &p(f64::NAN, 1.0)), None, "nowhere");
     }
 
-    /// Compares [`project`] with the separation of outlines, for random triangles and points.
+    /// Asserts, for random triangles and points, that [`project`] returns the distance, normal and
+    /// point that [`polygon_polygon::separation`] computes, up to rounding.
     #[test]
     fn as_outlines_have_it() {
         let (mut inside, mut tried) = (0, 0);

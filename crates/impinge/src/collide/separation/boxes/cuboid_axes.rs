@@ -23,7 +23,7 @@ pub(crate) struct BoxPair<N: Real> {
     pub(crate) pose12: Pose<N, 3>,
 }
 
-/// One of the 15 directions; the indices are those of the boxes' axes.
+/// One of the 15 directions of the test. The indices number the axes of the boxes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum AxisKind {
     /// The normal of a face of the first box.
@@ -45,7 +45,7 @@ pub(crate) struct BoxAxis<N: Real> {
 }
 
 impl<N: Real> BoxPair<N> {
-    /// Returns the bound that is used for the rounding error of lengths of this pair.
+    /// Returns the length that counts as rounding error for this pair.
     pub(crate) fn rounding_error(&self) -> N {
         let size = self.half1.sum() + self.half2.sum() + self.pose12.translation.amax();
         N::lit(4.0) * N::EPSILON * size
@@ -93,7 +93,8 @@ impl<N: Real> BoxPair<N> {
     /// Returns the pair of edges with the largest gap, if the gap exceeds `least`.
     ///
     /// The length of the cross product of two axes is the sine of their angle. Dividing a negative
-    /// gap by the sine can only lower it, so most pairs need no square root. The product's
+    /// gap by the sine can only lower it. So a pair of edges is skipped without a square root if
+    /// its undivided gap is at most zero and at most the largest gap so far. The product's
     /// components on the axes of the second box are differences of two products, which are small if
     /// the sine is small. They equal entries of the rotation only up to rounding, and that error
     /// would be divided by the sine as well; so the differences are used.

@@ -103,8 +103,8 @@ fn along<N: Real>(boxes: &BoxPair<N>, axis: &BoxAxis<N>) -> Separation<N, 3> {
     Separation { distance, normal, point1, point2 }
 }
 
-/// Returns the points of the edges along these axes, one of each box, that face each other along
-/// `normal`.
+/// Returns the nearest points of two edges that face each other along `normal`: an edge of the
+/// first box along its axis `axis1`, and an edge of the second box along its axis `axis2`.
 fn between_edges<N: Real>(
     boxes: &BoxPair<N>,
     axis1: usize,
@@ -178,9 +178,11 @@ impl<N: Real> BoxReferenceFace<N> {
         across.iter().all(|&axis| point[axis].abs() <= self.half[axis])
     }
 
-    /// Returns the centroid of the lowest points of the other box among those that project into
-    /// this face, or, if none does, among all. `other` are the half extents of that box, `pose` its
-    /// pose in the frame of this box, and `distance` its known signed height above the face.
+    /// Clips the other box's face that faces this one to the side planes of this face, and returns
+    /// the mean of the lowest corners of the result. If nothing is left, returns the mean of the
+    /// lowest corners of the unclipped face. `other` are the half extents of the other box, `pose`
+    /// is its pose in the frame of this box, and `distance` its known signed height above this
+    /// face.
     fn deepest(&self, other: &Vector<N, 3>, pose: &Pose<N, 3>, distance: N) -> Point<N, 3> {
         let direction = Vector::<N, 3>::ith(self.axis, -self.sign());
         let facing = face_toward(other, &pose.inverse_vector(&direction));

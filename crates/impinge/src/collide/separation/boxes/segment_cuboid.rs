@@ -3,9 +3,10 @@
 //! The squared distance of a point from a box is a sum over the axes. Along a segment the slope of
 //! this sum is piecewise linear, with breaks where the segment crosses the planes of faces, so the
 //! nearest point is found between two breaks. If segment and box overlap, the separating axis test
-//! over three faces and three pairs of edges is exact. Results whose points are not as far apart as
-//! supporting planes fall back to the general algorithm. The separating axis test of
-//! [`hulls`](crate::collide::separation::hulls) takes twice as long.
+//! over three faces and three pairs of edges is exact. If the distance of the points found differs
+//! from that of the two supporting planes, the pair falls back to the general algorithm. This
+//! closed form takes half the time of the separating axis test in
+//! [`hulls`](crate::collide::separation::hulls).
 //!
 //! ```text
 //!   slope of the squared distance along the segment, by share of its length
@@ -49,8 +50,9 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     }
 }
 
-/// A segment in the frame of a solid, scaled by a power of two so that the segment, the solid and
-/// the distance between their origins are at most 2.
+/// A segment in the frame of a solid. Its lengths are scaled by a power of two, so that the larger
+/// of the solid's bounding radius, the ends' coordinates and the translation between the frames is
+/// at least 1 and less than 2.
 struct LocalSegment<'a, N: Real> {
     ends: [Vector<N, 3>; 2],
     /// Vector from the first end to the second.
@@ -68,11 +70,11 @@ struct LocalSegment<'a, N: Real> {
 struct Parting<N: Real> {
     /// Unit vector from the solid to the segment.
     outward: Vector<N, 3>,
-    /// Point of the core that faces `on_solid`.
+    /// Point of the segment that faces `on_solid`.
     on_segment: Vector<N, 3>,
     /// Point of the solid that faces `on_segment`.
     on_solid: Vector<N, 3>,
-    /// Signed distance of the core from the solid.
+    /// Signed distance of the segment, without a capsule's radius, from the solid.
     distance: N,
 }
 
@@ -85,14 +87,15 @@ enum SegmentResult<N: Real> {
     Unproved,
 }
 
-/// Returns the bound that is used for the rounding error of arithmetic on numbers up to 2.
+/// Returns the number that counts as rounding error in arithmetic on numbers up to 2.
 fn rounding_error<N: Real>() -> N {
     N::lit(16.0) * N::EPSILON
 }
 
 impl<'a, N: Real> LocalSegment<'a, N> {
-    /// Scales a segment; `None` if the size of the pair is zero, or the size, its reciprocal or the
-    /// pose is not finite.
+    /// Moves a segment into the frame of the solid at `pose12` and scales it. `reach` is the
+    /// solid's bounding radius. `None` if the size of the pair is zero, or if the size, its
+    /// reciprocal or the pose is not finite.
     fn new(ends: [&Point<N, 3>; 2], pose12: &'a Pose<N, 3>, reach: N) -> Option<Self> {
         let of_ends = max(max_component(&ends[0].coords), max_component(&ends[1].coords));
         let size = max(max(reach, max_component(&pose12.translation)), of_ends);
@@ -161,7 +164,9 @@ struct LocalBox<'a, N: Real> {
 }
 
 impl<N: Real> LocalBox<'_, N> {
-    /// Returns the result for the core; distances above `most` give `Beyond`.
+    /// Returns the result for the segment without a radius: `Beyond` if it is farther than `most`
+    /// above a face's plane. A result found along another direction may be farther than `most`,
+    /// too.
     fn solve(&self, most: N) -> SegmentResult<N> {
         let (axis, sign, gap) = self.best_face();
         if gap > most {
@@ -195,8 +200,9 @@ impl<N: Real> LocalBox<'_, N> {
         best
     }
 
-    /// Returns the axis of the box edges with the largest gap, the unit vector of that gap, and the
-    /// gap; `None` unless the gap exceeds `least`.
+    /// Returns the axis of those box edges whose common perpendicular with the segment has the
+    /// largest gap, the unit vector along that perpendicular from the box to the segment, and the
+    /// gap. `None` unless the gap exceeds `least`.
     fn best_edge(&self, least: N) -> Option<(usize, Vector<N, 3>, N)> {
         let (from, along) = (&self.segment.ends[0], &self.segment.along);
         let (mut best, mut bound) = (None, least);
@@ -248,7 +254,8 @@ impl<N: Real> LocalBox<'_, N> {
     }
 
     /// Returns the middle of the part of the segment that projects into a face; `None` if no part
-    /// does.
+    /// does. An axis that the segment is perpendicular to is ignored; the caller checks the result
+    /// along it.
     fn middle_over(&self, face: usize) -> Option<Vector<N, 3>> {
         let (from, along) = (&self.segment.ends[0], &self.segment.along);
         let (mut first, mut last) = (N::ZERO, N::ONE);

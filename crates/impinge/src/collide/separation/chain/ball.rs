@@ -1,4 +1,4 @@
-//! Eight segments of a chain against a ball.
+//! Computes separations of segments of a chain from a ball, 8 segments at a time.
 
 use super::super::balls::ball_segment;
 use super::{ChainQuestion, EightSegments, Links};

@@ -1,11 +1,12 @@
-//! Segments of a chain in 2D against one solid, 8 at a time.
+//! Computes separations of the segments of a chain in 2D from one solid, 8 segments at a time.
 //!
 //! The kernels run the algorithms of [`polygon_polygon`](super::polygons::polygon_polygon),
 //! [`segment_lanes`](super::segments::segment_lanes) and
 //! [`ball_segment`](super::balls::ball_segment) in the same order of operations, so results are
-//! bit-identical to those of single segments. Segments beyond the limit are culled. For the others
-//! the separation is computed: against a polygon along the axis of the test, against a segment from
-//! the nearest points of the test, against a ball from the beginning.
+//! bit-identical to those of single segments. Segments beyond the limit are culled. For each
+//! remaining segment the separation is computed: from a polygon along the axis that the culling
+//! test chose, from a segment by the nearest points that the culling test found, and from a ball by
+//! the algorithm for one pair.
 //!
 //! ```text
 //!   question.tiles   [0 1 2 3 4 5 6 7] [8 9 . . . . . .]    corners 0 and 1 of each `PartPacket`
@@ -38,12 +39,13 @@ pub(crate) struct ChainQuestion<'a, N: Real> {
     /// Number of segments. Results in later lanes of the last packet are dropped, but these lanes
     /// must hold segments with a length, too.
     pub(crate) count: usize,
-    /// Point in the frame of the chain that becomes the origin of the segments.
+    /// Point in the frame of the chain that is subtracted from all corners before a pair is
+    /// computed; the frame of the segments has its origin there.
     pub(crate) origin: Vector<N, 2>,
     pub(crate) solid: Kind<'a, N, 2>,
-    /// Pose of the second solid of each pair in the frame of the first. A ball or segment is the
-    /// first of the pair, and this is the pose of the chain; any other solid is the second, and
-    /// this is its pose.
+    /// Pose of the second solid of each pair in the frame of the first. If `solid` is a ball or
+    /// segment, it is the first of the pair, and this is the pose of the segments' frame. Any other
+    /// solid is the second, and this is its pose in the segments' frame.
     pub(crate) pose12: Pose<N, 2>,
     /// Centre of the solid in the frame of the chain.
     pub(crate) center: Point<N, 2>,
@@ -68,7 +70,7 @@ impl<N: Real> Links<N> {
 
 /// Computes the separations of the segments from the solid and adds them to `links`. `None` if the
 /// pose is not finite, the solid has no kernel, or some lane has no result; then all segments have
-/// to be computed one by one.
+/// to be computed one by one, and `links` may hold some of the separations.
 pub(crate) fn links<N: Real>(question: &ChainQuestion<'_, N>, links: &mut Links<N>) -> Option<()> {
     links_at(Level::new(), question, links)
 }

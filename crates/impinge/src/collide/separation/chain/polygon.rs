@@ -1,4 +1,5 @@
-//! Eight segments of a chain against a polygon of up to 8 vertices, with or without a radius.
+//! Computes separations of segments of a chain from a polygon of up to 8 vertices, with or without
+//! a radius, 8 segments at a time.
 
 use super::super::polygons::outline::{PolygonOutline, Row};
 use super::super::polygons::polygon_polygon::{Axis, of_axis};
@@ -9,8 +10,8 @@ use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Real, Vector, Wide, min};
 use crate::shape::Segment;
 
-/// Computes the separations of the segments from a polygon; `None` for polygons of more than 8
-/// vertices and other solids, and if some lane has no result.
+/// Computes the separations of the segments from the solid. `None` unless the solid is a polygon of
+/// at most 8 vertices, with or without a radius, and if some lane has no result.
 pub(super) fn links<N: Real>(
     level: Level,
     question: &ChainQuestion<'_, N>,
@@ -90,7 +91,7 @@ impl<N: Real> PolygonExtents<N> {
     }
 }
 
-/// Best directions from 8 segments to a polygon.
+/// The direction with the largest gap between each of 8 segments and a polygon.
 struct SegmentAxes<N> {
     /// Signed distance along the best direction of each segment, without the radius of the polygon.
     gaps: Row<N>,
@@ -122,7 +123,8 @@ impl<V> BestDirection<V> {
 }
 
 impl<N: Real> SegmentAxes<N> {
-    /// Tries the directions of the segments, then those of the polygon.
+    /// Finds the direction with the largest gap for each segment of the packet. The directions of
+    /// the segment are tried first, then those of the polygon; the first wins a tie.
     #[inline(always)]
     fn of<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,

@@ -1,4 +1,4 @@
-//! Eight segments of a chain against a segment or capsule.
+//! Computes separations of segments of a chain from a segment or capsule, 8 segments at a time.
 
 use super::super::polygons::polygon_polygon;
 use super::super::segments::segment_lanes::SegmentGap;

@@ -1,4 +1,5 @@
-//! Compares batches of 8 segments with single segments, on every instruction set.
+//! Asserts that the kernels for 8 segments return the same separations, to the bit, as the
+//! algorithms for one pair, on every instruction set.
 
 use super::*;
 use crate::collide::Pair;

@@ -25,8 +25,9 @@ use crate::shape::PolytopeEdge;
 /// Capacity for edges: 32 vertices have at most 3 · 32 - 6.
 pub(super) const MAX_EDGES: usize = 90;
 
-/// An edge that is compared with those of an [`EdgeBlock`], in the frame of the solid with the
-/// reference face: an edge of that solid or, in `segment`, the segment.
+/// An edge that is compared with the 8 edges of an [`EdgeBlock`]: an edge of the solid with the
+/// reference face or, in module `segment`, the segment. It is in the frame of the solid with the
+/// reference face.
 pub(super) struct ReferenceEdge<N: Real> {
     pub(super) index: usize,
     /// First end, in units of the pair.
@@ -37,8 +38,8 @@ pub(super) struct ReferenceEdge<N: Real> {
     pub(super) squared: N,
 }
 
-/// Eight edges of one solid, in the frame of the solid with the reference face and in units of the
-/// pair. In `segment` both are the same solid.
+/// Eight edges of the other solid, in the frame of the solid with the reference face and in units
+/// of the pair. In module `segment`, they are edges of the polyhedron, in its own frame.
 pub(super) struct EdgeBlock<N: Real> {
     /// Index of the edge in each lane.
     pub(super) indices: [u8; LANES],

@@ -39,8 +39,8 @@ pub(super) struct ReferenceFace<'s, 'a, N: Real> {
 enum LowestPoint<N: Real> {
     /// A lowest point that projects into the face, up to rounding.
     Over(Vector<N, 3>),
-    /// No lowest point projects into the face. Holds an upper bound of the distance of the solids,
-    /// or of their depth.
+    /// No lowest point projects into the face. Holds the smallest distance of a lowest vertex from
+    /// the face, which is an upper bound of the distance of the solids, or of their depth.
     Beside(N),
 }
 
@@ -68,8 +68,10 @@ impl<'s, 'a, N: Real> ReferenceFace<'s, 'a, N> {
 impl<N: Real> ReferenceFace<'_, '_, N> {
     /// Returns the separation; `None` unless supporting planes prove it.
     ///
-    /// Edges are queried twice: first the few near the plane, which are enough for most pairs, then
-    /// all within the bound. Closures are avoided because they are not inlined into vector code.
+    /// Edges are not queried if a lowest point of the other solid lies over the face and above its
+    /// plane. Otherwise they are queried up to twice: first the few near the plane, which are
+    /// enough for most pairs, then all within the bound of [`LowestPoint::Beside`]. Closures are
+    /// avoided because they are not inlined into vector code.
     #[inline(always)]
     pub(super) fn resolve<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -97,10 +99,11 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         None
     }
 
-    /// Queries the edges within `max_distance` of the plane. Breaks with the separation if they
-    /// determine it, and with `over`, the separation along the face's normal, if it is `Some` and
-    /// no pair of edges is better. Otherwise continues, or breaks if `is_last` is `true`, with
-    /// `None` if no result is proved.
+    /// Queries the edges within `max_distance` of the plane. Breaks with the separation that they
+    /// determine, or with `over`, the separation along the face's normal, if it is `Some` and no
+    /// pair of edges has a larger signed distance. Otherwise continues. If `is_last` is `true`, it
+    /// always breaks: with [`Self::nearly_over`] if no pair of edges has a larger signed distance,
+    /// else with `None` if no result is proved.
     #[inline(always)]
     fn within<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -260,9 +263,10 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         least.map(N::sqrt)
     }
 
-    /// Returns a point over the reference face: the middle of the part of an edge whose ends are
-    /// both in the mask `lowest`, or the point above the first corner of the reference face on a
-    /// face whose vertices are all in the mask. `None` if there is no such point.
+    /// Returns a lowest point of the other solid over the reference face. If an edge with both ends
+    /// in the mask `lowest` lies partly over the face, it is the middle of that part. Otherwise it
+    /// is the point above the face's first corner, on a face whose vertices are all in the mask.
+    /// `None` if there is no such point.
     fn point_among(&self, lowest: u32) -> Option<Vector<N, 3>> {
         let solid = self.other.solid;
         let is_lowest = |vertex: &u32| lowest >> *vertex & 1 == 1;

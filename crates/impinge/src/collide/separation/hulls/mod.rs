@@ -66,9 +66,10 @@ pub(super) const PLANE_BLOCKS: usize = 8;
 /// Returns the separation of two solids with flat faces: triangles, boxes and convex hulls.
 ///
 /// In a tie, faces of the first solid come before faces of the second, each in the order of their
-/// indices, and faces come before edges; of pairs of edges, the lower indices win. Cost: the
-/// product of the numbers of vertices and faces, in blocks of 8. Thin triangles, flat boxes and
-/// larger hulls fall back to the general algorithm.
+/// indices, and faces come before edges; of pairs of edges, the lower indices win. Cost, in blocks
+/// of 8: the product of the numbers of vertices and faces, plus the number of pairs of edges near
+/// the reference face. Thin triangles, flat boxes and larger hulls fall back to the general
+/// algorithm.
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     result(Level::new(), pair, limit).separation(pair, limit, general::of_flat_cores)
 }
@@ -116,8 +117,7 @@ impl<N: Real> SatResult<N> {
     }
 }
 
-/// Returns the bound that is used for the rounding error of lengths, in units of the pair: 8
-/// epsilon.
+/// Returns the length that counts as rounding error, in units of the pair: 8 epsilons.
 pub(super) fn rounding_error<N: Real>() -> N {
     N::lit(8.0) * N::EPSILON
 }

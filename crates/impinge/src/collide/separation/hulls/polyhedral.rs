@@ -27,7 +27,8 @@ pub(in crate::collide::separation) struct Polyhedral<'a, N: Real> {
     rings: Rings<'a, N>,
     /// Upper bound of the distance of the vertices from the origin ([`SupportMap::reach`]).
     pub(in crate::collide::separation) reach: N,
-    /// Smallest half extent of a box, or height of a triangle; infinite for hulls.
+    /// Smallest half extent of a box, or height of a triangle above its longest side; infinite for
+    /// hulls.
     thickness: N,
 }
 
@@ -67,7 +68,8 @@ impl<'a, N: Real> Polyhedral<'a, N> {
     }
 
     /// Returns whether the solid is thicker than the rounding error of a pair with a solid of
-    /// bounding radius `reach`. The sides of faces without width have no direction.
+    /// bounding radius `reach`. In a thinner solid, some face has a side so short that its
+    /// direction is rounding error.
     pub(super) fn has_width(&self, reach: N) -> bool {
         self.thickness > rounding_error::<N>() * (self.reach + reach)
     }
@@ -220,7 +222,8 @@ impl<N: Real> LocalFeatures<N> {
     }
 }
 
-/// A triangle is thin if the ratio of its height to its longest side is at most this.
+/// A triangle is thin if its height above its longest side, divided by the length of that side, is
+/// at most this.
 pub(in crate::collide::separation) const THIN: f64 = 1.0 / 256.0;
 
 /// Edges of a triangle: for each side one of the front and one of the back.

@@ -61,7 +61,8 @@ pub(super) fn result<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> 
         .map_or(SatResult::Unproved, |solid| sat(level, &ends, &solid, &pair.pose12, limit))
 }
 
-/// Runs the test with the instruction set `level`, on which the result does not depend.
+/// Runs the test with the instruction set `level`, on which the result does not depend. Returns
+/// `Unproved` if the pose or the unit of length is not finite.
 fn sat<N: Real>(
     level: Level,
     ends: &[Point<N, 3>; 2],
@@ -178,9 +179,9 @@ impl<N: Real> SegmentQuery<'_, N> {
         }
     }
 
-    /// Returns the separation along the normal of the highest face; `None` unless the lower end of
-    /// the segment projects into this face. If the segment is parallel to the face, the points are
-    /// at the middle of the part that projects into the face.
+    /// Returns the separation along the normal of the face `faces.index`; `None` unless the end of
+    /// the segment that is lower above this face projects into it. If the segment is parallel to
+    /// the face, the points are at the middle of the part that projects into the face.
     fn over_face(
         &self,
         vertices: &Vertices<N>,

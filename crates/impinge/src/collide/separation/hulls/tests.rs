@@ -1,4 +1,5 @@
-//! Compares the test with the general algorithm, and one instruction set with another.
+//! Asserts that the results that the test proves are right up to rounding, measured against the
+//! general algorithm, and that all instruction sets give the same bits.
 
 use super::{SatResult, result, segment};
 use crate::collide::Pair;
@@ -103,7 +104,8 @@ pub(in super::super) fn error<N: Real>(
         .fold(0.0, |most, x| x.as_f64().max(most))
 }
 
-/// Function that draws two solids, and the test that is compared for them.
+/// A function that draws two solids, and the test whose results for them are compared with the
+/// general algorithm.
 type Twin<N> =
     (fn(&mut Random) -> [Box<dyn Shape<N, 3>>; 2], fn(Level, &Pair<'_, N, 3>, N) -> SatResult<N>);
 
@@ -112,7 +114,8 @@ fn solids<N: Real>(random: &mut Random) -> [Box<dyn Shape<N, 3>>; 2] {
     [random.solid(kind1), random.solid(kind2)]
 }
 
-/// Returns a segment, which may have no length or lie along an axis, and a hull or a triangle.
+/// Returns a segment and a hull or a triangle. The segment may be parallel to the x axis, very
+/// short or a single point.
 fn segment_and_solid<N: Real>(random: &mut Random) -> [Box<dyn Shape<N, 3>>; 2] {
     let from = Point::from(random.vector::<N>());
     let along = match random.pick(4) {

@@ -47,8 +47,9 @@ pub(in crate::collide::separation) struct OutlineBlock<N> {
 }
 
 impl<N: Real> PolygonOutline<N> {
-    /// Returns the outline of a solid in its own frame. `None` for other kinds, for polygons with
-    /// too many vertices, and if the squared length of a side is close to underflow or overflow.
+    /// Returns the outline of a solid in its own frame. `None` for kinds other than ball, segment,
+    /// capsule, triangle, box and polygon, for polygons of more than 32 vertices, and if the
+    /// squared length of a segment's or triangle's side is close to underflow or overflow.
     #[inline(always)]
     pub(in crate::collide::separation) fn of<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,

@@ -1,7 +1,8 @@
-//! Nearest points of two polygons, from their best axis. In most cases these are a corner and a
-//! point of a side, or two corners. Otherwise each end of the two sides at the top of one polygon,
-//! its vertex farthest toward the other, is compared with both sides at the top of the other
-//! polygon, 8 pairs at a time.
+//! Nearest points of two polygons, from their best axis. The top of a polygon is its vertex
+//! farthest along the axis toward the other polygon. In most cases a closed form at the tops gives
+//! the nearest points: a corner and a point of a side, or two corners. Otherwise the two sides at
+//! one top are compared with the two sides at the other top: each end of a side with each side of
+//! the other polygon, 8 pairs at a time.
 
 use super::outline::{PolygonOutline, highest, lane};
 use super::polygon_polygon::{Axis, in_middle};
@@ -19,7 +20,7 @@ pub(in crate::collide::separation) struct OutlinePair<'a, N: Real> {
     axis: Axis<N>,
     /// Vertex of each outline that is farthest toward the other.
     tops: [usize; 2],
-    /// Lengths up to this are rounding errors.
+    /// Lengths up to this count as rounding errors.
     rounding_error: N,
 }
 
@@ -37,8 +38,8 @@ impl<'a, N: Real> OutlinePair<'a, N> {
         Self { outlines, axis: *axis, tops: [top1, top2], rounding_error }
     }
 
-    /// Returns the separation of the outlines; `None` if the gap is not finite, or the axis is not
-    /// the direction of their nearest points.
+    /// Returns the separation of the outlines; `None` if the gap is NaN or plus infinity, or the
+    /// axis is not the direction of their nearest points.
     #[inline(always)]
     pub(in crate::collide::separation) fn separation<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -54,7 +55,8 @@ impl<'a, N: Real> OutlinePair<'a, N> {
 
     /// Returns the separation in the clear cases: the axis is the normal of a side with a corner
     /// above it, the outlines certainly overlap, or corners at the tops are the nearest points.
-    /// `None` in all other cases. In the clear cases the best normal of a side suffices as axis.
+    /// `None` in all other cases, and if the gap is not finite. The clear cases are decided if the
+    /// axis is the best normal of a side; the tips of corners need not be tried.
     #[inline(always)]
     pub(in crate::collide::separation) fn clear_case(&self) -> Option<Separation<N, 2>> {
         let gap = self.axis.gap;

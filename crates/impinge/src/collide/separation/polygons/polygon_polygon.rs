@@ -85,8 +85,9 @@ fn known_axis<N: Real>(pair: &Pair<'_, N, 2>) -> Option<Axis<N>> {
     Some(Rectangles { half1, half2, pose12: pair.pose12 }.best_axis())
 }
 
-/// Tries the normals of sides, or the axis `known`. If the normals do not decide, tries the tips of
-/// corners, too.
+/// Searches for the axis with the largest gap and computes the separation from it. Tries the
+/// normals of sides and, if these do not decide, the tips of corners. If `known` is `Some`, it is
+/// the axis, and no other is tried.
 #[inline(always)]
 fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -145,7 +146,7 @@ pub(in crate::collide::separation) fn of_axis<S: Simd, N: Real, V: Wide<S, Scala
 }
 
 /// Returns the normal of a side with the largest gap; sides of the first outline come first. For
-/// two points, the direction between them.
+/// two points, the direction between them, or the x axis if they coincide.
 #[inline(always)]
 fn best_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -328,8 +329,9 @@ pub(in crate::collide::separation) mod tests {
         assert!((inside.distance - expected).abs() < 1e-15, "to a side and beyond");
     }
 
-    /// Compares the search with the general algorithm for random pairs from [`solid_of`] except two
-    /// balls, on each instruction set.
+    /// Asserts, for random pairs from [`solid_of`] except two balls and on each instruction set,
+    /// that the search has the distance of the general algorithm up to rounding, and points that
+    /// face each other along the normal; and that it decides more than nine tenths of the pairs.
     fn eight_at_a_time<N: Real>(seed: u64) {
         use crate::collide::separation::hulls::tests::Random;
         let random = &mut Random(seed);

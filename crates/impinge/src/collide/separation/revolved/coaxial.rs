@@ -32,8 +32,8 @@ const NEAR: f64 = 1.0 / 4096.0;
 /// of one ring.
 const SAME_RING: f64 = 1.0 / 16.0;
 
-/// Returns the separation of two cylinders or cones by the general algorithm, with the known
-/// normals of overlapping coaxial solids.
+/// Returns the separation of two cylinders or cones by the general algorithm; `None` above `limit`.
+/// If the solids overlap and are coaxial, the algorithm takes the normal from [`CoaxialPeaks`].
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -85,7 +85,9 @@ struct AxialOutline<N: Real> {
 }
 
 impl<N: Real> AxialOutline<N> {
-    /// Returns the outline of a solid; `None` for other kinds, and for solids of size zero.
+    /// Returns the outline of a cylinder, cone, segment or capsule, without a capsule's radius.
+    /// `None` for other kinds, if the half height or radius of a cylinder or cone is within
+    /// rounding error, and if half the length of a segment is.
     fn of(kind: Kind<'_, N, 3>, pose: &Pose<N, 3>, shrink: N) -> Option<Self> {
         let position = pose.translation * shrink;
         if let Some(round) = Round::new(&kind, shrink) {
@@ -265,8 +267,9 @@ mod tests {
         }
     }
 
-    /// Compares the separation with the general algorithm for solids that are coaxial up to an
-    /// offset and a tilt of size `slight`, the second solid upright or upside down.
+    /// Asserts that the separation agrees with the general algorithm within `accuracy`, for solids
+    /// that are coaxial up to an offset and a tilt of size `slight`. The second solid is upright or
+    /// upside down.
     fn compare<N: Real>(seed: u64, slight: f64, accuracy: f64) {
         let random = &mut Random(seed);
         for round in 0..200 {

@@ -1,4 +1,4 @@
-//! Cylinder against cylinder.
+//! Separation of two cylinders.
 //!
 //! Tries the directions that can be the normal, each with a cheap proof: normals of caps, the
 //! common perpendicular of both axes, from an axis to the other rim, and from rim to rim. If the
@@ -210,8 +210,9 @@ impl<N: Real> CylinderView<N> {
         if sine * self.other.radius <= rounding_error() {
             return self.over_disk(&(self.center + end));
         }
-        // Vector down along the other cap: minus the component of the normal perpendicular to the
-        // other axis, scaled to the radius and computed without a difference.
+        // Vector from the centre of the other cap to its lowest point: opposite to the component of
+        // the normal perpendicular to the other axis, with the radius as length. It is computed
+        // without a difference of nearly equal numbers.
         let aside = radial(&self.axis) * (cosine / sine * self.other.radius);
         let down = lifted(&aside) - normal * (sine * self.other.radius);
         if cosine.abs() * self.other.half <= rounding_error() {
@@ -268,8 +269,8 @@ impl<N: Real> CylinderView<N> {
     }
 
     /// Tries the direction from the axis to the nearest point of the other rim or, for parallel
-    /// axes, of the other side. `None` if [`Self::toward_rim`] returns `None`, as for a solid that
-    /// extends to the axis.
+    /// axes, of the other side. `None` if the centre of the other solid is on the axis, or if
+    /// [`Self::toward_rim`] returns `None`, as for a solid that extends to the axis.
     fn side(&self) -> Option<Tried<N>> {
         let start = unit(&radial(&self.center))?.0;
         let (normal, point) = self.toward_rim(start)?;
@@ -391,7 +392,8 @@ struct Rim<N: Real> {
     bend: N,
 }
 
-/// Returns the change of `normal` by Newton's method for a slope of zero; at most half a radian.
+/// Returns the change of `normal` by one step of Newton's method towards a slope of zero; at most
+/// half a radian. `None` if the change is zero or not finite.
 fn step<N: Real>(
     normal: &Vector<N, 3>,
     slope: &Vector<N, 3>,
@@ -418,7 +420,7 @@ pub(in crate::collide::separation) fn radial<N: Real>(v: &Vector<N, 3>) -> Vecto
     Vector::<N, 2>::new(v.x, v.z)
 }
 
-/// Returns the vector perpendicular to the y axis with these components x and z.
+/// Returns the 3D vector (v.x, 0, v.y), which is perpendicular to the y axis.
 fn lifted<N: Real>(v: &Vector<N, 2>) -> Vector<N, 3> {
     Vector::<N, 3>::new(v.x, N::ZERO, v.y)
 }
@@ -432,8 +434,8 @@ pub(in crate::collide::separation) mod tests {
 
     type Solids<N> = [Box<dyn Shape<N, 3>>; 2];
 
-    /// Compares `separation` with the general algorithm, for pairs that `solids` makes from random
-    /// sizes between 0 and 1.
+    /// Asserts that `separation` agrees with the general algorithm within `accuracy` times the size
+    /// of the pair. `solids` makes the pairs from random sizes between 0 and 1.
     pub(in crate::collide::separation) fn compare<N: Real>(
         seed: u64,
         rounds: usize,

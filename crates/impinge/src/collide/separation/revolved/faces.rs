@@ -5,15 +5,16 @@ use super::{DirectedPoint, FlatCore, NearestHull, RevolvedFound, RevolvedPair, s
 use crate::math::{Real, Vector};
 
 impl<N: Real> RevolvedPair<'_, N> {
-    /// Returns the separation along the face of the flat solid with the least depth, else at the
-    /// lowest vertex over a cap of the round solid; `None` if neither is proved.
+    /// Returns the separation by [`Self::by_own_face`] or, if that proves none, by
+    /// [`Self::by_cap`]; `None` if neither proves one.
     pub(super) fn by_face(&self) -> Option<RevolvedFound<N>> {
         self.by_own_face().or_else(|| self.by_cap())
     }
 
-    /// Returns the separation along the face of the flat solid with the least depth. `None` unless
-    /// the flat solid contains the ball around the deepest point of the round solid with this depth
-    /// as radius.
+    /// Returns the separation along the normal of that face of the flat solid above which the round
+    /// solid lies highest. `None` unless the solids overlap along this normal and the flat solid
+    /// contains the ball around the deepest point of the round solid with the depth as radius. Also
+    /// `None` for segments, capsules and triangles.
     fn by_own_face(&self) -> Option<RevolvedFound<N>> {
         let mut best: Option<(N, DirectedPoint<N>)> = None;
         let mut try_face = |normal: &Vector<N, 3>, offset: N| {

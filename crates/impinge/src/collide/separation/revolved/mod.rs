@@ -1,4 +1,6 @@
-//! Flat-sided solids, segments, capsules, cylinders and cones against cylinders and cones.
+//! Flat-sided solids, segments, capsules, cylinders and cones against cylinders and cones. In these
+//! files, "flat solid" means a flat-sided solid, segment or capsule, and "round solid" a cylinder
+//! or cone.
 //!
 //! The signed distance of a point from a cylinder or a cone is a closed form ([`profile`]), and
 //! convex. So the nearest point of the flat solid is searched over the hull of a few of its
@@ -45,7 +47,8 @@ use crate::shape::{Geometry, SupportMap};
 /// Cap on the number of vertices added in one search.
 const ROUNDS: usize = 12;
 
-/// Smallest sine of the angle between two directions whose common perpendicular is used.
+/// Smallest sine of the angle between a chord and the rim's tangent at which their common
+/// perpendicular is used as the direction of the nearest points.
 const RESOLVED: f64 = 1.0 / 64.0;
 
 /// Returns the tolerance of the search, in units of the pair: moves and differences of heights up
@@ -65,7 +68,7 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
 }
 
 /// Returns the distance of [`separation`]; for overlapping solids it may be any number that is not
-/// positive.
+/// positive. `None` above `limit`.
 pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     match (attempt(pair, limit), FlatCore::of(pair.first)) {
         (Some(found), _) => found.map(|found| found.distance),

@@ -46,7 +46,7 @@ pub(super) struct ProfileView<N: Real> {
     pub(super) part: ProfilePart,
     /// Distance of the point from the axis.
     aside: N,
-    /// Unit vector away from the axis, as (x, z).
+    /// Unit vector from the axis to the point, as (x, z); the x axis for a point on the axis.
     away: Vector<N, 2>,
     /// For the rim and the apex, the vector from there to the point, in the half-plane; for a cap
     /// or side, its unit normal.
@@ -146,8 +146,9 @@ impl<N: Real> ProfileView<N> {
     }
 
     /// Returns the step of Newton's method along `along` that minimises the squared distance to the
-    /// rim, even if another part is nearest to the point. `None` if the second derivative of that
-    /// distance is not positive.
+    /// rim, even if another part is nearest to the point. Of a cylinder's two rims it is the one on
+    /// the point's side of the origin. `None` if the second derivative of that distance is not
+    /// positive.
     pub(super) fn step_to_rim(&self, profile: &Profile<N>, along: &Vector<N, 3>) -> Option<N> {
         let Round { half, radius, is_cone } = profile.round;
         let end = if is_cone || self.point.y < N::ZERO { -half } else { half };
@@ -166,8 +167,8 @@ impl<N: Real> ProfileView<N> {
         let (across, up) = (out * out + turn * turn, along.y);
         match self.part {
             ProfilePart::Cap => None,
-            // Along the chord, the distance from the axis is a hyperbola; its slope must become
-            // `rise`.
+            // As a function of the multiple of `along`, the distance from the axis is a hyperbola.
+            // The slope sought is that at which the hyperbola has the slope `rise`.
             ProfilePart::Side => {
                 let rise = -up * self.offset.y / self.offset.x;
                 let left = across - rise * rise;

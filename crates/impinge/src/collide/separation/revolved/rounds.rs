@@ -11,13 +11,13 @@ use super::{DirectedPoint, RevolvedFound, RevolvedResult, in_second_frame, round
 use crate::collide::separation::segments::nearest::nearest_of_segments;
 use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, cross, max, min, unit};
 
-/// Cap on the number of corners and rims of one solid that are tried.
+/// Cap on the number of times that an apex or a rim of one solid is tried.
 const TURNS: usize = 3;
 /// Cap on the steps of Newton's method; about four are needed.
 const STEPS: usize = 12;
 
-/// Returns the result for two solids. `shift` is the translation of the second solid's pose, in
-/// units of the pair.
+/// Searches for the separation of two round solids. A gap larger than `beyond` gives `Beyond`.
+/// `shift` is the translation of the second solid's pose, in units of the pair.
 pub(super) fn resolve<N: Real>(
     [first, second]: [Profile<N>; 2],
     pose12: &Pose<N, 3>,
@@ -130,8 +130,8 @@ impl<N: Real> RoundView<N> {
         if squared <= N::lit(16.0) * N::EPSILON {
             return None;
         }
-        // The component in the plane of the axes follows from the angles of the normal with both
-        // axes.
+        // The normal's component in the plane of both axes follows from the angles between the
+        // normal and each axis.
         let up = Vector::<N, 3>::y();
         let in_plane =
             (up * (rise1 + rise2 * cosine) - self.axis * (rise2 + rise1 * cosine)) / squared;

@@ -1,5 +1,5 @@
-//! Compares distances and depths with the general algorithm; asserts a minimum of pairs that need
-//! no fallback.
+//! Asserts that separations agree with the general algorithm within an accuracy, that no sampled
+//! direction has less depth than the result, and that enough pairs need no fallback.
 
 use super::*;
 use crate::collide::separation as whole;
@@ -122,8 +122,8 @@ fn no_direction_is_better() {
     none_is_better::<f32>(2e-6);
 }
 
-/// Compares the distance of a point with that of a ball of radius zero, and its slope with finite
-/// differences.
+/// Asserts that the distance of a point equals the distance of a ball of radius zero, and that its
+/// slope agrees with finite differences.
 #[test]
 fn projections_of_points() {
     let random = &mut Random(11);

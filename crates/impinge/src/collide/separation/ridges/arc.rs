@@ -67,7 +67,8 @@ impl<N: Real> Arc<N> {
         is_between && u.dot(&(from + to)) >= N::ZERO
     }
 
-    /// Returns the direction at which both lines are equally high; `None` if it is not on the arc.
+    /// Returns the direction of the arc at which both lines are equally high. `None` if there is no
+    /// such direction, or if the lines differ by a constant.
     fn crossing(&self) -> Option<Vector<N, 2>> {
         let [first, second] = &self.lines;
         let (along, length) = unit(&(first.toward - second.toward))?;

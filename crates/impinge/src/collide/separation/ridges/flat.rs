@@ -3,7 +3,7 @@
 //! ```text
 //!   Edge { vertices: [v, w], normals: [i, j] }     the arc from normal i to normal j, along which
 //!                                                  the edge from v to w is lowest
-//!   segment    4 edges v w, with the arcs between u, v, -u, -v across it
+//!   segment    4 edges v w; arcs between p, q, -p, -q, the unit vectors perpendicular to it
 //!   triangle   2 edges for each side: front to side, side to back
 //!   box, hull  1 for each edge, between the normals of its two faces
 //! ```

@@ -56,7 +56,8 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     found.filter(|found| found.distance <= limit)
 }
 
-/// Returns the distance of [`separation`], or zero if a certain overlap is found during the search.
+/// Returns the distance of [`separation`]; zero instead if the search finds that the cores
+/// certainly overlap. `None` above `limit`.
 pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     let (flat, round) = cores(pair);
     let loosened = general::loosened(&flat, round, &pair.pose12, limit);
@@ -167,9 +168,9 @@ impl<N: Real> DepthSearch<'_, N> {
         depth - self.least <= N::lit(8.0) * gap
     }
 
-    /// Searches the normals of an edge, which is a point in the plane perpendicular to it. `ends`
-    /// are the support points of the round solid along the normals of the flat one. `None` if the
-    /// arc is split too often.
+    /// Searches the normals of an edge. They lie in the plane perpendicular to the edge, in which
+    /// the whole edge projects to one point. `ends` are the support points of the round solid along
+    /// the normals of the flat one. `None` if the arc is split too often.
     fn search_edge(&mut self, edge: usize, ends: &[Vector<N, 3>], gap: N) -> Option<()> {
         let (round, vertices) = (self.round, &self.flat.vertices);
         let flat::Edge { vertices: ends_of_edge, normals: [first, second] } = self.flat.edges[edge];

@@ -76,8 +76,11 @@ impl<N: Real> Round<N> {
         Slope { aside, along, extent: along * self.half }
     }
 
-    /// Returns up to 8 points of this solid that are extreme along a direction; some convex
-    /// combination of them faces the points `below`, of which a cap uses the first four.
+    /// Returns up to 8 points of this solid, among which are those that touch a plane with the
+    /// normal `direction`. For the normal of a cap they are the ends of its diameters through the
+    /// first four of the points `below`. For other directions they are both ends of the line along
+    /// the side in that direction: two points of the rims or, of a cone, a point of the rim and the
+    /// apex.
     pub(in super::super) fn touched<'a>(
         &self,
         direction: &Vector<N, 3>,

@@ -1,4 +1,5 @@
-//! Compares depths with the general algorithm, which grows a polytope.
+//! Asserts that separations agree with the general algorithm, which grows a polytope, and that no
+//! sampled direction has less depth than the result.
 
 use super::*;
 use crate::collide::separation::hulls::tests::Random;
@@ -61,7 +62,8 @@ pub(in super::super) fn cone<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>
     Box::new(Cone::new(size.x, size.y))
 }
 
-/// Compares the separations of pairs of solids with those of the general algorithm.
+/// Asserts, for each listed pair of kinds, that the separation agrees with the general algorithm
+/// within the accuracy, by `compare`.
 macro_rules! compare_each {
     ($separation:path, ($seed:expr, $rounds:expr, $accuracy:expr), $($first:ident $second:ident),*) => {
         $({
@@ -183,9 +185,9 @@ fn an_arc_without_length_has_no_other_side() {
     a_thin_cylinder_in_a_flat_box::<f32>();
 }
 
-/// Asserts the depth of a cylinder on the ridge of a roof. The slopes fall by √ε, and the cylinder
-/// is tilted along the ridge by √ε / 6. The least depth is between the normals of the slopes, not
-/// at a face normal.
+/// Asserts that a cylinder on the ridge of a roof has at most the depth that it has along the
+/// vertical, up to rounding. The slopes fall by √ε, and the cylinder is tilted along the ridge by
+/// √ε / 6. The least depth is between the normals of the slopes, not at a face normal.
 fn a_cylinder_on_a_ridge<N: Real>() {
     let (bend, tilt) = (N::EPSILON.sqrt(), N::EPSILON.sqrt() / N::lit(6.0));
     let (zero, one) = (N::ZERO, N::ONE);
@@ -213,8 +215,9 @@ fn a_roof_may_be_hardly_bent() {
     a_cylinder_on_a_ridge::<f64>();
     a_cylinder_on_a_ridge::<f32>();
 }
-/// A thin triangle near the axis of a cone. All normals of the side have equal depths up to 10⁻⁹,
-/// so arcs across them are split too often before the best normal is known.
+/// Asserts that the normal of least depth is found for a thin triangle near the axis of a cone. All
+/// normals of the cone's side have equal depths up to 10⁻⁹, so arcs across them are split too often
+/// unless the best normal is known before.
 #[test]
 fn a_sliver_on_the_axis_of_a_cone() {
     let corner = |x: f64, y: f64, z: f64| Point::<f64, 3>::new(x, y, z);

@@ -1,4 +1,4 @@
-//! Nearest points of segments, used by several pairs of kinds.
+//! Nearest points of segments, used by the algorithms for several pairs of kinds.
 
 use crate::collide::Pair;
 use crate::collide::separation::wrong_kinds;
@@ -73,9 +73,10 @@ struct Perpendicular<N: Real> {
     is_well_inside: bool,
 }
 
-/// Returns the nearest points of two segments if at least one of them is an end, in any dimension.
+/// Returns the nearest two points, one of each segment, of which at least one is an end of its
+/// segment; in any dimension.
 ///
-/// In 2D these are the nearest points of any two segments that do not cross.
+/// In 2D these are the nearest points of the segments, unless the segments cross.
 pub(in crate::collide::separation) fn nearest_of_ends<N: Real, const D: usize>(
     ends1: &[Point<N, D>; 2],
     ends2: &[Point<N, D>; 2],

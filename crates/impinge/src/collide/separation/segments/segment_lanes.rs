@@ -1,8 +1,8 @@
-//! Segments, several at a time: the nearest point of each to a point, and in 2D the separation of
-//! two.
+//! Computes for several lanes at a time the nearest point of a segment to a given point and, in 2D,
+//! the separation of two segments.
 //!
-//! A single pair in 2D runs the same code, so queries and manifolds of two segments are
-//! bit-identical.
+//! A single pair in 2D runs the same code in one lane, so a query of two segments and a batch of
+//! manifolds get the same normal and distance, to the bit.
 //!
 //! ```text
 //!    first *--------+------* last     from_first = (point - first) · along

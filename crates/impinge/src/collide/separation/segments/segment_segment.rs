@@ -24,7 +24,8 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     of_points(&[ends1, ends2], &points, [rounding1, rounding2], limit)
 }
 
-/// Returns the separation of two segments with radii whose nearest points are known.
+/// Returns the separation of two segments with radii, from the nearest points of the segments;
+/// `None` above `limit`.
 #[inline]
 pub(in crate::collide) fn of_points<N: Real>(
     [ends1, ends2]: &[[Point<N, 3>; 2]; 2],

@@ -95,7 +95,8 @@ pub(super) fn slack<N: Real>(scale: N) -> N {
 }
 
 impl<N: Real> TriangleQuery<'_, N> {
-    /// Computes the axes for the lanes of a run.
+    /// Computes the axes for the lanes of `run`: all lanes at once with vector instructions, else
+    /// one lane.
     pub(super) fn axes(&self, run: Run, tiles: &PartPacket<N, 3>) -> TriangleAxes<N> {
         in_lanes!(run, simd => self.axes_in_lanes::<_, N::Lanes<_>>(simd, tiles))
     }
@@ -285,8 +286,9 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         [low - top * self.shrink, bottom * self.shrink - high]
     }
 
-    /// Queries the face directions of the solid and returns those with the largest gaps; `climbs`
-    /// records which sides rise along each face normal.
+    /// Queries the face directions of the solid; returns for each lane the direction with the
+    /// largest gap. `climbs` receives, for each face, the lanes in which each side of the triangle
+    /// rises along the face's normal.
     #[inline(always)]
     fn query_faces(&self, climbs: &mut [[V::Mask; 3]; MAX_FACES]) -> TriangleAxis<V> {
         let (simd, zero) = (self.simd, V::all(self.simd, N::ZERO));
@@ -307,8 +309,9 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         best
     }
 
-    /// Queries the directions perpendicular to an edge of the solid and a side of a triangle;
-    /// returns those whose gaps exceed those of `face` by more than rounding, else `face`.
+    /// Queries the directions perpendicular to an edge of the solid and a side of a triangle.
+    /// Returns for each lane the direction with the largest gap if this gap exceeds the gap of
+    /// `face` by more than rounding, else the direction of `face`.
     #[inline(always)]
     fn query_edges(
         &self,

@@ -25,21 +25,23 @@ use crate::math::{Point, Real, Vector, Wide, filled, max_component, min};
 
 /// A triangle is thin if the squared ratio of its height to its longest side is at most this.
 const TALL: f64 = 1.0 / 1000.0;
-/// Squared distances count as different if they differ by more than this many epsilons of all
-/// squared lengths. A nearest feature is certain if the centre is farther from the border of its
-/// Voronoi region than the root of this difference.
+/// Squared distances count as different if they differ by more than this many epsilons of the
+/// squared size of the lane: the distance of the farthest corner from the centre plus the radius. A
+/// nearest feature is certain if the centre is farther from the border of its Voronoi region than
+/// the root of this difference.
 const CLEAR: f64 = 64.0;
 /// Kinds of corners start at this number, after the kinds of sides.
 const CORNER: f64 = 3.0;
-/// Lower bounds of distances are lowered by this many epsilons of all lengths.
+/// Lower bounds of distances are lowered by this many epsilons of the size of the lane.
 const ROUNDING: f64 = 128.0;
-/// Heights up to this many epsilons of all coordinates count as rounding.
+/// Heights of triangles up to this many epsilons count as rounding; the unit is the size of the
+/// lane plus the largest coordinate of the centre.
 const HEIGHT: f64 = 64.0;
 /// Number of packets with near triangles, before and after the packet of a triangle, in which its
 /// neighbours are searched.
 const MAX_APART: usize = 8;
 
-/// A ball among triangles.
+/// A ball, and the triangles among which the near ones are searched.
 pub(crate) struct BallQuestion<'a, N: Real> {
     pub(crate) tiles: &'a [PartPacket<N, 3>],
     /// Number of triangles; lanes of the last packet after them hold copies.
@@ -47,8 +49,8 @@ pub(crate) struct BallQuestion<'a, N: Real> {
     /// Centre of the ball in the frame of the triangles.
     pub(crate) center: Vector<N, 3>,
     pub(crate) radius: N,
-    /// Triangles farther than this from the surface of the ball are skipped, and those whose boxes
-    /// do not overlap `within`.
+    /// Triangles farther than this from the surface of the ball are skipped. So are triangles whose
+    /// boxes do not overlap `within`.
     pub(crate) limit: N,
     /// Box of interest, in the frame of the triangles.
     pub(crate) within: Aabb<N, 3>,
@@ -127,7 +129,7 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     candidates
 }
 
-/// Returns the lanes of those of 8 triangles whose boxes overlap the box of the question.
+/// Returns the lanes whose triangles have boxes that overlap `question.within`.
 #[inline(always)]
 fn are_within<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -157,10 +159,10 @@ struct NearestFeatures<N> {
     sides: u8,
     /// Nearest feature: a side by the index of its first corner, a corner by its index plus 3.
     kinds: [N; LANES],
-    /// Lower bounds of the squared distances.
+    /// Lower bounds of the squared distances from the centre of the ball.
     least: [N; LANES],
-    /// Upper bounds of the squared distances; infinite for triangles that must not hide others,
-    /// because they are thin or small.
+    /// Upper bounds of the squared distances from the centre of the ball; infinite for triangles
+    /// that must not hide others, because they are thin or small.
     most: [N; LANES],
 }
 
@@ -181,7 +183,7 @@ struct TrianglePacket<V> {
     nearest: [V; 3],
     /// Squared distances of the nearest points.
     squared: V,
-    /// Squared distances of the farthest corners.
+    /// Squared distances of the farthest corners from the centre.
     farthest: V,
 }
 

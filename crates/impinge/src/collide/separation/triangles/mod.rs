@@ -1,14 +1,15 @@
-//! Triangles of a surface against one solid, 8 at a time: boxes and hulls ([`axes`]), and balls
-//! ([`ball`]); also two triangles ([`pair`]).
+//! Tests 8 triangles of a surface at a time against one solid, which is a box or hull ([`axes`]) or
+//! a ball ([`ball`]). [`pair`] tests two triangles.
 //!
 //! For most triangles a surface needs only the touched side or corner; contacts along a face are
-//! computed later. A case is plain if a side and an edge cross well inside both, or if a single
-//! corner is nearest to a face and projects into its inside. Then the gap is certainly the
-//! distance. If the best direction is the triangle's own normal, the case is plain, too, but
-//! without a feature, and the gap is only a lower bound. All other triangles are passed to the
-//! separation of the pair. So are triangles whose gap differs only by rounding from the prediction,
-//! the largest distance of contacts, because the separation decides, for queries and manifolds
-//! alike, whether a pair is within the prediction.
+//! computed later. A case is plain if a side of the triangle and an edge of the solid cross well
+//! inside both, or if a single corner of the triangle is nearest to a face of the solid and
+//! projects into the inside of this face. Then the gap is certainly the distance. If the best
+//! direction is the triangle's own normal, the case is plain, too, but without a feature, and the
+//! gap is only a lower bound. All other triangles are passed to the separation of the pair. So are
+//! triangles whose gap differs only by rounding from the prediction, the largest distance of
+//! contacts, because the separation decides, for queries and manifolds alike, whether a pair is
+//! within the prediction.
 //!
 //! ```text
 //!   tiles   [. x . x x . . .] [x . . x . . . .] ...    `masks`: bits of the selected ones
@@ -41,12 +42,13 @@ const MIN_SINE: f64 = 1.0 / 1024.0;
 /// Smallest ratio of height to longest side of a plain case; in a thinner triangle another side may
 /// be as near.
 const TALL: f64 = 1.0 / 32.0;
-/// One corner is nearest if the others are farther by this many rounding errors.
+/// One corner is nearest if the other two are farther by more than this many times
+/// [`rounding_error`].
 const CLEAR: f64 = 64.0;
-/// Smallest length of a side of a plain case, in rounding errors.
+/// The side of a plain case is longer than this many times [`rounding_error`].
 const LONG: f64 = 8192.0;
 
-/// Returns the bound that is used for the rounding error of arithmetic on numbers up to 2.
+/// Returns the number that counts as rounding error in arithmetic on numbers up to 2.
 fn rounding_error<N: Real>() -> N {
     N::lit(16.0) * N::EPSILON
 }
@@ -56,7 +58,7 @@ pub(crate) struct TiledTriangles<'a, N: Real> {
     pub(crate) tiles: &'a [PartPacket<N, 3>],
     /// For each packet the bits of the selected triangles.
     pub(crate) masks: &'a [u8],
-    /// Point that becomes the origin of the triangles.
+    /// Point that is subtracted from all corners; the triangles' frame has its origin there.
     pub(crate) origin: Vector<N, 3>,
 }
 

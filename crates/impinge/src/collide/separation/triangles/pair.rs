@@ -31,8 +31,8 @@ const PARALLEL: f64 = 16.0;
 /// rounding units.
 const MIN_SINE: f64 = 1.0 / 32.0;
 
-/// Returns the separation of two triangles: the shortest separating translation if they overlap,
-/// else the distance.
+/// Returns the separation of two triangles, `None` if its distance exceeds `limit`. If the
+/// triangles overlap, the distance is minus the length of the shortest separating translation.
 ///
 /// The normal of the first triangle is preferred to that of the second, and both to common
 /// perpendiculars of two sides, unless another gap is larger by more than rounding error.
@@ -43,7 +43,9 @@ pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     by_axes([first, second], &pair.pose12, limit).separation(pair, limit, hulls::separation)
 }
 
-/// Tests the axes in the frame of the first triangle, in units of the pair.
+/// Tests the axes in the frame of the first triangle, in units of the pair. Returns `Unproved` if a
+/// triangle is thin, if the points of the best axis are not on its features, or if a nearly
+/// parallel pair of sides may have a larger gap.
 fn by_axes<N: Real>(
     triangles: [&Triangle<N, 3>; 2],
     pose12: &Pose<N, 3>,

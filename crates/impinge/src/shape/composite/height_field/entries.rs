@@ -28,7 +28,7 @@ compiled! {
         visit: &mut dyn FnMut(u32, N) -> N,
     ) = nearest_first;
 
-    /// Visits the parts that a moving box hits up to the time `limit`; see [`first_met`].
+    /// Visits the parts whose box a moving box hits up to the time `limit`; see [`first_met`].
     fn first_cells(
         field: &HeightField<N, D>,
         aabb: &Aabb<N, D>,

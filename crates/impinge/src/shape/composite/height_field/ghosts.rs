@@ -11,8 +11,8 @@ use super::HeightField;
 use crate::math::Real;
 
 impl<N: Real> HeightField<N, 2> {
-    /// Makes each cell a ghost for which `is_ghost(cell)` is true, and every other cell no ghost;
-    /// see [`Self::set_ghost`].
+    /// Makes exactly those cells ghosts for which `is_ghost(cell)` returns `true`; see
+    /// [`Self::set_ghost`].
     #[must_use]
     pub fn with_ghosts(mut self, mut is_ghost: impl FnMut(usize) -> bool) -> Self {
         let cells = self.num_cells();
@@ -23,8 +23,8 @@ impl<N: Real> HeightField<N, 2> {
         self
     }
 
-    /// Makes the first and the last cell ghosts: the outermost heights are samples of the
-    /// neighbouring fields, so that solids do not catch on the ends of this field.
+    /// Makes the first and the last cell ghosts. For a field whose outermost heights are samples of
+    /// the neighbouring fields: solids then do not catch on its ends.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Vector};
@@ -69,8 +69,8 @@ impl<N: Real> HeightField<N, 2> {
 }
 
 impl<N: Real> HeightField<N, 3> {
-    /// Makes each cell a ghost for which `is_ghost(row, column)` is true, and every other cell no
-    /// ghost; see [`Self::set_ghost`].
+    /// Makes exactly those cells ghosts for which `is_ghost(row, column)` returns `true`; see
+    /// [`Self::set_ghost`].
     #[must_use]
     pub fn with_ghosts(mut self, mut is_ghost: impl FnMut(usize, usize) -> bool) -> Self {
         let [rows, columns] = self.pyramid.cells();
@@ -82,8 +82,8 @@ impl<N: Real> HeightField<N, 3> {
         self
     }
 
-    /// Makes the outermost ring of cells ghosts: the outermost heights are samples of the
-    /// neighbouring fields, so that solids do not catch on the seam between two tiles of a terrain.
+    /// Makes the outermost ring of cells ghosts. For a tile of a terrain whose outermost heights
+    /// are samples of the neighbouring tiles: solids then do not catch on the seams between tiles.
     ///
     /// ```
     /// use impinge::dim3::math::Vector;

@@ -24,8 +24,8 @@ pub(super) struct Grid<N: Real> {
 
 impl<N: Real> Grid<N> {
     /// Returns whether all grid lines along x, and all along z, have distinct positions.
-    /// Conservative: also false for an extent so small that positions may underflow. Only
-    /// meaningful in 3D.
+    /// Conservative: also false if the extent is so small, or the lines so many, that rounding
+    /// could make positions equal. Always false in 2D, where all z are zero.
     pub(super) fn has_extent(&self) -> bool {
         [&self.xs, &self.zs].iter().all(|lines| {
             let is_wide = lines[0].abs() > N::MIN_POSITIVE / N::EPSILON;
@@ -79,7 +79,8 @@ impl<N: Real> GridExtent<N> {
     }
 }
 
-/// The interface of a height field to the search: cells of a grid, each with up to two parts.
+/// The interface through which the search reads a height field: cells of a grid, each with up to
+/// two parts.
 pub(super) trait GridCells<N: Real> {
     fn grid(&self) -> &Grid<N>;
     fn pyramid(&self) -> &Pyramid<N>;
@@ -214,8 +215,9 @@ pub(super) fn overlapping<N: Real>(
 /// The maximum number of cells that [`overlapping`] tests one by one.
 const FEW_CELLS: usize = 32;
 
-/// Returns the range of cells between grid lines that have a point in common with `low..=high`. A
-/// single line has one cell, which lies on that line.
+/// Returns the range of the cells along one axis that have a point in common with `low..=high`. A
+/// cell lies between two consecutive grid lines; a single line has one cell, which lies on the
+/// line.
 fn cells_between<N: Real>(lines: &[N], low: N, high: N) -> Range<usize> {
     let last = lines.len() - 1;
     let (before, until) = if lines[last] < lines[0] {

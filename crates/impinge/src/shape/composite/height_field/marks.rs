@@ -2,8 +2,8 @@
 
 /// The diagonal of a cell: the two corners that the common side of its two triangles joins.
 ///
-/// Rows and columns are those of the grid of heights. Triangle 0 of a cell has the side that joins
-/// the two corners in the cell's lower column.
+/// Rows and columns are counted in the grid of heights. Triangle 0 of a cell has the side that
+/// joins the two corners in the cell's lower column.
 ///
 /// ```
 /// use impinge::dim3::math::Vector;
@@ -75,8 +75,8 @@ impl Marks {
         Self { diagonals, bits: Vec::new(), ghosts: 0 }
     }
 
-    /// Returns these marks with the rule `diagonals`. Exceptions from the former rule are removed;
-    /// holes and ghosts stay.
+    /// Returns these marks with the rule `diagonals`. Diagonals of single cells that differed from
+    /// the previous rule are reset to the new rule; holes and ghosts stay.
     pub(super) fn with_diagonals(mut self, diagonals: Diagonals) -> Self {
         self.bits.iter_mut().for_each(|bits| *bits &= !OTHER_DIAGONAL);
         Self { diagonals, ..self }

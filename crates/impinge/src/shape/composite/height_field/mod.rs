@@ -7,8 +7,8 @@
 //! ```text
 //! column      c           c + 1
 //!   row r     a ───────── d         corners of the two parts of a cell, not mirrored:
-//!             │ ╲         │         forward (a–c)   part 2 cell: a b c   part 2 cell + 1: a c d
-//!             │     ╲     │         backward (b–d)  part 2 cell: a b d   part 2 cell + 1: d b c
+//!             │ ╲         │         forward (a–c) part 2·cell: a b c part 2·cell + 1: a c d
+//!             │     ╲     │         backward (b–d) part 2·cell: a b d part 2·cell + 1: d b c
 //!   row r + 1 b ───────── c
 //! ```
 
@@ -39,9 +39,9 @@ use crate::shape::error::finite;
 ///
 /// The field has no thickness: there is no solid below its triangles (segments). Heights are
 /// multiplied by the y component of the scale. The other components are the extents of the whole
-/// field, which lies symmetrically around the local y axis: columns go along x, rows along z, both
-/// in the positive direction. A negative extent reverses the direction, and a negative y component
-/// turns the field upside down.
+/// field, which lies symmetrically around the local y axis: the column index grows along +x, the
+/// row index along +z. A negative extent reverses this direction, and a negative y component turns
+/// the field upside down.
 ///
 /// **Front.** The front is the side towards which heights grow: +y, or −y if the scale's y
 /// component is negative. Contacts arise on both sides, or only on the front after `one_sided`.
@@ -59,8 +59,8 @@ use crate::shape::error::finite;
 /// terrain made of many fields (`with_ghost_border`).
 ///
 /// Construction takes one pass over the heights; a change of one height costs O(log n). Memory:
-/// about two numbers per height, and a byte per cell once a cell is a hole, a ghost or has a
-/// diagonal of its own.
+/// about two numbers per height, and a byte per cell once any cell is a hole, a ghost or has a
+/// diagonal that differs from the rule.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -146,7 +146,8 @@ impl<N: Real, const D: usize> HeightField<N, D> {
         self.revision.with(&[self.is_one_sided, self.keeps_internal_edges])
     }
 
-    /// Returns the field with the scale `scale`; `depth` is the extent along z.
+    /// Returns the field with the scale `scale` in place of its own. `depth` is the extent along z,
+    /// zero in 2D.
     ///
     /// # Errors
     /// If a coordinate is not finite.

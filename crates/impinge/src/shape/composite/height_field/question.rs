@@ -1,4 +1,4 @@
-//! Tests of a search box against a box: overlap, distance, and time of impact.
+//! Tests of a search box against the box of a block or a part: overlap, distance, time of impact.
 
 use super::grid::GridExtent;
 use crate::bounding_volume::Aabb;

@@ -42,7 +42,7 @@ impl<N: Real> HeightField<N, 2> {
         Ok(field)
     }
 
-    /// Makes each cell a hole for which `is_hole(cell)` is true, and every other cell no hole.
+    /// Makes exactly those cells holes for which `is_hole(cell)` returns `true`.
     #[must_use]
     pub fn with_holes(mut self, mut is_hole: impl FnMut(usize) -> bool) -> Self {
         let cells = self.num_cells();
@@ -72,7 +72,8 @@ impl<N: Real> HeightField<N, 2> {
         self.grid.heights[index]
     }
 
-    /// Returns the scaled point of the line at height `index`.
+    /// Returns the point of the line that has the height with index `index`, with the scale
+    /// applied.
     ///
     /// # Panics
     /// If `index` is not below the number of heights.
@@ -82,7 +83,8 @@ impl<N: Real> HeightField<N, 2> {
         Point::<N, 2>::new(x, y)
     }
 
-    /// Returns the segment of a cell, from height `cell` to the next; `None` for a hole or a ghost.
+    /// Returns the segment of a cell, from point `cell` to the next point; `None` for a hole or a
+    /// ghost.
     ///
     /// # Panics
     /// If there is no such cell.

@@ -70,7 +70,8 @@ impl<N: Real> OwnSurface<N, 3> for HeightField<N, 3> {
         has_seams.then(|| FaceSeams::new(own.front, self.is_one_sided, bend, |_| true))
     }
 
-    /// Returns true if internal edges are not kept and no two grid points coincide.
+    /// Returns true if internal edges are not kept and grid points certainly do not coincide; see
+    /// `Grid::has_extent`.
     fn has_regular_seams(&self) -> bool {
         !self.keeps_internal_edges && self.grid.has_extent()
     }
@@ -185,8 +186,8 @@ impl<N: Real> HeightField<N, 3> {
         rest.map(|(row, column, k)| self.corners_in(row, column, k))
     }
 
-    /// Calls `visit` with the two other corners of each triangle around a point of the grid,
-    /// counter-clockwise seen from the front, until a call returns true: at most 8 triangles.
+    /// Calls `visit` for each triangle at a grid point that is not a hole, at most 8, until a call
+    /// returns true. Passes the other two corners, counter-clockwise seen from the front.
     fn each_around(&self, at: GridPoint, mut visit: impl FnMut([GridPoint; 2]) -> bool) {
         let [rows, columns] = self.pyramid.cells();
         // The four cells around the point, and the index of the point among the corners of each
@@ -347,8 +348,8 @@ struct StarFace<N: Real> {
     front: Vector<N, 3>,
 }
 
-/// Returns the component of the unit vector `edge` along the unit vector `along`; −1 if `edge` is
-/// zero.
+/// Returns the component of the unit vector `edge` along the unit vector `along`. −1, the least
+/// component, if `edge` is zero.
 fn rise<N: Real>(edge: &Vector<N, 3>, along: &Vector<N, 3>) -> N {
     if *edge == Vector::<N, 3>::zeros() { -N::ONE } else { edge.dot(along) }
 }
@@ -418,8 +419,9 @@ impl<N: Real> HeightField<N, 2> {
         front.map_or(N::ZERO, |front| front.dot(vector))
     }
 
-    /// Returns whether the grid point `index` admits `normal`: no segment that leaves the point
-    /// rises along `normal`, and the two segments at the point are not collinear.
+    /// Returns whether the grid point `index` admits `normal` ([`Seam::admits`]): no segment that
+    /// leaves the point rises along `normal`, the two segments at the point are not collinear, and
+    /// in a one-sided field the higher segment has its front towards `normal`.
     fn point_admits(&self, part: u32, index: usize, normal: &Vector<N, 2>) -> bool {
         let own = self.along(part).unwrap_or_else(Vector::<N, 2>::zeros);
         let mut seam = Seam::of_segments(own, normal);

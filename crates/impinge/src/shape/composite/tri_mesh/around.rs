@@ -1,8 +1,8 @@
 //! Walks around the sides and corners of a mesh.
 //!
 //! Some meshes contain triangles without area as fillers: where a corner touches the interior of a
-//! longer side, a thin triangle joins the three. Seams are evaluated across such triangles as if
-//! they were absent.
+//! longer side, a thin triangle joins that corner to the two ends of the side. Seams are evaluated
+//! across such triangles as if they were absent.
 
 use core::cell::OnceCell;
 
@@ -12,10 +12,11 @@ use super::TriMesh;
 use crate::math::{Mapped, Point, Real, Vector, filled, max, max_component, min, unit, unit_or};
 use crate::shape::solids::segment::length_of;
 
-/// The maximum number of sides of zero-area triangles that a walk crosses.
+/// The maximum number of sides, including the first, that a walk through zero-area triangles
+/// crosses.
 const MAX_CROSSED: usize = 32;
-/// A triangle is tall if its squared height over its longest side exceeds this fraction of that
-/// side's squared length.
+/// The squared height of a tall triangle over its longest side exceeds this fraction of that side's
+/// squared length.
 const TALL: f64 = 1.0 / 1024.0;
 
 impl<N: Real, const D: usize> TriMesh<N, D> {
@@ -203,7 +204,7 @@ fn is_tall<N: Real, const D: usize>(corners: &[Point<N, D>; 3]) -> bool {
     let [a, b, c] = corners;
     let (ab, ac, bc) = (b - a, c - a, c - b);
     let longest = max(ab.norm_squared(), max(ac.norm_squared(), bc.norm_squared()));
-    // This is four times the squared area.
+    // The variable `area` is four times the squared area.
     let along = ab.dot(&ac);
     let area = ab.norm_squared() * ac.norm_squared() - along * along;
     let farthest = corners.iter().map(|corner| max_component(&corner.coords)).fold(N::ZERO, max);
@@ -244,7 +245,7 @@ impl<N: Real, const D: usize> SideLine<N, D> {
     }
 }
 
-/// Returns whether `crossed` contains the side, or is full.
+/// Returns whether a walk must not cross a side: `crossed` contains the side, or is full.
 fn crossed_before<S>(crossed: &[(u32, usize, S)], triangle: u32, side: usize) -> bool {
     let is_same = |crossed: &(u32, usize, S)| (crossed.0, crossed.1) == (triangle, side);
     crossed.len() >= MAX_CROSSED || crossed.iter().any(is_same)

@@ -39,15 +39,15 @@ impl Bends {
         Self { sides }
     }
 
-    /// Clears all values.
+    /// Marks all values as not computed, after the vertices of the mesh moved.
     pub(super) fn clear(&mut self) {
         for side in &mut self.sides {
             *side.get_mut() = UNKNOWN;
         }
     }
 
-    /// Returns the cached shape of the edge angle at a side, or computes the shape with `find` and
-    /// stores it. `None` if the shape is uncertain.
+    /// Returns the cached shape of the edge at a side, or computes the shape with `find` and stores
+    /// it. `None` if the shape is uncertain.
     pub(super) fn at(
         &self,
         triangle: u32,

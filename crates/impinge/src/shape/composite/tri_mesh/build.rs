@@ -54,7 +54,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
     /// seams beside it. So solids do not catch on the seam between two tiles of a terrain, if each
     /// tile has the other's border triangles as ghosts.
     ///
-    /// Ghosts refer to the vertices of the mesh, and have the winding of its triangles. Pass all
+    /// Ghosts refer to the vertices of the mesh, and must be wound like its triangles. Pass all
     /// neighbours that share a corner with the border, not only those that share a side. Ghosts do
     /// not close a mesh: [`Self::neighbor`] returns a border for a side next to a ghost.
     ///
@@ -62,7 +62,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
     ///
     /// # Errors
     /// If a ghost refers to a vertex that does not exist, or the corners do not fit 32-bit indices.
-    /// The error counts ghosts after the triangles.
+    /// In the error, the part index of a ghost counts from the number of triangles.
     ///
     /// ```
     /// use impinge::dim3::math::Point;

@@ -31,8 +31,8 @@ pub trait MeshByDimension<N: Real, const D: usize> {
         normal: &Vector<N, D>,
     ) -> bool;
 
-    /// Returns whether the mesh admits the first of two normals, and whether it admits the second
-    /// if it rejects the first.
+    /// Returns whether the mesh admits the first normal, and whether it rejects the first and
+    /// admits the second.
     fn mesh_admits_in_turn(
         mesh: &TriMesh<N, D>,
         part: u32,
@@ -50,7 +50,8 @@ pub trait MeshByDimension<N: Real, const D: usize> {
         normals: [&Vector<N, D>; 2],
     ) -> [bool; 2];
 
-    /// Returns the edge angles between a triangle and its neighbours; `None` in 2D.
+    /// Returns the edge angles between a triangle and its neighbours; `None` in 2D, for a triangle
+    /// without area, and if the mesh keeps its internal edges.
     fn mesh_face_seams(mesh: &TriMesh<N, D>, part: u32) -> Option<FaceSeams<N>>;
 
     /// Implements [`Surface::snapped`](crate::shape::Surface::snapped).

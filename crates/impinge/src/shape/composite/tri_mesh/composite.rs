@@ -149,13 +149,13 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for TriMesh<N, D> {
         Geometry(Kind::Composite(self))
     }
 
-    /// Returns the smallest box, in O(1).
+    /// Returns the smallest box around the triangles. O(1).
     fn local_aabb(&self) -> Aabb<N, D> {
         self.tree.bounds().copied().unwrap_or_else(Aabb::unbounded)
     }
 
-    /// Returns the smallest box, up to rounding. O(log n) for a nearly convex mesh, up to O(n) if
-    /// the parts extend almost equally far.
+    /// Returns the smallest box around the triangles placed at `pose`, up to rounding. O(log n) for
+    /// a nearly convex mesh, up to O(n) if many triangles extend almost equally far along an axis.
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         aabb_at(pose, self.triangles(), &self.vertices, &self.tree)
     }

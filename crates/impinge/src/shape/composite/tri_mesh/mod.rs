@@ -122,10 +122,10 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         self.triangles.len() - self.ghosts
     }
 
-    /// Returns one triangle.
+    /// Returns the triangle with the index `index`; ghosts follow the triangles.
     ///
     /// # Panics
-    /// If `index` is not below the number of triangles and ghosts.
+    /// If `index` is not below the total number of triangles and ghosts.
     #[must_use]
     pub fn triangle(&self, index: u32) -> Triangle<N, D> {
         Triangle::of_finite(self.corners(index))

@@ -25,7 +25,8 @@ pub(super) struct RayBounds<'a, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> TriMesh<N, D> {
-    /// Calls `visit` with the parts whose boxes the ray hits.
+    /// Calls `visit` with the parts whose boxes `bounds.around`, moving along the ray, hits up to
+    /// the limit.
     pub(super) fn boxes_along(&self, bounds: &RayBounds<'_, N, D>, visit: HitVisitor<'_, N, D>) {
         let RayBounds { ray, around, limit } = *bounds;
         self.tree.cast(around, &ray.dir, limit, &mut |index, _| {
@@ -88,7 +89,7 @@ impl<N: Real> TriMesh<N, 3> {
     }
 
     /// Calls `visit` with the triangles that the ray may hit before `limit`; `visit` returns the
-    /// new limit. Limits are in the units of the probe. Ghosts are not visited.
+    /// new limit. Limits are times in the unit of the probe. Ghosts are not visited.
     #[inline(always)]
     pub(crate) fn visit_triangles(
         &self,

@@ -41,12 +41,13 @@ impl<N: Real> TriMesh<N, 3> {
     /// belongs to the shape.
     ///
     /// A solid wholly inside touches the body: the distance is zero, the time of impact is zero,
-    /// and the contact leads out through the nearest part of the surface. The depth is how far the
-    /// solid extends below the plane through the nearest point of that part. Points inside belong
-    /// to the body. A ray that starts inside hits it at time 0 if the ray test treats shapes as
-    /// solid. Contacts outside are those of a [one-sided](Self::one_sided) mesh, but a solid that
-    /// overlaps the surface has contacts wherever its centre is. An inner surface whose front faces
-    /// its inside bounds a cavity; points in a cavity are outside the body.
+    /// and the contact leads out through the nearest part of the surface. The depth is measured
+    /// from the plane through the nearest point of the surface, perpendicular to the normal, to the
+    /// deepest point of the solid. Points inside belong to the body. A ray that starts inside hits
+    /// it at time 0 if the ray test treats shapes as solid. Contacts outside are those of a
+    /// [one-sided](Self::one_sided) mesh, but a solid that overlaps the surface has contacts
+    /// wherever its centre is. An inner surface whose front faces its inside bounds a cavity;
+    /// points in a cavity are outside the body.
     ///
     /// Later calls of [`Self::set_vertices`] are not checked: while joined vertices are apart, the
     /// mesh is a one-sided skin. [`Self::flipped`] makes it a skin permanently.
@@ -57,7 +58,7 @@ impl<N: Real> TriMesh<N, 3> {
     /// - [`MeshError::NotClosed`] or [`MeshError::NotOriented`] if the mesh does not [bound a
     ///   volume](Self::is_volume), with the first edge at fault.
     /// - [`MeshError::InsideOut`] if a closed piece has its front inside and lies in no other
-    ///   piece, with a triangle of that piece.
+    ///   piece, with the first triangle of that piece.
     ///
     /// A piece without volume has no inside and causes no error.
     /// ```
@@ -101,7 +102,8 @@ impl<N: Real> TriMesh<N, 3> {
         Ok(self)
     }
 
-    /// Returns a power of two near the largest coordinate of the mesh.
+    /// Returns a power of two near the largest magnitude of a coordinate. Coordinates are divided
+    /// by it so that volumes neither overflow nor underflow.
     fn scale(&self) -> f64 {
         let corners = self.tree.bounds().map(|bounds| [*bounds.mins(), *bounds.maxs()]);
         let largest = |corner: &Point<N, 3>| max_component(&corner.coords);

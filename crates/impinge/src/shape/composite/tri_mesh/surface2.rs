@@ -49,7 +49,7 @@ impl<N: Real> TriMesh<N, 2> {
     }
 
     /// Returns whether a side is on the border and has the outward normal `normal`. A zero-area
-    /// triangle may have both normals.
+    /// triangle acts as a segment and may admit the normals on both of its sides.
     fn side_admits(&self, part: u32, side: usize, normal: &Vector<N, 2>) -> bool {
         match self.open_normal(part, side) {
             Some(own) => max_component(&(own - normal)) <= slack(),

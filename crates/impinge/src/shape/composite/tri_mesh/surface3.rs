@@ -41,8 +41,8 @@ impl<N: Real> TriMesh<N, 3> {
             }
     }
 
-    /// Runs [`Self::admits_3d`] for two normals, for the second only if the first is rejected. The
-    /// neighbourhood is evaluated once.
+    /// Runs [`Self::admits_3d`] for two normals, for the second only if the first is rejected. At
+    /// an edge, the edge angle is looked up once for both.
     pub(super) fn admits_in_turn_3d(
         &self,
         part: u32,
@@ -107,7 +107,9 @@ impl<N: Real> TriMesh<N, 3> {
     }
 
     /// Returns whether the edge admits `normal`: `normal` is perpendicular to the edge, no face at
-    /// the edge rises along `normal`, and the faces are not coplanar.
+    /// the edge rises along `normal`, the faces do not continue each other flat, and on a one-sided
+    /// mesh the highest face has its front towards `normal`. An exposed side ([`Self::is_exposed`])
+    /// admits every perpendicular normal.
     fn bent_edge_admits(
         &self,
         bend: Option<&Bend<N>>,
@@ -131,8 +133,9 @@ impl<N: Real> TriMesh<N, 3> {
         is_across(&edge, normal) && (seam.admits(self.is_one_sided) || self.is_exposed(part, side))
     }
 
-    /// Returns the larger of the components, along `normal` (of length at most 1), of the unit
-    /// vectors of the two sides that leave a joint.
+    /// Returns how steeply a triangle rises from a joint: the larger of the components along
+    /// `normal` of the unit vectors along its two sides that leave the joint. `normal` has a length
+    /// of at most 1. −1 if neither side has a length.
     fn rise_from(&self, triangle: u32, joint: u32, normal: &Vector<N, 3>) -> N {
         let (corners, at) = (self.corners(triangle), self.corner_at(triangle, joint));
         let mut highest = -N::ONE;
@@ -157,8 +160,8 @@ impl<N: Real> TriMesh<N, 3> {
         let around = self.topology.joints.parts(joint);
         match self.edges_around(part, corner, normal).admit((own, is_bent), self.is_one_sided) {
             Some(false) => return false,
-            // Other triangles may lie beyond a triangle without area. This walk around the corner
-            // does not find them.
+            // The walk around the corner does not find triangles beyond a triangle without area. If
+            // all triangles at the joint have an area, it has found all.
             Some(true) if around.iter().all(|&triangle| self.has_certain_area(triangle)) => {
                 return true;
             }
@@ -175,7 +178,7 @@ impl<N: Real> TriMesh<N, 3> {
         seam.admits(self.is_one_sided)
     }
 
-    /// Collects the sides that leave a corner, those of `part` first; stops when they reject
+    /// Collects the sides that leave a corner, the sides of `part` first; stops when they reject
     /// `normal`.
     fn edges_around<'n>(
         &self,

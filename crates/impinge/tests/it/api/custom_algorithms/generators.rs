@@ -15,7 +15,7 @@ use super::standalone::{at, vector};
 /// The contacts of two balls; `update` returns `false` for all other solids.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OwnBalls<N: Real> {
-    /// Contact id of the pair, once it has been allocated.
+    /// Identifier of the pair in contact ids, once it has been allocated.
     pair: Option<u64>,
     /// Number of times that the balls have begun to touch.
     touches: u32,

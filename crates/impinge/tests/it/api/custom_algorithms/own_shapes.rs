@@ -64,7 +64,7 @@ impl<N: Real> Shape<N, DIM> for Crate<N> {
     }
 }
 
-/// Returns one solid of each kind, each of a size near 1.
+/// Returns six solids of size about 1 and a half-space, as partners of the tested shapes.
 fn others<N: Real>() -> Vec<Box<dyn Shape<N, DIM>>> {
     let point = |x: f64, y: f64| Point::from(vector::<N>(x, y));
     vec![
@@ -187,7 +187,8 @@ fn check_points_and_rays<N: Real>(own: &dyn Shape<N, DIM>, known: &dyn Shape<N, 
     assert!((15..45).contains(&insides) && hits > 40, "{insides} inside, {hits} hits");
 }
 
-/// Compares an ellipsoid of equal radii with a ball.
+/// Compares an ellipsoid of equal radii with a ball, and queries of a long ellipsoid with values
+/// computed by hand.
 fn ellipsoids<N: Real>() {
     let round = Ellipsoid { radii: Vector::repeat(N::ONE) };
     let ball = Ball::new(N::ONE);
@@ -195,7 +196,7 @@ fn ellipsoids<N: Real>() {
     check_twins::<N>(&round, &ball);
     check_points_and_rays::<N>(&round, &ball);
 
-    // Distances of an ellipsoid with radii 2 and 0.5 along its axes, computed by hand.
+    // An ellipsoid with the radii 2 and 0.5 along the first two axes.
     let long = Ellipsoid { radii: vector::<N>(1.0, -0.5) + Vector::repeat(N::ONE) };
     let (here, there) = (at::<N>(0.0, 0.0), at::<N>(4.0, 0.0));
     check_near(distance(&here, &long, &there, &ball), N::ONE, "2 + 1 + 1 = 4");

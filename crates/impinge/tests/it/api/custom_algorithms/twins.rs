@@ -106,7 +106,8 @@ impl<N: Play<DIM>> Twins<N> {
         }
     }
 
-    /// Asserts that both worlds report the same events, proximities and contacts.
+    /// Asserts that both worlds report the same events and proximities, and that the same pairs
+    /// touch, with depths that are equal up to rounding.
     fn compare(&mut self, place: &str) {
         let (usual, other) = (&self.usual.world, &self.other.world);
         other.validate().expect("the parts agree");
@@ -124,7 +125,8 @@ impl<N: Play<DIM>> Twins<N> {
     }
 }
 
-/// Plays the scene with an exchange every few steps.
+/// Plays the scene with an exchange of a phase or of algorithms every few steps. Asserts that both
+/// worlds report the same after each step.
 fn exchanges<N: Play<DIM>>(scene: &Scene<DIM>) {
     let plan = [
         Exchange::Algorithms(Policy::Balls),

@@ -1,4 +1,4 @@
-//! Tests constructors, neighbours and boxes of meshes.
+//! Tests which meshes are refused, and the neighbours, normals and boxes of the parts of meshes.
 
 use impinge::dim3::procedural;
 use impinge::math::na::{Isometry3, Point3, Vector3};

@@ -58,8 +58,9 @@ fn a_flat_floor_has_its_normal_only() {
     check_flat(&mesh::<f32, 3>(&vertices, &triangles), &parts);
 }
 
-/// One side of the first square has a vertex at its midpoint, which a triangle without area
-/// connects to its ends.
+/// Tests a square with a vertex at the midpoint of a side, which a triangle without area connects
+/// to the ends of the side. At the sides and corners along this filler no direction but the normal
+/// of the floor is admitted.
 #[test]
 fn a_filler_without_area_is_no_seam() {
     let vertices = [

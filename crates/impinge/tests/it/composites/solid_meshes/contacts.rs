@@ -1,5 +1,5 @@
-//! Compares contacts with solid meshes with brute force, for shapes inside and across the surface.
-//! Also tests impacts, points and rays.
+//! Compares the contacts of solids with solid meshes, in their inside and across their surface,
+//! with a scan of all triangles. Also tests impacts, points and rays.
 
 use super::{P3, V3, at, ball, cuboid, inverted, joined, skin, solid};
 use crate::support::query_support;
@@ -15,7 +15,8 @@ use query_support::random::Random;
 use query_support::samples::{SPACE, sample3};
 
 /// Returns the distance between the solid and the nearest triangle, and the distance by which the
-/// solid must move along their normal to lie entirely beyond the nearest point of that triangle.
+/// solid must move along the normal there to lie entirely beyond the nearest point of that
+/// triangle.
 fn brute<N: Space<3>>(mesh: &TriMesh<N, 3>, m2: &Isometry3<N>, solid: &dyn Shape<N, 3>) -> (N, N) {
     let here = Isometry3::identity();
     let mut nearest = N::INFINITY;

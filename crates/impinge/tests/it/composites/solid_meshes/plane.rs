@@ -1,4 +1,5 @@
-//! Tests closed lines made solid.
+//! Tests that closed lines made solid have the distances of polygons, and that points, rays and
+//! casts see their inside.
 
 use crate::support::query_support;
 use crate::support::samples::samples;

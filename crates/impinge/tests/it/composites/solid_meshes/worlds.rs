@@ -1,4 +1,4 @@
-//! Tests solid meshes in worlds and batches.
+//! Tests that worlds, batches and checkers see the inside of solid meshes.
 
 use super::{P3, V3, at, ball, cuboid, skin, solid};
 

@@ -127,7 +127,8 @@ where
         Scene { forms, poses, prediction, unit: N::EPSILON.as_f64() * size }
     }
 
-    /// Checks all pairs of kinds.
+    /// Asserts that no law is violated for any pair of kinds; two half-spaces have no contact
+    /// points.
     fn check(&self, seed: u64) {
         let (mut random, mut wrongs) = (Random::new(seed), Wrongs::new());
         for (kind1, kind2) in pairs(self.names.len()) {

@@ -12,8 +12,8 @@ fn counts<N: Real>(name: &str, points: &[P3]) -> (usize, usize) {
     (hull.vertices.len(), hull.faces.len())
 }
 
-/// Tests solids with known numbers of vertices and faces: unchanged, and rotated, small, large and
-/// far away.
+/// Asserts the numbers of vertices and faces of solids for which they are known: unchanged, and
+/// rotated, small, large and far away.
 fn known_solids<N: Real>() {
     let tetrahedron: Vec<P3> =
         cube().into_iter().filter(|p| (p.x + p.y + p.z) % 2.0 == 0.0).collect();
@@ -75,7 +75,7 @@ fn random_points() {
 }
 
 /// Tests points with few different whole coordinates, so that most points share planes and lines
-/// with many others.
+/// with many others: they are refused as degenerate, or the hull passes all checks.
 fn small_grids<N: Real>() {
     let mut numbers = Numbers::new(33);
     let (mut solids, mut flat) = (0, 0);
@@ -105,8 +105,8 @@ fn points_of_small_grids() {
     small_grids::<f64>();
 }
 
-/// Tests clouds of points, up to a thousand rounding units in size, around the corners of a prism
-/// and around segments between its corners.
+/// Asserts that the hull passes all checks for clouds of points, up to a thousand rounding units in
+/// size, around the corners of a prism and around segments between its corners.
 fn noise<N: Real>() {
     let mut numbers = Numbers::new(17);
     for units in [0.5, 1.0, 2.0, 4.0, 8.0, 30.0, 1e3] {
@@ -140,8 +140,8 @@ fn clouds_of_rounding_size() {
     noise::<f64>();
 }
 
-/// Tests a smooth surface sampled so finely that neighbouring points lie in one plane up to
-/// rounding.
+/// Asserts that the hull passes all checks for a smooth surface sampled so finely that neighbouring
+/// points lie in one plane up to rounding.
 #[test]
 fn samples_finer_than_rounding() {
     for sides in [1000, 6000] {

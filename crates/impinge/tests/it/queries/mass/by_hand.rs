@@ -31,7 +31,7 @@ fn check2<N: Real>(name: &str, shape: &dyn Shape<N, 2>, expected: &Found<2>) {
     assert_alike(&unit(shape), expected, 4.0 * N::EPSILON.as_f64(), name);
 }
 
-/// All sizes are exact in `f32`.
+/// Compares solids with formulas from textbooks. All sizes are exact in `f32`.
 fn solids_of_textbooks<N: Real>() {
     let l = N::lit;
     let ball = 4.0 / 3.0 * PI * 8.0;
@@ -130,7 +130,8 @@ fn shapes_of_the_plane() {
     plane_shapes::<f64>();
 }
 
-/// Volumes of rounded solids by Steiner's formula V + S r + M r² + 4/3 π r³.
+/// Compares the volumes of rounded solids with Steiner's formula V + S r + M r² + 4/3 π r³, where S
+/// is the area of the surface and M its integral of the mean curvature.
 #[test]
 fn rounded_volumes() {
     let r = 0.5;
@@ -188,8 +189,8 @@ fn rounded_areas() {
     assert_alike(&unit(&line), &unit(&Capsule::<f64, 2>::new(3.0, r)), 1e-8, "a stadium");
 }
 
-/// Compares a hull, which is rounded face by face, with a box, which is rounded by a product
-/// formula. The two share no code.
+/// Compares the mass properties of a rounded hull, which are summed over its faces, with those of a
+/// rounded box, which a product formula gives. The two share no code.
 #[test]
 fn rounded_polytopes_are_rounded_boxes() {
     let half = V3::new(0.5, 1.25, 2.0);
@@ -299,7 +300,8 @@ fn refusals_say_what_is_wrong() {
     assert!(matches!(refused, Err(MassError::Negative { .. })), "{refused:?}");
 }
 
-/// A body made from principal moments and their frame returns them unchanged.
+/// Mass properties made from principal moments return these unchanged, and their frame up to
+/// rounding. If they are made anew from the resulting inertia, even the least moment is precise.
 #[test]
 fn bodies_from_numbers() {
     let frame = UnitQuaternion::from_scaled_axis(V3::new(0.3, -1.2, 0.7));

@@ -88,7 +88,8 @@ fn scalars_say_the_same() {
     scalars_agree(&shape_table::space(1.0), &shape_table::space(1.0));
 }
 
-/// A transformed body equals the body of the shape as a compound's child at that pose.
+/// The mass properties of a shape, transformed by a pose, equal those of a compound with the shape
+/// at that pose as its only child.
 fn places<N, R, const D: usize>(shapes: &Shapes<N, D>, turn: fn(&mut Random) -> R)
 where
     N: Inertia<D> + Space<D, Isometry = Isometry<N, R, D>>,
@@ -116,8 +117,8 @@ fn bodies_are_placed() {
     places::<f64, _, 3>(&shape_table::space(1.0), Random::turn3);
 }
 
-/// The eight pieces of a cut box sum up to the box, both as bodies and as a compound; subtracting
-/// seven of them leaves the eighth.
+/// The mass properties of the eight pieces of a cut box are those of the box, both if they are
+/// added and if the pieces form a compound. Subtracting seven of them leaves the eighth.
 fn cut_into_eight<N: Inertia<3> + Space<3, Isometry = Isometry3<N>>>() {
     let (low, cut, high) = ([-1.0, -2.0, 0.0], [0.25, 1.0, 0.5], [3.0, 2.0, 4.0]);
     let piece = |index: usize| {
@@ -193,7 +194,9 @@ fn inertia_about_other_points() {
     assert!((both.inertia() - 2.0 * about).abs() < 1e-13, "in 2D");
 }
 
-/// Far from the origin precision is lost only in the coordinates, which are exact here.
+/// Tests hulls and polygons a million units from the origin, with corners that the scalar
+/// represents exactly: the centre of mass has a rounding error of that distance, and in `f64` the
+/// mass and the inertia equal those near the origin.
 fn far_away<N: Inertia<2> + Inertia<3>>() {
     let grid = |x: f64| (x * 8.0).round() / 8.0;
     let corners: Vec<[f64; 3]> = (0..12_u32)

@@ -1,4 +1,5 @@
-//! Tests mass properties of meshes and lines, and of compounds that contain them.
+//! Tests the mass properties of closed meshes and lines, also in compounds, and that open ones are
+//! refused.
 
 use impinge::math::{Isometry2, Isometry3, Point, Real, Unit, Vector};
 use impinge::procedural::space as surfaces;

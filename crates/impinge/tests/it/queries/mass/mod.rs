@@ -40,7 +40,8 @@ pub(super) fn unit<N: Inertia<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Fo
     wide(&mass_properties(shape, N::ONE).unwrap_or_else(|error| panic!("{error}: {shape:?}")))
 }
 
-/// Asserts that the mass properties are equal up to a fraction of the size of each value.
+/// Asserts that the mass properties are equal up to a fraction of the size of each value. For the
+/// centre of mass, that size is the extent of the solid plus the distance from the origin.
 #[track_caller]
 pub(super) fn assert_alike<const D: usize>(
     found: &Found<D>,

@@ -30,8 +30,8 @@ fn epsilon<N: Real>() -> f64 {
     N::EPSILON.as_f64()
 }
 
-/// Asserts that doubling the segments divides the error by four, as long as it is far above
-/// rounding.
+/// Asserts that an outline or a surface is inscribed: its area or volume is below the true one.
+/// Doubling the segments must divide that error by four, as long as it is far above rounding.
 fn assert_second_order(what: &str, truth: f64, measure: impl Fn(u32) -> f64) {
     for count in [16, 32] {
         let (error, half) = (truth - measure(count), truth - measure(2 * count));
@@ -43,7 +43,7 @@ fn assert_second_order(what: &str, truth: f64, measure: impl Fn(u32) -> f64) {
     assert!((0.0..5e-4).contains(&relative), "{what}: off by {relative} at last");
 }
 
-/// Tests the shape at twice its size, and at sizes far from 1.
+/// Factors of the size of a shape: 2, and two that are far from 1.
 const POWERS: [f64; 3] = [2.0, 1.0 / 1_048_576.0, 1_073_741_824.0];
 
 const COUNTS: [u32; 8] = [0, 3, 4, 5, 7, 8, 13, 30];

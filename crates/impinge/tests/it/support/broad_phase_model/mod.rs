@@ -27,7 +27,8 @@ impl Random {
 /// An object of the model.
 struct Object<N: Real, const D: usize> {
     handle: ProxyHandle,
-    /// Boxes as of the last update; `None` before the first.
+    /// The box of the last update, and the loosened box that the broad phase must keep for it;
+    /// `None` before the object's first update.
     known: Option<(Aabb<N, D>, Bounds<D>)>,
     waiting: Option<Aabb<N, D>>,
 }

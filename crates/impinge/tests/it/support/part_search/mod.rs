@@ -29,7 +29,7 @@ pub fn probe<N: Real, const D: usize>(random: &mut Random, around: &Aabb<N, D>) 
     Aabb::new(center - half, center + half)
 }
 
-/// Returns the distance of two boxes.
+/// Returns the distance of two boxes; zero if they overlap.
 fn distance<N: Real, const D: usize>(a: &Aabb<N, D>, b: &Aabb<N, D>) -> f64 {
     let gap = |axis: usize| {
         let below = b.mins()[axis].as_f64() - a.maxs()[axis].as_f64();
@@ -38,7 +38,8 @@ fn distance<N: Real, const D: usize>(a: &Aabb<N, D>, b: &Aabb<N, D>) -> f64 {
     (0..D).map(|axis| gap(axis).powi(2)).sum::<f64>().sqrt()
 }
 
-/// Returns the time at which a moving box first touches another; `None` if it never does.
+/// Returns the time at which a moving box first touches another; zero if they touch at the start,
+/// and `None` if they never touch.
 fn time<N: Real, const D: usize>(
     a: &Aabb<N, D>,
     velocity: &Vector<N, D>,
@@ -131,7 +132,8 @@ impl<N: Real, const D: usize> Boxes<N, D> {
         Self { of_parts, around }
     }
 
-    /// Compares random queries with a scan of all boxes.
+    /// Compares random queries with a scan of all boxes. Returns how many of the queries for
+    /// overlaps found parts, and how many found none.
     pub fn check(&self, search: &dyn PartSearch<N, D>, random: &mut Random, count: usize) -> Found {
         let mut found = Found::default();
         assert!(search.bounds().contains(&self.around), "{:?} leaves out parts", search.bounds());

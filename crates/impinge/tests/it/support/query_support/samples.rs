@@ -51,12 +51,13 @@ fn point<N: Real, const D: usize>(random: &mut Random, scale: N) -> Point<N, D> 
     Point::from(v.map(|x| x * N::lit(random.size_or_zero())))
 }
 
-/// Returns a random size between a fifth of `scale` and all of it.
+/// Returns a random size between a fifth of `scale` and all of it. With the flag of [`Random`], it
+/// is zero in half of the calls.
 fn size<N: Real>(random: &mut Random, scale: N) -> N {
     N::lit(random.within(0.2, 1.0) * random.size_or_zero()) * scale
 }
 
-/// Returns a solid of a kind that exists in both dimensions.
+/// Returns a solid of a kind that exists in both dimensions. Panics for other kinds.
 fn common<N: Real, const D: usize>(
     kind: ShapeKind,
     random: &mut Random,

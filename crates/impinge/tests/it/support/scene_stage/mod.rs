@@ -319,7 +319,8 @@ pub(crate) fn assert_stream_agrees<N: Space<D>, const D: usize, T>(
     assert_eq!(end, stream.points().len(), "each point belongs to a manifold");
 }
 
-/// Asserts that manifolds read in place equal the manifolds to the bit.
+/// Asserts that each way of reading contacts in place gives the contacts of the manifolds to the
+/// bit: views at once and in pieces, and a stream.
 pub(crate) fn assert_views_agree<N: Space<D>, const D: usize, T: Sync>(
     world: &CollisionWorld<N, D, T>,
 ) {

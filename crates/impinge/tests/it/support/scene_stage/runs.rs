@@ -1,4 +1,4 @@
-//! The scenes whose hashes are golden, and the ways in which they are played.
+//! The scenes whose hashes are in the golden file, and the ways in which they are played.
 
 #![allow(dead_code, reason = "each test uses a part")]
 

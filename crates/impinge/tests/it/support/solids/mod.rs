@@ -105,7 +105,7 @@ impl<N: Real, const D: usize> Solid<N, D> {
     }
 
     /// Returns the point at which the boundary is crossed from the centre along a direction; `None`
-    /// if there is none.
+    /// if the solid extends farther than four times its size in that direction.
     pub(crate) fn boundary(&self, direction: &Vector<f64, D>) -> Option<Vector<f64, D>> {
         let (mut low, mut high) = (0.0, 4.0 * self.size / direction.norm());
         if self.at(&(self.center + direction * high)) < 0.0 {

@@ -25,13 +25,13 @@ pub(crate) struct Tally {
     pub(crate) removal_events: usize,
     pub(crate) exchanges: usize,
     pub(crate) refusals: usize,
-    /// Number of pairs of contact queries that the broad phase keeps; `touching` counts those with
-    /// contacts.
+    /// Number of contact pairs that the broad phase keeps, summed over the updates; `touching`
+    /// counts those with contacts.
     pub(crate) near: usize,
     pub(crate) touching: usize,
     pub(crate) queries: usize,
     pub(crate) hits: usize,
-    /// Number of pairs of fixed objects that overlap.
+    /// Number of pairs of fixed objects that overlap, summed over the updates.
     pub(crate) fixed: usize,
     /// Number of events that were kept over an update.
     pub(crate) kept: usize,
@@ -43,7 +43,7 @@ pub(crate) struct Tally {
     pub(crate) asked: usize,
     /// Number of removed objects to which events refer.
     pub(crate) named: usize,
-    /// Number of contacts of solids of which only the skins overlap.
+    /// Number of pairs that have contacts only because of their skins.
     pub(crate) in_skins: usize,
 }
 

@@ -194,7 +194,8 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         contacts.chain(proximities).flat_map(|(a, b)| [a, b]).collect()
     }
 
-    /// Counts pairs of fixed objects that overlap, and contacts within skins.
+    /// Counts pairs of fixed objects that overlap, and pairs that have contacts only because of
+    /// their skins.
     pub(super) fn count_rare_pairs(&mut self) {
         let fixed: Vec<_> = self.naive.objects().filter(|object| object.is_fixed).collect();
         for (place, object1) in fixed.iter().enumerate() {

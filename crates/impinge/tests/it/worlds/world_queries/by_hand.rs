@@ -157,7 +157,8 @@ where
     assert!(found.iter().copied().eq(expected.chain([None])), "each meets the next one");
 }
 
-/// Tests a world of half-spaces, whose boxes are unbounded on one side or on all sides.
+/// Tests that queries find half-spaces like all other objects, although their boxes are unbounded
+/// on one side or on all sides.
 fn planes<N: Stage<D>, const D: usize>() {
     let mut world = World::<N, D>::new(N::lit(0.1));
     let level = add(&mut world, [0.0; D], &ground());
@@ -259,7 +260,8 @@ fn not_finite<N: Stage<D>, const D: usize>(world: &World<N, D>, bad: f64) {
     assert!(world.cast_shape(&here, &p.coords, &*own, &options, &all).is_none(), "at {bad}");
 }
 
-/// Tests positions a million units away that the scalar represents exactly.
+/// Tests that results are exact a million units away, at positions that the scalar represents
+/// exactly.
 fn far_away<N: Stage<D>, const D: usize>() {
     let (mut world, handles) = row::<N, D>(&[1e6, 1e6 + 8.0, 1e6 + 16.0]);
     let (here, own) = (N::pose_at(on_x(1e6 + 4.0), 0.0), ball::<N, D>(1.0));
@@ -278,7 +280,8 @@ fn far_away<N: Stage<D>, const D: usize>() {
     }
 }
 
-/// Tests distances whose squares overflow or underflow.
+/// Tests that objects are found in order of their distances even if the squares of these overflow
+/// or underflow.
 fn huge_and_tiny<N: Stage<D>, const D: usize>() {
     let [large, small] = [N::MAX, N::MIN_POSITIVE].map(|limit| limit.as_f64().powf(0.75));
     for unit in [large, small, 1.0] {

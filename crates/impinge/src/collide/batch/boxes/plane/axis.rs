@@ -16,7 +16,7 @@ pub(super) struct BestSide<V, M> {
     pub(super) normal: [V; 2],
     /// Signed distance along the normal; negative for an overlap.
     pub(super) gap: V,
-    /// Upper bound of the rounding error of a length of this pair.
+    /// Length that counts as rounding error for this pair.
     pub(super) rounding_error: V,
     /// Lanes where the pose is finite.
     pub(super) is_finite: M,
@@ -33,7 +33,7 @@ struct AxisSide<V, M> {
 }
 
 impl<V> Boxes<V, 2> {
-    /// Returns an upper bound of the rounding error of a length of each pair.
+    /// Returns for each pair the length that counts as rounding error.
     #[inline(always)]
     fn rounding_error<S: Simd, N: Real>(&self, simd: S) -> V
     where
@@ -71,8 +71,8 @@ impl<V> Boxes<V, 2> {
         BestSide { is_second, is_y, normal, gap, rounding_error, is_finite }
     }
 
-    /// Returns the best axis of each box. In a tie, the side that comes first in the box's outline
-    /// wins.
+    /// Returns for each box its axis with the largest gap. In a tie, the side that comes first in
+    /// the box's outline wins.
     #[inline(always)]
     fn best_sides<S: Simd, N: Real, M>(&self, simd: S) -> (AxisSide<V, M>, AxisSide<V, M>)
     where

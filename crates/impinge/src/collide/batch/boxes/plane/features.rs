@@ -78,8 +78,8 @@ impl SideFeatures {
         &SIDES[usize::from(self.sides >> 2 & 3)]
     }
 
-    /// Maps the index of an end of the upper side from tangent order to the order of its box, or
-    /// back. The side itself (0) stays 0.
+    /// Maps the index of an end of the upper side (1 or 2) from the order along the lower side to
+    /// the order in its own box, or back. Index 0, the side itself, stays 0.
     #[inline(always)]
     const fn reordered(self, part: usize) -> usize {
         if self.sides & 32 != 0 && part != 0 { 3 - part } else { part }

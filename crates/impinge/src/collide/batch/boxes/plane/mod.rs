@@ -42,7 +42,7 @@ pub(in super::super) struct LaneSides<N: Real, const L: usize> {
     slots: Slots<N, 2, SLOTS, L>,
     /// Signed distance of the boxes; negative for an overlap.
     gap: [N; L],
-    /// Lengths up to this are rounding errors.
+    /// Lengths up to this count as rounding errors.
     tolerance: [N; L],
     /// Half the diagonal of the smaller box.
     size: [N; L],
@@ -170,7 +170,8 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
         (self.sides, self.at_ends) = (per_pair(self.sides), per_pair(self.at_ends));
     }
 
-    /// Replaces the manifold of the pair in `lane`; returns `false` if the pair has to fall back.
+    /// Replaces the manifold of the pair in `lane`; clears its points if the boxes are beyond the
+    /// prediction. Returns `false`, without a change, if the pair has to fall back.
     #[inline(always)]
     fn write_manifold(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 2>) -> bool {
         let features = SideFeatures { sides: self.sides[lane], at_ends: self.at_ends[lane] };

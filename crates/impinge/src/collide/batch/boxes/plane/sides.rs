@@ -48,7 +48,7 @@ pub(super) struct BoxSides<V, M> {
     is_corner: M,
     /// Lanes where `ends[1]`, not `ends[0]`, faces the lower box.
     is_second_lower: M,
-    /// Lengths up to this are rounding errors.
+    /// Lengths up to this count as rounding errors.
     pub(super) tolerance: V,
     /// Lanes where neither side is too short: both exceed 8 tolerances along the lower side.
     pub(super) is_fit: M,
@@ -241,7 +241,8 @@ impl<V, M> BoxSides<V, M> {
 
 /// The upper side: the side of the other box that is most aligned with the lower side.
 struct Upper<V, M> {
-    /// Fields as in [`BoxSides`]; `is_aligned` is the negation of `is_corner`.
+    /// This field and the next four have the meanings of the fields of [`BoxSides`] with these
+    /// names; `is_aligned` is the negation of `is_corner` there.
     is_own_y: M,
     is_positive: M,
     is_reversed: M,

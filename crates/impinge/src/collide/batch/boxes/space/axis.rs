@@ -18,7 +18,7 @@ pub(super) struct BestAxis<V, M> {
     pub(super) normal: [V; 3],
     /// Signed distance along the normal; negative for an overlap.
     pub(super) gap: V,
-    /// Upper bound of the rounding error of a length of this pair.
+    /// Length that counts as rounding error for this pair.
     pub(super) rounding_error: V,
     /// Lanes where the pose is finite.
     pub(super) is_finite: M,
@@ -54,7 +54,7 @@ fn abs_rotation<S: Simd, V: Wide<S>>(rotation: &[[V; 3]; 3]) -> [[V; 3]; 3] {
 }
 
 impl<V> Boxes<V, 3> {
-    /// Returns an upper bound of the rounding error of a length of each pair.
+    /// Returns for each pair the length that counts as rounding error.
     #[inline(always)]
     fn rounding_error<S: Simd, N: Real>(&self, simd: S) -> V
     where

@@ -76,7 +76,7 @@ const fn ends(arm: usize, sign: bool, upper: bool) -> [bool; 2] {
     if arm == 0 { [sign, upper] } else { [upper, sign] }
 }
 
-/// Clipping of the two faces of `L` pairs.
+/// State while the two faces of each of `L` pairs are clipped against each other.
 pub(super) struct Clip<'a, S, N: Real, V, M, const L: usize> {
     simd: S,
     faces: &'a FacesInLanes<V, M>,

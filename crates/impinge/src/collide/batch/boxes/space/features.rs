@@ -282,7 +282,7 @@ impl SlotFeatures for BoxPairFeatures {
     }
 }
 
-/// A face of a box.
+/// A face of a box: perpendicular to `axis`, at the positive or the negative end of this axis.
 #[derive(Clone, Copy)]
 pub(super) struct FaceSide {
     pub(super) axis: usize,

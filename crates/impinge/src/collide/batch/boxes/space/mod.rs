@@ -37,7 +37,7 @@ pub(in super::super) struct LaneFaces<N: Real, const L: usize> {
     corners: Corners,
     /// Signed distance of the boxes; negative for an overlap.
     gap: [N; L],
-    /// Lengths up to this are rounding errors.
+    /// Lengths up to this count as rounding errors.
     tolerance: [N; L],
     /// Length scale: half the diagonal of the smaller box.
     size: [N; L],
@@ -162,7 +162,8 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
         self.columns = Columns::of(self);
     }
 
-    /// Replaces the manifold of the pair in `lane`; returns `false` if the pair has to fall back.
+    /// Replaces the manifold of the pair in `lane`; clears its points if the boxes are beyond the
+    /// prediction. Returns `false`, without a change, if the pair has to fall back.
     #[inline(always)]
     fn write_manifold(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 3>) -> bool {
         if self.is_apart >> lane & 1 == 1 {

@@ -102,8 +102,8 @@ impl<M> SupportingParts<M> {
             & (self.is_free[1] | (at_end[1] & !y & self.is_free[0]))
     }
 
-    /// For lanes where the part does not extend along `axis`, returns the lanes where it is at the
-    /// positive or negative end of `axis`.
+    /// Returns the lanes where the part is at the end of `axis` that `is_positive` selects. Valid
+    /// only where the part does not extend along `axis`.
     #[inline(always)]
     fn is_at<S: Simd>(&self, axis: usize, is_positive: bool) -> M
     where
