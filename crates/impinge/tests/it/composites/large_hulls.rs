@@ -1,7 +1,7 @@
 //! Tests that the contacts of a hull with a surface do not depend on features that are far from it.
 //!
-//! A prism and a prism with a dome of many vertices on its far end touch a surface with equal faces.
-//! The first is computed in lanes; the second has too many features for them.
+//! Two prisms, one of them with a dome of many vertices on its far end, touch a surface with equal
+//! faces. The first is computed in lanes; the second has too many features for them.
 
 use impinge::dim3::math::{Isometry, Point, Vector};
 use impinge::dim3::query::{ContactManifold, ContactPrediction, contact_manifolds};
@@ -10,8 +10,9 @@ use impinge::dim3::shape::{ConvexHull, TriMesh};
 use crate::support::samples::samples;
 use crate::support::slides::Random;
 
-/// Returns a prism with eight sides of half width 1 between the heights -1 and 1. With `is_domed`
-/// its upper end is a dome of 300 vertices.
+/// Returns a prism with eight sides between the heights -1 and 0, under a frustum up to the height 1.
+/// With `is_domed` a dome of 300 vertices takes the place of the frustum; the bounding box is the
+/// same.
 fn prism(is_domed: bool) -> ConvexHull<f64> {
     let ring = |count: u32, radius: f64, height: f64| {
         (0..count).map(move |k| {
@@ -19,11 +20,12 @@ fn prism(is_domed: bool) -> ConvexHull<f64> {
             Point::new(radius * angle.cos(), height, radius * angle.sin())
         })
     };
-    let mut points: Vec<_> = ring(8, 1.0, -1.0).chain(ring(8, 1.0, 1.0)).collect();
+    let ends = ring(8, 1.0, -1.0).chain(ring(8, 1.0, 0.0)).chain(ring(8, 0.25, 1.0));
+    let mut points: Vec<_> = ends.collect();
     if is_domed {
         for level in 1..=12_u32 {
-            let angle = f64::from(level) * 0.12;
-            points.extend(ring(25, 0.9 * angle.cos(), 1.0 + 0.5 * angle.sin()));
+            let (sine, cosine) = (f64::from(level) * 0.11).sin_cos();
+            points.extend(ring(25, 0.9 * cosine, 0.99 * sine));
         }
     }
     ConvexHull::from_points(&points)
@@ -73,13 +75,12 @@ fn contacts_depend_on_near_features_only() {
         let there = Isometry::new(position, if case % 6 == 0 { Vector::zeros() } else { turn });
         let [one, other] = [&small, &large]
             .map(|hull| summary(&contact_manifolds(&here, &surface, &there, hull, &near, None)));
-        let are_equal = one.len() == other.len()
-            && one.iter().zip(&other).all(|(one, other)| {
-                (one.0 - other.0).norm() < 1e-9
-                    && (one.1 - other.1).abs() < 1e-9
-                    && one.2 == other.2
-            });
-        assert!(are_equal, "case {case}: {one:?} and with a dome {other:?}");
+        assert_eq!(one.len(), other.len(), "case {case}: the number of manifolds");
+        for (one, other) in one.iter().zip(&other) {
+            let difference = [(one.0 - other.0).norm(), (one.1 - other.1).abs()];
+            let are_equal = difference.iter().all(|length| *length < 1e-9) && one.2 == other.2;
+            assert!(are_equal, "case {case}: {one:?}, with a dome {other:?}");
+        }
         several += usize::from(one.len() > 1);
     }
     assert!(several > 20, "{several} poses with several manifolds");
