@@ -4,14 +4,14 @@ use super::PairFinder;
 use super::finder::{AGAIN, CHANGED, Home};
 use crate::bvh::{Changes, PARALLEL_FROM};
 use crate::math::Real;
-use crate::memory::Look;
+use crate::memory::{Look, clone_empty};
 use crate::pairs::{PairTable, pack, unpack};
 
 /// Number of pairs whose table entries are prefetched at once.
 const AT_ONCE: usize = 16;
 
 /// Started and stopped pairs of an update, packed; each list is ascending.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct PairEvents {
     /// Pairs that start.
     starting: Vec<u64>,
@@ -177,6 +177,8 @@ fn join(one: impl FnOnce() + Send, other: impl FnOnce() + Send) {
         other();
     }
 }
+
+clone_empty!([] PairEvents);
 
 impl PairEvents {
     /// Releases the memory of lists that have been short for some time.
