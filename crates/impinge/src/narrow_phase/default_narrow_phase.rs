@@ -274,13 +274,13 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         let query = table.query(key[0]).pair(table.query(key[1]));
         match (lane, new_lane, query) {
             (Lane::Contacts(old), Lane::Contacts(new), PairQuery::Contacts { linear, angular }) => {
-                let taken = self.lanes.contacts[usize::from(old)].swap_remove(place);
+                let taken = self.lanes.contacts.of_mut(old).swap_remove(place);
                 self.note_move(taken.moved, place);
                 let mut entry = taken.state;
                 let linear = table.beyond_skins(key, linear);
                 entry.request = ManifoldRequest::new(linear, angular, max_points);
                 entry.state.set_solids(shapes(table, key));
-                let group = &mut self.lanes.contacts[usize::from(new)];
+                let group = self.lanes.contacts.made(new);
                 let place = group.push(key, entry, taken.is_touching);
                 self.locations[index] = Location { lane: new_lane, place };
             }
@@ -291,10 +291,10 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 entry.request = ManifoldRequest::new(linear, angular, max_points);
             }
             (Lane::Proximity(old), Lane::Proximity(new), PairQuery::Proximity { margin }) => {
-                let taken = self.lanes.proximity[usize::from(old)].swap_remove(place);
+                let taken = self.lanes.proximity.of_mut(old).swap_remove(place);
                 self.note_move(taken.moved, place);
                 let entry = ProximityEntry { margin, ..taken.state };
-                let place = self.lanes.proximity[usize::from(new)].push(key, entry, false);
+                let place = self.lanes.proximity.made(new).push(key, entry, false);
                 self.locations[index] = Location { lane: new_lane, place };
             }
             _ => return false,
@@ -338,7 +338,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             let place = match lane {
                 Lane::Contacts(group) => {
                     let entry = new_entry(table, key, request, number);
-                    self.lanes.contacts[usize::from(group)].push(key, entry, is_touching)
+                    self.lanes.contacts.made(group).push(key, entry, is_touching)
                 }
                 Lane::Composites => {
                     self.lanes.composites.push(key, ContactEntry::new(request, number), is_touching)
@@ -370,7 +370,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             let Lane::Proximity(group) = lane else { unreachable!("the query asks for proximity") };
             let (status, change) = carried.into_status();
             let entry = ProximityEntry { margin, status };
-            let place = self.lanes.proximity[usize::from(group)].push(key, entry, false);
+            let place = self.lanes.proximity.made(group).push(key, entry, false);
             return (Location { lane, place }, change);
         }
         let (a, b) = (table.shape(key[0]).as_ref(), table.shape(key[1]).as_ref());

@@ -5,16 +5,13 @@ use super::entry::{
     Status,
 };
 use super::group::{Group, PairKey, Taken};
+use super::kind_groups::KindGroups;
 use super::reuse::Reference;
 use super::state::{CompositeState, ContactState, has_composite};
 use crate::math::{Real, Space};
 use crate::memory::{Look, clone_fields};
 use crate::query::{ContactManifold, Proximity};
 use crate::shape::{Shape, ShapeKind};
-
-/// Number of ordered pairs of shape kinds, and so of built-in groups for contacts, and of built-in
-/// groups for proximity.
-const KIND_PAIRS: usize = ShapeKind::COUNT * ShapeKind::COUNT;
 
 /// The group of a pair, which defines the algorithm that serves it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -92,9 +89,9 @@ pub(crate) type CompositeGroup<N, const D: usize> = Group<
 /// The states of all pairs, grouped by algorithm in dense arrays.
 #[derive(Debug)]
 pub(crate) struct PairLanes<N: Space<D>, const D: usize> {
-    pub(crate) contacts: Vec<ContactGroup<N, D>>,
+    pub(crate) contacts: KindGroups<ContactGroup<N, D>>,
     pub(crate) composites: CompositeGroup<N, D>,
-    pub(crate) proximity: Vec<Group<ProximityEntry<N>>>,
+    pub(crate) proximity: KindGroups<Group<ProximityEntry<N>>>,
     pub(crate) custom_contacts: Group<CustomContactEntry<N, D>>,
     pub(crate) custom_proximity: Group<CustomProximityEntry<N, D>>,
 }
@@ -106,9 +103,9 @@ clone_fields!([N: Space<D>, const D: usize] PairLanes<N, D> {
 impl<N: Space<D>, const D: usize> Default for PairLanes<N, D> {
     fn default() -> Self {
         Self {
-            contacts: (0..KIND_PAIRS).map(|_| Group::default()).collect(),
+            contacts: KindGroups::new(Group::default),
             composites: Group::default(),
-            proximity: (0..KIND_PAIRS).map(|_| Group::default()).collect(),
+            proximity: KindGroups::new(Group::default),
             custom_contacts: Group::default(),
             custom_proximity: Group::default(),
         }
@@ -140,7 +137,7 @@ pub(crate) fn contact_lane<N: Real, const D: usize>(
 impl<N: Space<D>, const D: usize> PairLanes<N, D> {
     /// Creates groups without pairs that store references, for contact reuse.
     pub(crate) fn with_references() -> Self {
-        let contacts = (0..KIND_PAIRS).map(|_| Group::with_references()).collect();
+        let contacts = KindGroups::new(Group::with_references);
         Self { contacts, composites: Group::with_references(), ..Self::default() }
     }
 
@@ -148,13 +145,10 @@ impl<N: Space<D>, const D: usize> PairLanes<N, D> {
     pub(crate) fn take(&mut self, location: Location) -> (Carried, Option<PairKey>) {
         let place = location.place;
         match location.lane {
-            Lane::Contacts(lane) => {
-                contacts_of(self.contacts[usize::from(lane)].swap_remove(place))
-            }
+            Lane::Contacts(lane) => contacts_of(self.contacts.of_mut(lane).swap_remove(place)),
             Lane::Composites => contacts_of(self.composites.swap_remove(place)),
             Lane::Proximity(lane) => {
-                let Taken { state, moved, .. } =
-                    self.proximity[usize::from(lane)].swap_remove(place);
+                let Taken { state, moved, .. } = self.proximity.of_mut(lane).swap_remove(place);
                 (Carried::Proximity(state.status), moved)
             }
             Lane::CustomContacts => contacts_of(self.custom_contacts.swap_remove(place)),
@@ -169,7 +163,7 @@ impl<N: Space<D>, const D: usize> PairLanes<N, D> {
     /// Returns `true` if the pair has contact points.
     pub(crate) fn is_touching(&self, Location { lane, place }: Location) -> bool {
         match lane {
-            Lane::Contacts(lane) => self.contacts[usize::from(lane)].is_touching(place),
+            Lane::Contacts(lane) => self.contacts.of(lane).is_touching(place),
             Lane::Composites => self.composites.is_touching(place),
             Lane::CustomContacts => self.custom_contacts.is_touching(place),
             Lane::Proximity(_) | Lane::CustomProximity | Lane::Nothing => false,
@@ -178,18 +172,18 @@ impl<N: Space<D>, const D: usize> PairLanes<N, D> {
 
     /// Releases surplus memory of groups that have stopped growing.
     pub(crate) fn fit(&mut self, look: Look) {
-        self.contacts.iter_mut().for_each(|group| group.fit(look));
+        self.contacts.all_mut().iter_mut().for_each(|group| group.fit(look));
         self.composites.fit(look);
-        self.proximity.iter_mut().for_each(|group| group.fit(look));
+        self.proximity.all_mut().iter_mut().for_each(|group| group.fit(look));
     }
 
     /// Marks a pair as due even if neither object moves.
     pub(crate) fn make_due(&mut self, location: Location) {
         let place = location.place;
         match location.lane {
-            Lane::Contacts(lane) => self.contacts[usize::from(lane)].make_due(place),
+            Lane::Contacts(lane) => self.contacts.of_mut(lane).make_due(place),
             Lane::Composites => self.composites.make_due(place),
-            Lane::Proximity(lane) => self.proximity[usize::from(lane)].make_due(place),
+            Lane::Proximity(lane) => self.proximity.of_mut(lane).make_due(place),
             Lane::CustomContacts => self.custom_contacts.make_due(place),
             Lane::CustomProximity => self.custom_proximity.make_due(place),
             Lane::Nothing => {}

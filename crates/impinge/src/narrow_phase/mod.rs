@@ -7,7 +7,7 @@
 //! ```text
 //! pairs: PairTable       (first, second) by index, both handle indices
 //! locations              index -> Location { lane, place }
-//! lanes: PairLanes       contacts[kind pair]   one Group for each pair of shape kinds
+//! lanes: PairLanes       contacts[kind pair]   one Group for each pair of shape kinds that occurs
 //!                        composites            one Group for all pairs with a composite
 //!                        proximity[kind pair], custom_contacts, custom_proximity
 //! Group                  place -> keys | due | touching (bits) | states | views? | references?
@@ -25,6 +25,7 @@ mod generator;
 mod group;
 mod handle;
 mod ids;
+mod kind_groups;
 mod lanes;
 mod objects;
 mod pair_batch;

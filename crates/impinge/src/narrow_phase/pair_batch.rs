@@ -79,7 +79,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             let index = self.pairs.index_of(first, second);
             let location = index.map(|index| self.locations[index]);
             if let Some(Location { lane: Lane::Contacts(group), place }) = location {
-                let entry = self.lanes.contacts[usize::from(group)].state(place);
+                let entry = self.lanes.contacts.of(group).state(place);
                 seen ^= entry.number ^ u64::from(entry.state.fetch());
             }
         }
@@ -124,7 +124,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         let linear = table.beyond_skins(new, linear);
         let request = ManifoldRequest::new(linear, angular, max_points);
         let entry = new_entry(table, new, request, self.ids.allocate());
-        let was_touching = self.lanes.contacts[usize::from(group)].replace(place, new, entry);
+        let was_touching = self.lanes.contacts.of_mut(group).replace(place, new, entry);
         let end = was_touching.then_some(Change::Contact { touching: false });
         push_change(table, old, end, events);
         self.pairs.replace(old.into(), new.into());

@@ -119,7 +119,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     pub(crate) fn record(&self) -> Option<NarrowRecord<N>> {
         let phase = self.phase_record()?;
         let mut pairs = Vec::with_capacity(self.pairs.len());
-        for group in &self.lanes.contacts {
+        for group in self.lanes.contacts.all() {
             pairs.extend(group.pair_records(Reference::record, |entry| {
                 let (raw, is_swapped) = entry.state.kept();
                 StateRecord::Contacts { number: entry.number, is_swapped, manifold: raw.record() }
@@ -130,7 +130,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             let (number, is_swapped) = (entry.number, *swapped);
             StateRecord::Composite { number, is_swapped, contacts: contacts.record() }
         }));
-        for group in &self.lanes.proximity {
+        for group in self.lanes.proximity.all() {
             let unused = |(): &()| unreachable!("proximities have no references");
             let state = |entry: &ProximityEntry<N>| StateRecord::Proximity(entry.status.0);
             pairs.extend(group.pair_records(unused, state));
@@ -233,8 +233,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                     ManifoldRequest::new(table.beyond_skins(key, linear), angular, max_points);
                 let mut entry = new_entry(table, key, request, *number);
                 entry.state.keep(manifold.restore()?, *is_swapped);
-                let (group, contacts) =
-                    (&mut lanes.contacts[usize::from(group)], entry.state.len());
+                let (group, contacts) = (lanes.contacts.made(group), entry.state.len());
                 let place = group.push_again((key, entry), contacts > 0, pair.is_due);
                 group.refer_again(place, reference(contacts)?);
                 place
@@ -262,7 +261,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 StateRecord::Proximity(status),
             ) => {
                 let entry = ProximityEntry { margin, status: Status(*status) };
-                let group = &mut lanes.proximity[usize::from(group)];
+                let group = lanes.proximity.made(group);
                 group.push_again((key, entry), false, pair.is_due)
             }
             _ => return Err(other()),

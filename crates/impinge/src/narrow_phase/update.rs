@@ -9,7 +9,7 @@ use super::default_narrow_phase::push_change;
 use super::due::{ContactRows, DueContacts};
 use super::entry::{Change, ContactEntry, ContactView, ProximityEntry, posed};
 use super::group::{CHUNK, Group, PairKey, Rows};
-use super::lanes::{Lane, Location};
+use super::lanes::{ContactGroup, Lane, Location};
 use super::reuse::{Reference, Reuse};
 use super::rewind::Parts;
 use super::state::KeptContacts;
@@ -88,8 +88,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             self.lanes.note_due(table);
         }
         let reuse = Reuse { table, tolerance: self.tolerance };
-        // Most of the hundreds of groups are empty.
-        for group in self.lanes.contacts.iter_mut().filter(|group| !group.is_empty()) {
+        let is_used = |group: &&mut ContactGroup<N, D>| !group.is_empty();
+        for group in self.lanes.contacts.all_mut().iter_mut().filter(is_used) {
             let solids = group.state(0).state.solids().copied();
             update_group(group, changes, |rows, changes| {
                 update_convex(rows, reuse, changes, solids.as_ref());
@@ -105,7 +105,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 reuse.note(rows, place);
             });
         });
-        for group in self.lanes.proximity.iter_mut().filter(|group| !group.is_empty()) {
+        for group in self.lanes.proximity.all_mut() {
             update_group(group, changes, |rows, changes| {
                 update_each(rows, table, changes, update_status);
             });
@@ -196,7 +196,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         let reuse = Reuse { table, tolerance: self.tolerance };
         match picked[0].lane {
             Lane::Contacts(group) => {
-                let rows = self.lanes.contacts[usize::from(group)].rows();
+                let rows = self.lanes.contacts.of_mut(group).rows();
                 update_picked_convex(rows, reuse, picked, changes);
             }
             Lane::Composites => {
@@ -206,7 +206,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 });
             }
             Lane::Proximity(group) => {
-                let rows = &mut self.lanes.proximity[usize::from(group)].rows();
+                let rows = &mut self.lanes.proximity.of_mut(group).rows();
                 update_places(rows, picked, |rows, place| {
                     update_status(rows, table, place, changes);
                 });

@@ -330,7 +330,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
     /// Returns all manifolds with at least one contact, in memory order.
     pub(crate) fn contact_views<'a>(&'a self, table: &'a ObjectTable<N, D>) -> Views<'a, N, D> {
-        let convex = ConvexViews::new(&self.lanes.contacts, table);
+        let convex = ConvexViews::new(self.lanes.contacts.all(), table);
         let composites = CompositeViews::new(&self.lanes.composites, table);
         Views { is_plain: table.is_plain(), convex, composites, custom: Some(self) }
     }
@@ -344,7 +344,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     ) -> impl Iterator<Item = Views<'a, N, D>> + 'a {
         let PairLanes { contacts, composites, .. } = &self.lanes;
         // Cuts are between words of flags: first of convex solids, then of composites.
-        let convex = ConvexViews::num_words(contacts);
+        let convex = ConvexViews::num_words(contacts.all());
         let words = convex + composites.touching().len();
         let pieces = pieces.min(words).max(1);
         (0..pieces).map(move |piece| {
@@ -386,7 +386,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         let location = self.locations[index];
         match location.lane {
             Lane::Contacts(group) => {
-                let group = &self.lanes.contacts[usize::from(group)];
+                let group = self.lanes.contacts.of(group);
                 let pair = BuiltIn { table, group, place: location.place };
                 Some(ContactPair(ViewedContacts::BuiltIn(pair)))
             }
@@ -405,9 +405,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     fn proximity_at(&self, index: usize) -> Option<ProximityPair> {
         let location = self.locations[index];
         let status = match location.lane {
-            Lane::Proximity(group) => {
-                self.lanes.proximity[usize::from(group)].state(location.place).status
-            }
+            Lane::Proximity(group) => self.lanes.proximity.of(group).state(location.place).status,
             Lane::CustomProximity => self.lanes.custom_proximity.state(location.place).status,
             _ => return None,
         };
@@ -447,9 +445,9 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             let key = PairKey::from(pair);
             let place = location.place;
             let found = match location.lane {
-                Lane::Contacts(group) => self.lanes.contacts[usize::from(group)].key(place),
+                Lane::Contacts(group) => self.lanes.contacts.of(group).key(place),
                 Lane::Composites => self.lanes.composites.key(place),
-                Lane::Proximity(group) => self.lanes.proximity[usize::from(group)].key(place),
+                Lane::Proximity(group) => self.lanes.proximity.of(group).key(place),
                 Lane::CustomContacts => self.lanes.custom_contacts.key(place),
                 Lane::CustomProximity => self.lanes.custom_proximity.key(place),
                 Lane::Nothing => key,
@@ -458,9 +456,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 return Err(format!("the state of pair {key:?} is that of {found:?}"));
             }
             let has_contacts = match location.lane {
-                Lane::Contacts(group) => {
-                    self.lanes.contacts[usize::from(group)].state(place).is_touching()
-                }
+                Lane::Contacts(group) => self.lanes.contacts.of(group).state(place).is_touching(),
                 Lane::Composites => self.lanes.composites.state(place).is_touching(),
                 _ => continue,
             };
