@@ -30,7 +30,8 @@ use crate::state::Observer;
 ///
 /// Changes without a method here cannot be recorded: other phases ([`CollisionWorld::set_broad_phase`],
 /// [`CollisionWorld::set_narrow_phase`]) and algorithms of a narrow phase are code, and the data of an object is
-/// replaced, not borrowed mutably.
+/// replaced, not borrowed mutably. Nor can marks: a recording is one sequence of steps. A game with rollback marks and
+/// rewinds a world of its own, and records the steps whose inputs are final with a second one.
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;
