@@ -4,101 +4,151 @@
 //! that entries of dense arrays return to their former indices. Without marks nothing is noted.
 //!
 //! ```text
-//! marks      1           2           3
-//! notes      a b c       d           e f      undo(2): f, e, d, then `None`; mark 2 stays, 3 is gone
+//! marks      1       2     3
+//! notes      a b c   d     e f          undo(2): f, e, d, then `None`; mark 2 stays, 3 is gone
+//! kept       A             F            data of the notes a and f
 //! ```
+//!
+//! Forgetting a mark drops its notes. If `U` owns no memory, this takes constant time; therefore rare data with memory
+//! of its own is kept in a list of its own, `K`.
 
 use core::fmt;
 use std::collections::VecDeque;
 
-/// Notes `U` since each mark, and state `H` copied whole with each mark.
-pub(crate) struct Journal<U, H = ()> {
-    /// One frame for each mark, the oldest first.
-    frames: VecDeque<Frame<U, H>>,
-    /// Memory of removed frames, for reuse.
-    spare: Vec<Vec<U>>,
-    /// By index of an object: the periods in which a part of it, and the whole of it, were last noted. Each mark and
-    /// each return to a mark begins a period.
-    noted: Vec<[u32; 2]>,
+/// Notes `U` since each mark, state `H` copied whole with each mark, and data `K` of rare notes.
+pub(crate) struct Journal<U, H = (), K = ()> {
+    /// The oldest first.
+    marks: VecDeque<Mark<U, H, K>>,
+    /// The notes since the last mark.
+    notes: Notes<U, K>,
+    /// Memory of removed notes, for reuse.
+    spare: Vec<Notes<U, K>>,
+    /// By index of an object: the period in which it was last noted, plus 1 if the whole of it was noted then.
+    noted: Vec<u32>,
+    /// Even, and greater than 0 if there are marks. Each mark and each return to a mark begins a period.
     period: u32,
 }
 
-struct Frame<U, H> {
+struct Mark<U, H, K> {
     number: u64,
     head: H,
-    notes: Vec<U>,
+    /// The notes until the next mark; empty for the last mark.
+    notes: Notes<U, K>,
 }
 
-impl<U, H> Default for Journal<U, H> {
+struct Notes<U, K> {
+    list: Vec<U>,
+    kept: Vec<K>,
+}
+
+impl<U, K> Default for Notes<U, K> {
     fn default() -> Self {
-        Self { frames: VecDeque::new(), spare: Vec::new(), noted: Vec::new(), period: 0 }
+        Self { list: Vec::new(), kept: Vec::new() }
     }
 }
 
-impl<U, H> fmt::Debug for Journal<U, H> {
+impl<U, H, K> Default for Journal<U, H, K> {
+    fn default() -> Self {
+        let (marks, notes, spare) = (VecDeque::new(), Notes::default(), Vec::new());
+        Self { marks, notes, spare, noted: Vec::new(), period: 0 }
+    }
+}
+
+impl<U, H, K> fmt::Debug for Journal<U, H, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Journal").field("marks", &self.frames.len()).finish_non_exhaustive()
+        f.debug_struct("Journal").field("marks", &self.marks.len()).finish_non_exhaustive()
     }
 }
 
 /// A clone has no marks.
-impl<U, H> Clone for Journal<U, H> {
+impl<U, H, K> Clone for Journal<U, H, K> {
     fn clone(&self) -> Self {
         Self::default()
     }
 }
 
-impl<U, H> Journal<U, H> {
+impl<U, H, K> Journal<U, H, K> {
     /// Returns `true` if there is a mark, so that changes must be noted.
     #[inline]
     pub(crate) fn is_on(&self) -> bool {
-        !self.frames.is_empty()
+        !self.marks.is_empty()
     }
 
     /// Returns `true` if there are marks and the object has not been noted since the last one; it counts as noted from
     /// then on.
     #[inline]
     pub(crate) fn is_first(&mut self, index: usize) -> bool {
-        self.is_on() && self.is_first_of(index, 0)
+        self.is_on() && {
+            let period = self.period;
+            let noted = self.noted_at(index);
+            let is_first = *noted < period;
+            *noted = (*noted).max(period);
+            is_first
+        }
     }
 
     /// As [`Self::is_first`], for a note of the whole object, which makes notes of its parts superfluous.
     #[inline]
     pub(crate) fn is_first_whole(&mut self, index: usize) -> bool {
-        let is_first = self.is_on() && self.is_first_of(index, 1);
-        if is_first {
-            self.noted[index][0] = self.period;
-        }
-        is_first
+        let whole = self.period + 1;
+        self.is_on() && core::mem::replace(self.noted_at(index), whole) != whole
     }
 
-    fn is_first_of(&mut self, index: usize, part: usize) -> bool {
+    #[inline]
+    fn noted_at(&mut self, index: usize) -> &mut u32 {
         if self.noted.len() <= index {
-            self.noted.resize(index + 1, [0; 2]);
+            self.noted.resize(index + 1, 0);
         }
-        core::mem::replace(&mut self.noted[index][part], self.period) != self.period
+        &mut self.noted[index]
     }
 
     /// Adds the note that reverts a change, if there is a mark.
     #[inline]
     pub(crate) fn note(&mut self, undo: U) {
-        if let Some(frame) = self.frames.back_mut() {
-            frame.notes.push(undo);
+        if self.is_on() {
+            self.notes.list.push(undo);
         }
+    }
+
+    /// Adds some notes, if there is a mark.
+    #[inline]
+    pub(crate) fn note_all(&mut self, undo: &[U])
+    where
+        U: Copy,
+    {
+        if self.is_on() {
+            self.notes.list.extend_from_slice(undo);
+        }
+    }
+
+    /// Adds a note, if there is a mark, and keeps its data, which [`Self::take_kept`] returns.
+    pub(crate) fn note_kept(&mut self, undo: U, data: K) {
+        if self.is_on() {
+            self.notes.list.push(undo);
+            self.notes.kept.push(data);
+        }
+    }
+
+    /// Takes the data of the note that [`Self::undo`] has just returned. Each note with data must be followed by this.
+    pub(crate) fn take_kept(&mut self) -> K {
+        self.notes.kept.pop().expect("the note was made with data")
     }
 
     /// Sets a mark. Numbers must ascend.
     pub(crate) fn mark(&mut self, number: u64, head: H) {
-        let notes = self.spare.pop().unwrap_or_default();
-        self.frames.push_back(Frame { number, head, notes });
-        self.end_period();
+        let notes = core::mem::replace(&mut self.notes, self.spare.pop().unwrap_or_default());
+        if let Some(last) = self.marks.back_mut() {
+            last.notes = notes;
+        }
+        self.marks.push_back(Mark { number, head, notes: Notes::default() });
+        self.begin_period();
     }
 
     /// Drops the marks with smaller numbers.
     pub(crate) fn forget_before(&mut self, number: u64) {
-        while self.frames.front().is_some_and(|frame| frame.number < number) {
-            if let Some(frame) = self.frames.pop_front() {
-                self.keep_memory(frame);
+        while self.marks.front().is_some_and(|mark| mark.number < number) {
+            if let Some(mark) = self.marks.pop_front() {
+                self.keep_memory(mark.notes);
             }
         }
         if !self.is_on() {
@@ -108,38 +158,43 @@ impl<U, H> Journal<U, H> {
 
     /// Returns `true` if the mark is kept.
     pub(crate) fn has(&self, number: u64) -> bool {
-        self.frames.iter().any(|frame| frame.number == number)
+        self.marks.iter().any(|mark| mark.number == number)
     }
 
     /// Takes the newest note since a mark; `None` when there is none left. By then later marks are gone.
     pub(crate) fn undo(&mut self, number: u64) -> Option<U> {
-        while let Some(frame) = self.frames.back_mut() {
-            if let Some(undo) = frame.notes.pop() {
+        loop {
+            if let Some(undo) = self.notes.list.pop() {
                 return Some(undo);
             }
-            if frame.number <= number {
-                break;
+            if self.marks.back().is_none_or(|mark| mark.number <= number) {
+                self.begin_period();
+                return None;
             }
-            let frame = self.frames.pop_back()?;
-            self.keep_memory(frame);
+            self.marks.pop_back();
+            let earlier = self.marks.back_mut().map(|mark| core::mem::take(&mut mark.notes));
+            let notes = core::mem::replace(&mut self.notes, earlier.unwrap_or_default());
+            self.keep_memory(notes);
         }
-        self.end_period();
-        None
     }
 
     /// Returns the state copied with the last mark.
     pub(crate) fn head(&self) -> Option<&H> {
-        self.frames.back().map(|frame| &frame.head)
+        self.marks.back().map(|mark| &mark.head)
     }
 
-    fn keep_memory(&mut self, frame: Frame<U, H>) {
-        let mut notes = frame.notes;
-        notes.clear();
+    fn keep_memory(&mut self, mut notes: Notes<U, K>) {
+        notes.list.clear();
+        notes.kept.clear();
         self.spare.push(notes);
     }
 
-    fn end_period(&mut self) {
-        self.period = self.period.wrapping_add(1);
+    fn begin_period(&mut self) {
+        self.period = self.period.wrapping_add(2);
+        if self.period == 0 {
+            self.noted.fill(0);
+            self.period = 2;
+        }
     }
 }
 
@@ -165,6 +220,34 @@ mod tests {
         assert!(journal.has(2) && !journal.has(3), "the mark stays, later ones are gone");
         assert!(journal.is_first(3) && journal.is_first_whole(3), "a return is like a mark");
         assert!(journal.is_first_whole(4) && !journal.is_first(4), "the whole has the part");
-        assert!(!journal.clone().is_on(), "a clone has no marks");
+        assert!(!journal.is_first_whole(4) && !journal.clone().is_on(), "a clone has no marks");
+    }
+
+    #[test]
+    fn kept_data_comes_back_with_its_note() {
+        let mut journal = Journal::<u8, (), String>::default();
+        for number in 1..4 {
+            journal.mark(number, ());
+            journal.note(0);
+            journal.note_kept(1, format!("data {number}"));
+            journal.note(2);
+        }
+        journal.forget_before(2);
+        let mut data = Vec::new();
+        while let Some(note) = journal.undo(2) {
+            if note == 1 {
+                data.push(journal.take_kept());
+            }
+        }
+        assert_eq!(data, ["data 3", "data 2"], "the newest first, and none of the forgotten mark");
+    }
+
+    #[test]
+    fn periods_do_not_repeat_when_their_counter_wraps() {
+        let mut journal = Journal::<()> { period: u32::MAX - 3, ..Journal::default() };
+        journal.mark(1, ());
+        assert!(journal.is_first_whole(0), "in the last period");
+        journal.mark(2, ());
+        assert!(journal.is_first(0) && !journal.is_first(0), "in the first");
     }
 }

@@ -23,6 +23,21 @@ macro_rules! clone_fields {
 }
 pub(crate) use clone_fields;
 
+/// Implements `Clone` for scratch lists, which have no meaning between two updates: a clone has
+/// empty ones, and `clone_from` keeps those of the target.
+macro_rules! clone_empty {
+    ([$($generics:tt)*] $type:ty) => {
+        impl<$($generics)*> Clone for $type {
+            fn clone(&self) -> Self {
+                Self::default()
+            }
+
+            fn clone_from(&mut self, _: &Self) {}
+        }
+    };
+}
+pub(crate) use clone_empty;
+
 /// The number of updates between two checks of the lists.
 const PERIOD: u32 = 64;
 /// A temporary list with at most this capacity, in entries, is never shrunk; see [`Look::trim`].

@@ -5,14 +5,14 @@ use super::PairFinder;
 use super::finder::{CHANGED, Container, REFILTER};
 use crate::bvh::{Changes, PARALLEL_FROM};
 use crate::math::Real;
-use crate::memory::Look;
+use crate::memory::{Look, clone_empty};
 use crate::pairs::{PairTable, pack, unpack};
 
 /// Number of pairs whose entries in the pair table are prefetched together.
 const BATCH: usize = 16;
 
 /// The pairs that start or stop in an update, packed ([`pack`]). Each list is ascending.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct PairEvents {
     /// Pairs that start.
     starting: Vec<u64>,
@@ -181,6 +181,8 @@ fn join(one: impl FnOnce() + Send, other: impl FnOnce() + Send) {
         other();
     }
 }
+
+clone_empty!([] PairEvents);
 
 impl PairEvents {
     /// Releases the memory of lists that have been short for some time.

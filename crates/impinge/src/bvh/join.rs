@@ -15,7 +15,7 @@ use core::ops::Range;
 use super::kernel::{Kernel, TaskList, with_kernel};
 use super::tree::small;
 use super::{Block, Bounds, LANES, Tree};
-use crate::memory::Look;
+use crate::memory::{Look, clone_empty};
 use crate::pairs::pack;
 
 /// Number of tasks in a chunk: `UPPER_CHUNK` in the upper layers, `LEAF_CHUNK` in the leaf layer.
@@ -38,13 +38,15 @@ pub(super) struct JoinSides<'a, const D: usize> {
 }
 
 /// Pairs of ids, [`pack`]ed, whose overlap differs between the old and the present boxes.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct Changes {
     /// Pairs that overlap now and did not before.
     pub began: Vec<u64>,
     /// Pairs that overlapped before and do not now.
     pub ended: Vec<u64>,
 }
+
+clone_empty!([] Changes);
 
 impl Changes {
     /// Removes all pairs and keeps the memory.
@@ -55,7 +57,7 @@ impl Changes {
 }
 
 /// Finds the pairs that began and ended; keeps the memory of task lists from call to call.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct Joiner<const D: usize> {
     /// Tasks of the current layer: pairs of blocks, one index for each tree.
     tasks: TaskList,
@@ -68,8 +70,10 @@ pub(crate) struct Joiner<const D: usize> {
     desks: Desks<D>,
 }
 
+clone_empty!([const D: usize] Joiner<D>);
+
 /// Scratch lists for one chunk.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Scratch<const D: usize> {
     /// In a search: pairs of a query and a block. In a join: pairs of a block of `second` and a
     /// slot of `first`.
@@ -90,7 +94,7 @@ impl<const D: usize> Scratch<D> {
 }
 
 /// Scratch lists: one for work on a single thread, and one for each chunk of parallel work.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 struct Desks<const D: usize> {
     scratch: Scratch<D>,
     #[cfg(feature = "parallel")]

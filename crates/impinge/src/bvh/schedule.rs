@@ -11,6 +11,7 @@
 use super::order::{Item, sort, split};
 use super::renewal::Renewal;
 use super::{LANES, Tree};
+use crate::memory::clone_fields;
 
 /// Growth of the leaf surface per object at which a renewal starts.
 const WORN: f64 = 1.2;
@@ -32,7 +33,7 @@ const SLACK: usize = 64;
 const SMALL: usize = 1024;
 
 /// The state of the renewal.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Schedule<const D: usize> {
     /// Leaf surface per object, first measured after the last renewal; `None` until then.
     base: Option<f64>,
@@ -60,6 +61,10 @@ pub(super) struct Schedule<const D: usize> {
     order: Vec<u32>,
     is_placed: Vec<bool>,
 }
+
+clone_fields!([const D: usize] Schedule<D> {
+    base, ordered, fresh, runs, snapshot, parts, calls, is_used, late, newcomers, order, is_placed,
+});
 
 impl<const D: usize> Default for Schedule<D> {
     fn default() -> Self {

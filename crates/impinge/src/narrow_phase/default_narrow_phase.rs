@@ -284,13 +284,13 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 GroupId::Contacts(new),
                 PairQuery::Contacts { linear, angular },
             ) => {
-                let removed = self.groups.contacts[usize::from(old)].swap_remove(row);
+                let removed = self.groups.contacts.of_mut(old).swap_remove(row);
                 self.note_move(removed.moved, row);
                 let mut entry = removed.state;
                 let linear = table.beyond_skins(key, linear);
                 entry.request = ManifoldRequest::new(linear, angular, max_points);
                 entry.state.set_solids(shapes(table, key));
-                let group = &mut self.groups.contacts[usize::from(new)];
+                let group = self.groups.contacts.made(new);
                 let row = group.push(key, entry, removed.is_touching);
                 self.locations[index] = Location { group: new_group, row };
             }
@@ -301,10 +301,10 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 entry.request = ManifoldRequest::new(linear, angular, max_points);
             }
             (GroupId::Proximity(old), GroupId::Proximity(new), PairQuery::Proximity { margin }) => {
-                let removed = self.groups.proximity[usize::from(old)].swap_remove(row);
+                let removed = self.groups.proximity.of_mut(old).swap_remove(row);
                 self.note_move(removed.moved, row);
                 let entry = ProximityEntry { margin, ..removed.state };
-                let row = self.groups.proximity[usize::from(new)].push(key, entry, false);
+                let row = self.groups.proximity.made(new).push(key, entry, false);
                 self.locations[index] = Location { group: new_group, row };
             }
             _ => return false,
@@ -349,7 +349,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             let row = match group {
                 GroupId::Contacts(kinds) => {
                     let entry = new_entry(table, key, request, number);
-                    self.groups.contacts[usize::from(kinds)].push(key, entry, is_touching)
+                    self.groups.contacts.made(kinds).push(key, entry, is_touching)
                 }
                 GroupId::Composites => self.groups.composites.push(
                     key,
@@ -385,7 +385,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             };
             let (status, change) = carried.into_status();
             let entry = ProximityEntry { margin, status };
-            let row = self.groups.proximity[usize::from(kinds)].push(key, entry, false);
+            let row = self.groups.proximity.made(kinds).push(key, entry, false);
             return (Location { group, row }, change);
         }
         let (a, b) = (table.shape(key[0]).as_ref(), table.shape(key[1]).as_ref());

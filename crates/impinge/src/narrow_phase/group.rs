@@ -15,7 +15,7 @@
 use std::sync::OnceLock;
 
 use super::ObjectTable;
-use super::rewind::{GroupNote, Parts};
+use super::rewind::{GroupNote, KeptPair, Parts};
 use crate::journal::Journal;
 use crate::math::Space;
 use crate::memory::Look;
@@ -55,9 +55,9 @@ pub(crate) struct Group<S: Parts, V = (), R = ()> {
     pub(super) views: OnceLock<Vec<V>>,
     /// A reference for each state; `None` without contact reuse.
     pub(super) references: Option<Vec<R>>,
-    pub(super) journal: Journal<GroupNote<S, R>>,
-    /// References of the pairs in [`GroupNote::Written`] notes.
-    pub(super) reference_journal: Journal<R>,
+    pub(super) journal: Journal<GroupNote<S>, (), KeptPair<S, R>>,
+    /// Points of the pairs in [`GroupNote::Written`] notes.
+    pub(super) point_journal: Journal<S::Point>,
     /// By row, if there are marks: the period in which the pair was last noted or added.
     pub(super) noted: Vec<u8>,
     /// The current period. Each mark begins a new period.
@@ -81,7 +81,7 @@ impl<S: Parts, V, R: Clone> Clone for Group<S, V, R> {
         views.take();
         references.clone_from(&source.references);
         self.journal = Journal::default();
-        self.reference_journal = Journal::default();
+        self.point_journal = Journal::default();
         self.noted.clear();
     }
 }
@@ -119,7 +119,7 @@ impl<S: Parts, V, R> Default for Group<S, V, R> {
             views,
             references,
             journal: Journal::default(),
-            reference_journal: Journal::default(),
+            point_journal: Journal::default(),
             noted: Vec::new(),
             period: 0,
         }

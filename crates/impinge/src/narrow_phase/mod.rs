@@ -8,7 +8,7 @@
 //! ```text
 //! pairs: PairTable       index -> (first, second), two handle indices
 //! locations              index -> Location { group, row }
-//! groups: PairGroups     contacts[kind pair]   one Group for each pair of shape kinds
+//! groups: PairGroups     contacts[kind pair]   one Group for each pair of shape kinds that occurs
 //!                        composites            one Group for all pairs with a composite
 //!                        proximity[kind pair], custom_contacts, custom_proximity
 //! Group                  row -> keys | dirty | touching (bits) | states | views? | references?
@@ -25,6 +25,7 @@ mod generator;
 mod group;
 mod handle;
 mod ids;
+mod kind_groups;
 mod objects;
 mod pair_batch;
 mod pair_groups;

@@ -81,7 +81,7 @@ pub struct ObjectTable<N: Space<D>, const D: usize> {
     pub(super) substeps: Vec<PairSolids<N, D>>,
     /// By handle index, up to the last object with a skin: the skin, as of the last update.
     pub(super) skins: Vec<N>,
-    journal: Journal<RowNote<N, D>, Vec<PairSolids<N, D>>>,
+    journal: Journal<RowNote<N, D>, Vec<PairSolids<N, D>>, Option<ObjectRow<N, D>>>,
 }
 
 clone_fields!([N: Space<D>, const D: usize] ObjectTable<N, D> {
@@ -89,13 +89,13 @@ clone_fields!([N: Space<D>, const D: usize] ObjectTable<N, D> {
 });
 
 /// The state of an object before a change.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 enum RowNote<N: Space<D>, const D: usize> {
     /// The handle index of an object, and its isometry before a move.
     Moved(u32, N::Isometry),
-    /// The handle index of an object, and its row (`None` if it had no row) and its skin before a
-    /// change.
-    Whole(u32, Option<ObjectRow<N, D>>, N),
+    /// The handle index of an object, and its skin before a change. The row is kept; `None` if the
+    /// object had none.
+    Whole(u32, N),
 }
 
 impl<N: Space<D>, const D: usize> fmt::Debug for ObjectTable<N, D> {
@@ -372,8 +372,8 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         while let Some(note) = journal.undo(number) {
             match note {
                 RowNote::Moved(index, isometry) => self.set_position(index, &isometry),
-                RowNote::Whole(index, row, skin) => {
-                    match row {
+                RowNote::Whole(index, skin) => {
+                    match journal.take_kept() {
                         None => self.release(index),
                         Some(row) if self.has_row(index) => self.set(index, || row),
                         Some(row) => self.acquire(index, || row),
@@ -396,7 +396,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
                 query: self.query(index),
             });
             let skin = self.skin(index);
-            self.journal.note(RowNote::Whole(index, row, skin));
+            self.journal.note_kept(RowNote::Whole(index, skin), row);
         }
     }
 

@@ -80,7 +80,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             let index = self.pairs.index_of(first, second);
             let location = index.map(|index| self.locations[index]);
             if let Some(Location { group: GroupId::Contacts(kinds), row }) = location {
-                let entry = self.groups.contacts[usize::from(kinds)].state(row);
+                let entry = self.groups.contacts.of(kinds).state(row);
                 loaded ^= entry.number ^ u64::from(entry.state.prefetch());
             }
         }
@@ -126,7 +126,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         let linear = table.beyond_skins(new, linear);
         let request = ManifoldRequest::new(linear, angular, max_points);
         let entry = new_entry(table, new, request, self.ids.allocate());
-        let was_touching = self.groups.contacts[usize::from(kinds)].replace(row, new, entry);
+        let was_touching = self.groups.contacts.of_mut(kinds).replace(row, new, entry);
         let end = was_touching.then_some(Change::Contact { touching: false });
         push_change(table, old, end, events);
         self.pairs.replace(old.into(), new.into());

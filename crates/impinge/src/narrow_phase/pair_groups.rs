@@ -5,16 +5,13 @@ use super::entry::{
     Status,
 };
 use super::group::{Group, PairKey, RemovedRow};
+use super::kind_groups::KindGroups;
 use super::reuse::Reference;
 use super::state::{CompositeState, ContactState, has_composite};
 use crate::math::{Real, Space};
 use crate::memory::{Look, clone_fields};
 use crate::query::{ContactManifold, Proximity};
 use crate::shape::{Shape, ShapeKind};
-
-/// Number of ordered pairs of shape kinds: the length of `contacts` and of `proximity` in
-/// [`PairGroups`].
-const KIND_PAIRS: usize = ShapeKind::COUNT * ShapeKind::COUNT;
 
 /// The group of a pair, which defines the algorithm that serves it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -93,9 +90,9 @@ pub(crate) type CompositeGroup<N, const D: usize> = Group<
 /// The states of all pairs, grouped by algorithm in dense arrays.
 #[derive(Debug)]
 pub(crate) struct PairGroups<N: Space<D>, const D: usize> {
-    pub(crate) contacts: Vec<ContactGroup<N, D>>,
+    pub(crate) contacts: KindGroups<ContactGroup<N, D>>,
     pub(crate) composites: CompositeGroup<N, D>,
-    pub(crate) proximity: Vec<Group<ProximityEntry<N>>>,
+    pub(crate) proximity: KindGroups<Group<ProximityEntry<N>>>,
     pub(crate) custom_contacts: Group<CustomContactEntry<N, D>>,
     pub(crate) custom_proximity: Group<CustomProximityEntry<N, D>>,
 }
@@ -107,9 +104,9 @@ clone_fields!([N: Space<D>, const D: usize] PairGroups<N, D> {
 impl<N: Space<D>, const D: usize> Default for PairGroups<N, D> {
     fn default() -> Self {
         Self {
-            contacts: (0..KIND_PAIRS).map(|_| Group::default()).collect(),
+            contacts: KindGroups::new(Group::default),
             composites: Group::default(),
-            proximity: (0..KIND_PAIRS).map(|_| Group::default()).collect(),
+            proximity: KindGroups::new(Group::default),
             custom_contacts: Group::default(),
             custom_proximity: Group::default(),
         }
@@ -141,7 +138,7 @@ pub(crate) fn contact_group<N: Real, const D: usize>(
 impl<N: Space<D>, const D: usize> PairGroups<N, D> {
     /// Creates groups without pairs that store references, for contact reuse.
     pub(crate) fn with_references() -> Self {
-        let contacts = (0..KIND_PAIRS).map(|_| Group::with_references()).collect();
+        let contacts = KindGroups::new(Group::with_references);
         Self { contacts, composites: Group::with_references(), ..Self::default() }
     }
 
@@ -151,12 +148,11 @@ impl<N: Space<D>, const D: usize> PairGroups<N, D> {
         let row = location.row;
         match location.group {
             GroupId::Contacts(kinds) => {
-                removed_contacts(self.contacts[usize::from(kinds)].swap_remove(row))
+                removed_contacts(self.contacts.of_mut(kinds).swap_remove(row))
             }
             GroupId::Composites => removed_contacts(self.composites.swap_remove(row)),
             GroupId::Proximity(kinds) => {
-                let RemovedRow { state, moved, .. } =
-                    self.proximity[usize::from(kinds)].swap_remove(row);
+                let RemovedRow { state, moved, .. } = self.proximity.of_mut(kinds).swap_remove(row);
                 (Carried::Proximity(state.status), moved)
             }
             GroupId::CustomContacts => removed_contacts(self.custom_contacts.swap_remove(row)),
@@ -171,7 +167,7 @@ impl<N: Space<D>, const D: usize> PairGroups<N, D> {
     /// Returns `true` if the pair has contact points.
     pub(crate) fn is_touching(&self, Location { group, row }: Location) -> bool {
         match group {
-            GroupId::Contacts(kinds) => self.contacts[usize::from(kinds)].is_touching(row),
+            GroupId::Contacts(kinds) => self.contacts.of(kinds).is_touching(row),
             GroupId::Composites => self.composites.is_touching(row),
             GroupId::CustomContacts => self.custom_contacts.is_touching(row),
             GroupId::Proximity(_) | GroupId::CustomProximity | GroupId::Nothing => false,
@@ -180,18 +176,18 @@ impl<N: Space<D>, const D: usize> PairGroups<N, D> {
 
     /// Releases surplus memory of groups that have stopped growing.
     pub(crate) fn fit(&mut self, look: Look) {
-        self.contacts.iter_mut().for_each(|group| group.fit(look));
+        self.contacts.all_mut().iter_mut().for_each(|group| group.fit(look));
         self.composites.fit(look);
-        self.proximity.iter_mut().for_each(|group| group.fit(look));
+        self.proximity.all_mut().iter_mut().for_each(|group| group.fit(look));
     }
 
     /// Marks a pair as dirty, so that the next update computes it even if neither object moves.
     pub(crate) fn mark_dirty(&mut self, location: Location) {
         let row = location.row;
         match location.group {
-            GroupId::Contacts(kinds) => self.contacts[usize::from(kinds)].mark_dirty(row),
+            GroupId::Contacts(kinds) => self.contacts.of_mut(kinds).mark_dirty(row),
             GroupId::Composites => self.composites.mark_dirty(row),
-            GroupId::Proximity(kinds) => self.proximity[usize::from(kinds)].mark_dirty(row),
+            GroupId::Proximity(kinds) => self.proximity.of_mut(kinds).mark_dirty(row),
             GroupId::CustomContacts => self.custom_contacts.mark_dirty(row),
             GroupId::CustomProximity => self.custom_proximity.mark_dirty(row),
             GroupId::Nothing => {}

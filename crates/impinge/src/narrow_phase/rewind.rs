@@ -9,6 +9,8 @@ use super::group::{Group, PairKey, set_touching};
 use super::pair_groups::{GroupId, Location, PairGroups};
 use super::state::{CompositeState, ContactState};
 use super::{DefaultNarrowPhase, IdAllocator, ObjectTable};
+use smallvec::SmallVec;
+
 use crate::collide::{PairIds, RawManifold, RawPoint};
 use crate::journal::Journal;
 use crate::math::{Pose, Real, Space, Vector};
@@ -24,70 +26,75 @@ pub(crate) struct GroupRow<S, R> {
     reference: Option<R>,
 }
 
-/// A state that is recorded in pieces of constant size, so that the note of a pair with one contact
-/// takes less memory than the note of a pair with four.
+/// A state that is recorded as a head and points, so that the note of a pair without contacts takes
+/// less memory than the note of a pair with four.
 pub(crate) trait Parts: Clone {
-    type Part;
+    type Head;
+    type Point: Copy;
 
-    /// Calls `each` with each piece of the data that an update may change.
-    fn each_part(&self, each: impl FnMut(Self::Part));
+    /// Returns the data that an update may change, without the points.
+    fn head(&self) -> Self::Head;
 
-    /// Restores the data from the pieces, which arrive in the order of [`Self::each_part`].
-    fn put_together(&mut self, parts: impl Iterator<Item = Self::Part>);
+    /// Returns the points.
+    fn points(&self) -> &[Self::Point];
+
+    /// Restores the data. The points arrive in reverse order.
+    fn put_together(&mut self, head: Self::Head, reversed: impl Iterator<Item = Self::Point>);
 }
 
-/// A piece of the contacts of two convex solids.
+/// The head of the contacts of two convex solids.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum ContactPart<N: Real, const D: usize> {
-    Point(RawPoint<N, D>),
-    Pose(Pose<N, D>),
-    Head { normal: Vector<N, D>, ids: PairIds, is_swapped: bool },
+pub(crate) struct ContactHead<N: Real, const D: usize> {
+    normal: Vector<N, D>,
+    ids: PairIds,
+    is_swapped: bool,
+    pose12: Option<Pose<N, D>>,
 }
 
 impl<N: Space<D>, const D: usize> Parts for ContactEntry<N, ContactState<N, D>> {
-    type Part = ContactPart<N, D>;
+    type Head = ContactHead<N, D>;
+    type Point = RawPoint<N, D>;
 
-    fn each_part(&self, mut each: impl FnMut(Self::Part)) {
-        let (RawManifold { normal, ids, points, pose12 }, is_swapped) = self.state.kept();
-        each(ContactPart::Head { normal: *normal, ids: *ids, is_swapped });
-        pose12.iter().for_each(|pose| each(ContactPart::Pose(*pose)));
-        points.iter().for_each(|point| each(ContactPart::Point(*point)));
+    fn head(&self) -> Self::Head {
+        let (RawManifold { normal, ids, pose12, .. }, is_swapped) = self.state.kept();
+        ContactHead { normal: *normal, ids: *ids, is_swapped, pose12: *pose12 }
     }
 
-    fn put_together(&mut self, parts: impl Iterator<Item = Self::Part>) {
-        let mut raw = RawManifold::default();
-        let mut was_swapped = false;
-        for part in parts {
-            match part {
-                ContactPart::Point(point) => raw.points.push(point),
-                ContactPart::Pose(pose) => raw.pose12 = Some(pose),
-                ContactPart::Head { normal, ids, is_swapped } => {
-                    (raw.normal, raw.ids, was_swapped) = (normal, ids, is_swapped);
-                }
-            }
-        }
-        self.state.keep(raw, was_swapped);
+    fn points(&self) -> &[Self::Point] {
+        &self.state.kept().0.points
+    }
+
+    fn put_together(&mut self, head: Self::Head, reversed: impl Iterator<Item = Self::Point>) {
+        let ContactHead { normal, ids, is_swapped, pose12 } = head;
+        let mut points: SmallVec<_> = reversed.collect();
+        points.reverse();
+        self.state.keep(RawManifold { normal, ids, points, pose12 }, is_swapped);
     }
 }
 
-/// Implements [`Parts`] for states that are recorded in a single piece.
-macro_rules! in_one_part {
+/// Implements [`Parts`] for states that are recorded whole, as heads.
+macro_rules! whole {
     ($([$($generics:tt)*] $type:ty;)*) => {
         $(impl<$($generics)*> Parts for $type {
-            type Part = Self;
+            type Head = Self;
+            type Point = ();
 
-            fn each_part(&self, mut each: impl FnMut(Self)) {
-                each(self.clone());
+            fn head(&self) -> Self {
+                self.clone()
             }
 
-            fn put_together(&mut self, parts: impl Iterator<Item = Self>) {
-                parts.for_each(|part| *self = part);
+            fn points(&self) -> &[()] {
+                &[]
+            }
+
+            fn put_together(&mut self, head: Self, _: impl Iterator<Item = ()>) {
+                *self = head;
             }
         })*
     };
 }
 
-in_one_part! {
+whole! {
     [N: Real, const D: usize] ContactEntry<N, CompositeState<N, D>>;
     [N: Real] ProximityEntry<N>;
     [N: Space<D>, const D: usize] CustomContactEntry<N, D>;
@@ -95,25 +102,36 @@ in_one_part! {
 }
 
 #[cfg(test)]
-in_one_part! {
+whole! {
     [] u32;
 }
 
 /// A change of a group, which can be undone.
-pub(crate) enum GroupNote<S: Parts, R> {
+pub(crate) enum GroupNote<S: Parts> {
     /// A pair was added at the end.
     Pushed,
-    /// A pair was removed, and the last one moved to its index.
-    Removed(u32, Box<GroupRow<S, R>>),
-    /// A pair before a change other than an update, or before it was replaced.
-    Replaced(u32, Box<GroupRow<S, R>>),
-    /// A pair before an update computed it; its parts are in the notes that follow.
-    Written {
-        place: u32,
-        due: bool,
-        is_touching: bool,
-    },
-    Part(S::Part),
+    /// A pair was removed, and the last one moved to its index. Its row is kept.
+    Removed(u32),
+    /// A pair before a change other than an update, or before it was replaced. Its row is kept.
+    Replaced(u32),
+    /// A pair before an update computed it. Its points are in [`Group::point_journal`]; its
+    /// reference is kept, if the group has references.
+    Written { place: u32, num_points: u32, due: bool, is_touching: bool, head: S::Head },
+}
+
+/// Data of a note of a group.
+pub(crate) enum KeptPair<S, R> {
+    Row(Box<GroupRow<S, R>>),
+    Reference(R),
+}
+
+impl<S, R> KeptPair<S, R> {
+    fn reference(self) -> Option<R> {
+        match self {
+            Self::Row(_) => None,
+            Self::Reference(reference) => Some(reference),
+        }
+    }
 }
 
 impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
@@ -128,27 +146,35 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         })
     }
 
-    /// Records a pair before an update computes it, if there are marks and the pair has not been
-    /// recorded since the last mark.
-    pub(super) fn note(&mut self, place: u32) {
+    /// Records the pairs at the given indices before an update computes them, if there are marks.
+    /// A pair is recorded once for each mark.
+    fn note(&mut self, places: impl Iterator<Item = u32>) {
+        if self.journal.is_on() {
+            places.for_each(|place| self.note_one(place));
+        }
+    }
+
+    fn note_one(&mut self, place: u32) {
         let at = place as usize;
-        if !self.journal.is_on()
-            || core::mem::replace(&mut self.noted[at], self.period) == self.period
-        {
+        if core::mem::replace(&mut self.noted[at], self.period) == self.period {
             return;
         }
+        let points = self.states[at].points();
+        let num_points = u32::try_from(points.len()).expect("few enough points for ids");
+        self.point_journal.note_all(points);
         let (due, is_touching) = (self.dirty[at], self.is_touching(place));
-        self.journal.note(GroupNote::Written { place, due, is_touching });
-        self.states[at].each_part(|part| self.journal.note(GroupNote::Part(part)));
-        if let Some(references) = &self.references {
-            self.reference_journal.note(references[at].clone());
+        let head = self.states[at].head();
+        let written = GroupNote::Written { place, num_points, due, is_touching, head };
+        match &self.references {
+            None => self.journal.note(written),
+            Some(all) => self.journal.note_kept(written, KeptPair::Reference(all[at].clone())),
         }
     }
 
     /// Records a pair before a change other than an update, if there are marks.
     pub(super) fn note_whole(&mut self, place: u32) {
         if self.journal.is_on() {
-            self.journal.note(GroupNote::Replaced(place, self.row(place)));
+            self.journal.note_kept(GroupNote::Replaced(place), KeptPair::Row(self.row(place)));
             self.noted[place as usize] = self.period;
         }
     }
@@ -156,17 +182,18 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
     /// Records a pair before its removal, if there are marks.
     pub(super) fn note_removed(&mut self, place: u32) {
         if self.journal.is_on() {
-            self.journal.note(GroupNote::Removed(place, self.row(place)));
+            self.journal.note_kept(GroupNote::Removed(place), KeptPair::Row(self.row(place)));
             self.noted.swap_remove(place as usize);
         }
     }
 
     /// Records the pairs that the update is about to compute.
     fn note_due<N: Space<D>, const D: usize>(&mut self, table: &ObjectTable<N, D>) {
-        for place in 0..self.keys.len() {
-            let [first, second] = self.keys[place];
-            if self.dirty[place] || table.has_changed(first) || table.has_changed(second) {
-                self.note(u32::try_from(place).expect("fewer than 2^32 pairs fit in memory"));
+        let end = if self.journal.is_on() { self.keys.len() } else { 0 };
+        for at in 0..end {
+            let [first, second] = self.keys[at];
+            if self.dirty[at] || table.has_changed(first) || table.has_changed(second) {
+                self.note_one(u32::try_from(at).expect("fewer than 2^32 pairs fit in memory"));
             }
         }
     }
@@ -175,7 +202,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
     fn mark(&mut self, number: u64) {
         if !self.is_empty() || self.journal.is_on() {
             self.journal.mark(number, ());
-            self.reference_journal.mark(number, ());
+            self.point_journal.mark(number, ());
             self.noted.resize(self.keys.len(), 0);
             self.begin_period();
         }
@@ -192,7 +219,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
     fn forget_before(&mut self, number: u64) {
         if self.journal.is_on() {
             self.journal.forget_before(number);
-            self.reference_journal.forget_before(number);
+            self.point_journal.forget_before(number);
             if !self.journal.is_on() {
                 self.noted = Vec::new();
             }
@@ -208,25 +235,26 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
             while !self.is_empty() {
                 self.pop();
             }
-            (self.reference_journal, self.noted) = (Journal::default(), Vec::new());
+            (self.point_journal, self.noted) = (Journal::default(), Vec::new());
             return;
         }
-        let mut parts = Vec::new();
         while let Some(note) = journal.undo(number) {
             match note {
-                GroupNote::Part(part) => parts.push(part),
-                GroupNote::Written { place, due, is_touching } => {
-                    self.states[place as usize].put_together(parts.drain(..).rev());
-                    let reference = self.references.as_ref();
-                    let reference = reference.and_then(|_| self.reference_journal.undo(number));
-                    self.put(place, due, is_touching, reference);
+                GroupNote::Written { place, num_points, due, is_touching, head } => {
+                    let points = (0..num_points).map_while(|_| self.point_journal.undo(number));
+                    self.states[place as usize].put_together(head, points);
+                    let reference = self.references.as_ref().map(|_| journal.take_kept());
+                    self.put(place, due, is_touching, reference.and_then(KeptPair::reference));
                 }
                 GroupNote::Pushed => self.pop(),
-                GroupNote::Replaced(place, row) => {
-                    self.put_row(place, *row);
-                    changed(place);
+                GroupNote::Replaced(place) => {
+                    if let KeptPair::Row(row) = journal.take_kept() {
+                        self.put_row(place, *row);
+                        changed(place);
+                    }
                 }
-                GroupNote::Removed(place, row) => {
+                GroupNote::Removed(place) => {
+                    let KeptPair::Row(row) = journal.take_kept() else { continue };
                     let last = self.push(row.key, row.state.clone(), false);
                     if place != last {
                         self.put_row(last, *self.row(place));
@@ -237,9 +265,8 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
                 }
             }
         }
-        let _ = self.reference_journal.undo(number);
+        let _ = self.point_journal.undo(number);
         self.journal = journal;
-        self.noted.clear();
         self.noted.resize(self.keys.len(), 0);
         self.begin_period();
     }
@@ -274,11 +301,11 @@ macro_rules! each_group {
     ($lanes:expr, |$lane:pat_param, $group:ident| $action:expr) => {{
         let PairGroups { contacts, composites, proximity, custom_contacts, custom_proximity } =
             $lanes;
-        for (number, $group) in (0..).zip(contacts) {
+        for (number, $group) in contacts.numbered_mut() {
             let $lane = GroupId::Contacts(number);
             $action;
         }
-        for (number, $group) in (0..).zip(proximity) {
+        for (number, $group) in proximity.numbered_mut() {
             let $lane = GroupId::Proximity(number);
             $action;
         }
@@ -298,17 +325,16 @@ macro_rules! each_group {
 }
 
 impl<N: Space<D>, const D: usize> PairGroups<N, D> {
-    /// Records the pairs at some locations before they are computed.
+    /// Records some pairs of one group before they are computed.
     pub(super) fn note(&mut self, picked: &[Location]) {
-        for &Location { group, row } in picked {
-            match group {
-                GroupId::Contacts(number) => self.contacts[usize::from(number)].note(row),
-                GroupId::Composites => self.composites.note(row),
-                GroupId::Proximity(number) => self.proximity[usize::from(number)].note(row),
-                GroupId::CustomContacts => self.custom_contacts.note(row),
-                GroupId::CustomProximity => self.custom_proximity.note(row),
-                GroupId::Nothing => {}
-            }
+        let places = picked.iter().map(|at| at.row);
+        match picked[0].group {
+            GroupId::Contacts(number) => self.contacts.of_mut(number).note(places),
+            GroupId::Composites => self.composites.note(places),
+            GroupId::Proximity(number) => self.proximity.of_mut(number).note(places),
+            GroupId::CustomContacts => self.custom_contacts.note(places),
+            GroupId::CustomProximity => self.custom_proximity.note(places),
+            GroupId::Nothing => {}
         }
     }
 

@@ -123,7 +123,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     pub(crate) fn record(&self) -> Option<NarrowRecord<N>> {
         let phase = self.phase_record()?;
         let mut pairs = Vec::with_capacity(self.pairs.len());
-        for group in &self.groups.contacts {
+        for group in self.groups.contacts.all() {
             pairs.extend(group.pair_records(Reference::record, |entry| {
                 let (raw, is_swapped) = entry.state.kept();
                 StateRecord::Contacts { number: entry.number, is_swapped, manifold: raw.record() }
@@ -134,7 +134,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             let (number, is_swapped) = (entry.number, *swapped);
             StateRecord::Composite { number, is_swapped, contacts: contacts.record() }
         }));
-        for group in &self.groups.proximity {
+        for group in self.groups.proximity.all() {
             let unused = |(): &()| unreachable!("proximities have no references");
             let state = |entry: &ProximityEntry<N>| StateRecord::Proximity(entry.status.0);
             pairs.extend(group.pair_records(unused, state));
@@ -243,8 +243,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                     ManifoldRequest::new(table.beyond_skins(key, linear), angular, max_points);
                 let mut entry = new_entry(table, key, request, *number);
                 entry.state.keep(manifold.restore()?, *is_swapped);
-                let (group, contacts) =
-                    (&mut groups.contacts[usize::from(kinds)], entry.state.len());
+                let (group, contacts) = (groups.contacts.made(kinds), entry.state.len());
                 let row = group.push_restored((key, entry), contacts > 0, pair.is_due);
                 group.restore_reference(row, reference(contacts)?);
                 row
@@ -272,7 +271,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 StateRecord::Proximity(status),
             ) => {
                 let entry = ProximityEntry { margin, status: Status(*status) };
-                let group = &mut groups.proximity[usize::from(kinds)];
+                let group = groups.proximity.made(kinds);
                 group.push_restored((key, entry), false, pair.is_due)
             }
             _ => return Err(other()),

@@ -8,7 +8,7 @@ use super::default_narrow_phase::push_change;
 use super::dirty_contacts::{ContactRows, DirtyContacts};
 use super::entry::{Change, ContactEntry, ContactView, ProximityEntry, posed};
 use super::group::{CHUNK, Group, PairKey, Rows};
-use super::pair_groups::{GroupId, Location};
+use super::pair_groups::{ContactGroup, GroupId, Location};
 use super::prefetch::update_prefetched;
 use super::reuse::{Reference, Reuse};
 use super::rewind::Parts;
@@ -89,8 +89,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             self.groups.note_due(table);
         }
         let reuse = Reuse { table, tolerance: self.tolerance };
-        // There are more than a hundred groups, most of them empty.
-        for group in self.groups.contacts.iter_mut().filter(|group| !group.is_empty()) {
+        let is_used = |group: &&mut ContactGroup<N, D>| !group.is_empty();
+        for group in self.groups.contacts.all_mut().iter_mut().filter(is_used) {
             let solids = group.state(0).state.solids().copied();
             update_group(group, changes, |rows, changes| {
                 update_convex(rows, reuse, changes, solids.as_ref());
@@ -106,7 +106,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 reuse.note(rows, row);
             });
         });
-        for group in self.groups.proximity.iter_mut().filter(|group| !group.is_empty()) {
+        for group in self.groups.proximity.all_mut() {
             update_group(group, changes, |rows, changes| {
                 update_each(rows, table, changes, update_status);
             });
@@ -197,7 +197,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         let reuse = Reuse { table, tolerance: self.tolerance };
         match picked[0].group {
             GroupId::Contacts(kinds) => {
-                let rows = self.groups.contacts[usize::from(kinds)].rows();
+                let rows = self.groups.contacts.of_mut(kinds).rows();
                 update_picked_convex(rows, reuse, picked, changes);
             }
             GroupId::Composites => {
@@ -207,7 +207,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 });
             }
             GroupId::Proximity(kinds) => {
-                let rows = &mut self.groups.proximity[usize::from(kinds)].rows();
+                let rows = &mut self.groups.proximity.of_mut(kinds).rows();
                 update_each_picked(rows, picked, |rows, row| {
                     update_status(rows, table, row, changes);
                 });

@@ -340,7 +340,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
     /// Returns all manifolds with at least one contact, in memory order.
     pub(crate) fn contact_views<'a>(&'a self, table: &'a ObjectTable<N, D>) -> Views<'a, N, D> {
-        let convex = ConvexViews::new(&self.groups.contacts, table);
+        let convex = ConvexViews::new(self.groups.contacts.all(), table);
         let composites = CompositeViews::new(&self.groups.composites, table);
         Views { reads_in_place: table.reads_in_place(), convex, composites, custom: Some(self) }
     }
@@ -355,7 +355,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         let PairGroups { contacts, composites, .. } = &self.groups;
         // Cuts are between words of touching flags: first those of convex solids, then those of
         // composites. The last part also has the manifolds of custom algorithms.
-        let convex = ConvexViews::num_words(contacts);
+        let convex = ConvexViews::num_words(contacts.all());
         let words = convex + composites.touching().len();
         let pieces = pieces.min(words).max(1);
         (0..pieces).map(move |piece| {
@@ -397,7 +397,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         let location = self.locations[index];
         match location.group {
             GroupId::Contacts(kinds) => {
-                let group = &self.groups.contacts[usize::from(kinds)];
+                let group = self.groups.contacts.of(kinds);
                 let pair = BuiltIn { table, group, row: location.row };
                 Some(ContactPair(ViewedContacts::BuiltIn(pair)))
             }
@@ -416,9 +416,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     fn proximity_at(&self, index: usize) -> Option<ProximityPair> {
         let location = self.locations[index];
         let status = match location.group {
-            GroupId::Proximity(kinds) => {
-                self.groups.proximity[usize::from(kinds)].state(location.row).status
-            }
+            GroupId::Proximity(kinds) => self.groups.proximity.of(kinds).state(location.row).status,
             GroupId::CustomProximity => self.groups.custom_proximity.state(location.row).status,
             _ => return None,
         };
@@ -458,9 +456,9 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             let key = PairKey::from(pair);
             let row = location.row;
             let found = match location.group {
-                GroupId::Contacts(kinds) => self.groups.contacts[usize::from(kinds)].key(row),
+                GroupId::Contacts(kinds) => self.groups.contacts.of(kinds).key(row),
                 GroupId::Composites => self.groups.composites.key(row),
-                GroupId::Proximity(kinds) => self.groups.proximity[usize::from(kinds)].key(row),
+                GroupId::Proximity(kinds) => self.groups.proximity.of(kinds).key(row),
                 GroupId::CustomContacts => self.groups.custom_contacts.key(row),
                 GroupId::CustomProximity => self.groups.custom_proximity.key(row),
                 GroupId::Nothing => key,
@@ -469,9 +467,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 return Err(format!("the state of pair {key:?} is that of {found:?}"));
             }
             let has_contacts = match location.group {
-                GroupId::Contacts(kinds) => {
-                    self.groups.contacts[usize::from(kinds)].state(row).is_touching()
-                }
+                GroupId::Contacts(kinds) => self.groups.contacts.of(kinds).state(row).is_touching(),
                 GroupId::Composites => self.groups.composites.state(row).is_touching(),
                 _ => continue,
             };

@@ -235,9 +235,14 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
     /// the memory of the last one; pass it to [`Self::clear`] afterwards.
     pub(crate) fn take_order(&mut self) -> Vec<u32> {
         let mut order = core::mem::take(&mut self.order);
-        order.extend(self.entries.iter().map(|entry| entry.index).filter(|&index| index != GONE));
+        order.extend(self.waiting());
         order.sort_unstable();
         order
+    }
+
+    /// Iterates over the handle indices of the changed objects, in the order of their first change.
+    pub(super) fn waiting(&self) -> impl Iterator<Item = u32> + '_ {
+        self.entries.iter().map(|entry| entry.index).filter(|&index| index != GONE)
     }
 
     /// Writes the changes of an object to the targets, and marks the object as unchanged. Does

@@ -5,7 +5,7 @@ use super::bodies::{MAX_CHANGES, WorldBody, WorldBroadPhase};
 use super::changes::{BodyEntry, ChangeList, ChangeTargets};
 use super::dirty::DirtyTree;
 use super::entries;
-use super::fork::ObjectNote;
+use super::fork::{KeptObject, ObjectNote};
 use super::{CollisionGroups, CollisionObject, WorldError};
 use crate::bounding_volume::Aabb;
 use crate::broad_phase::ProxyHandle;
@@ -45,7 +45,7 @@ pub struct CollisionObjects<N: Space<D>, const D: usize, T> {
     pub(super) free: Vec<u32>,
     pub(super) changes: ChangeList<N, D>,
     pub(super) table: ObjectTable<N, D>,
-    pub(super) journal: Journal<ObjectNote<N, D, T>, Vec<BodyEntry<N, D>>>,
+    pub(super) journal: Journal<ObjectNote<N, D>, Vec<BodyEntry<N, D>>, KeptObject<N, D, T>>,
     /// Clones an object; `None` before the first mark, since `T` need not be `Clone` until then.
     pub(super) cloned: Option<CloneObject<N, D, T>>,
 }
@@ -333,7 +333,6 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         algorithms: &mut Vec<u32>,
     ) {
         let order = self.changes.take_order();
-        self.note_all(&order);
         let Self { slots, records, changes, table, .. } = self;
         table.begin_update();
         algorithms.clear();

@@ -11,7 +11,7 @@ use crate::math::Space;
 use crate::narrow_phase::{CollisionObjectHandle, DefaultNarrowPhase};
 use crate::world::{CollisionWorld, NarrowPhase, WorldBroadPhase};
 
-pub(super) use objects::ObjectNote;
+pub(super) use objects::{KeptObject, ObjectNote};
 pub(super) use rewind::History;
 pub use rewind::WorldMark;
 

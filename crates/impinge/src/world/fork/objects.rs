@@ -7,11 +7,13 @@ use crate::world::objects::Slot;
 use crate::world::{CollisionObject, CollisionObjects};
 
 /// A change of the objects, which can be undone.
-pub(in crate::world) enum ObjectNote<N: Space<D>, const D: usize, T> {
+#[derive(Clone, Copy)]
+pub(in crate::world) enum ObjectNote<N: Space<D>, const D: usize> {
     Added(CollisionObjectHandle),
-    Removed(Box<KeptObject<N, D, T>>),
-    /// An object before its first change since a mark, other than a move.
-    Changed(Box<KeptObject<N, D, T>>),
+    /// An object before its removal, with a [`KeptObject`].
+    Removed,
+    /// An object before its first change since a mark, other than a move, with a [`KeptObject`].
+    Changed,
     /// Handle index, pose and state of an object before its first move since a mark.
     Moved(u32, BodyMotion<N, D>),
 }
@@ -31,6 +33,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     {
         self.cloned = Some(Clone::clone);
         self.journal.mark(number, self.changes.entries().to_vec());
+        self.note_waiting();
         self.table.mark(number);
     }
 
@@ -45,10 +48,14 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         while let Some(note) = self.journal.undo(number) {
             match note {
                 ObjectNote::Added(handle) => self.unadd(handle),
-                ObjectNote::Removed(kept) => self.unremove(*kept),
-                ObjectNote::Changed(kept) => {
+                ObjectNote::Removed => {
+                    let kept = self.journal.take_kept();
+                    self.unremove(kept);
+                }
+                ObjectNote::Changed => {
+                    let kept = self.journal.take_kept();
                     let place = self.slots[kept.object.handle().uid()].record as usize;
-                    self.records[place] = self.unpack(*kept);
+                    self.records[place] = self.unpack(kept);
                 }
                 ObjectNote::Moved(index, motion) => {
                     let place = self.slots[index as usize].record as usize;
@@ -57,6 +64,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
             }
         }
         self.changes.go_back(self.journal.head().expect("the mark is kept"));
+        self.note_waiting();
         self.table.rewind(number);
     }
 
@@ -103,7 +111,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
             && self.journal.is_first_whole(object.handle().uid())
             && let Some(kept) = self.kept(place)
         {
-            self.journal.note(ObjectNote::Changed(kept));
+            self.journal.note_kept(ObjectNote::Changed, kept);
         }
     }
 
@@ -119,28 +127,27 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }
     }
 
-    /// Records the motion of the objects with these handle indices before an update processes them.
-    pub(in crate::world) fn note_all(&mut self, indices: &[u32]) {
-        if self.journal.is_on() {
-            for &index in indices {
-                self.note_motion(self.slots[index as usize].record as usize);
-            }
+    /// Records the motion of the objects that changed before a mark, which the next update
+    /// processes. All other objects that it processes are recorded when they change.
+    fn note_waiting(&mut self) {
+        for index in self.changes.waiting().collect::<Vec<_>>() {
+            self.note_motion(self.slots[index as usize].record as usize);
         }
     }
 
     /// Records an object before it is removed, if there are marks.
     pub(in crate::world) fn note_removed(&mut self, handle: CollisionObjectHandle) {
         if let Some(kept) = self.kept(self.slots[handle.uid()].record as usize) {
-            self.journal.note(ObjectNote::Removed(kept));
+            self.journal.note_kept(ObjectNote::Removed, kept);
         }
     }
 
     /// Returns a copy of the object at index `place` of the records; `None` if there are no marks.
-    fn kept(&self, place: usize) -> Option<Box<KeptObject<N, D, T>>> {
+    fn kept(&self, place: usize) -> Option<KeptObject<N, D, T>> {
         let cloned = self.cloned.filter(|_| self.journal.is_on())?;
         let object = self.records.get(place)?;
         let skin = self.changes.skin(object.body.index());
         let prediction = self.changes.known_prediction(object.body.index());
-        Some(Box::new(KeptObject { object: cloned(object), skin, prediction }))
+        Some(KeptObject { object: cloned(object), skin, prediction })
     }
 }

@@ -1,4 +1,4 @@
-//! Tests upper bounds of the memory that a world uses for each object at rest.
+//! Tests upper bounds of the memory that a world uses for each object at rest, and of the memory that clones and marks take.
 
 use crate::support::world_stage;
 
@@ -90,5 +90,56 @@ fn a_quiet_step_takes_no_memory() {
         // Within these 128 steps the world checks twice whether it can release memory.
         let used = measure(|| (0..128).for_each(|_| grid.world.update()));
         assert_eq!(used.count_total, 0, "spacing {spacing}: {used:?}");
+    }
+}
+
+/// A clone of a world without objects copies no empty groups of pairs and no scratch lists.
+#[test]
+fn a_clone_of_a_small_world_takes_few_blocks_of_memory() {
+    let clone = |count| {
+        let grid = Grid::<f64, 3>::new(count, 0.95);
+        let mut world = grid.world;
+        (0..2).for_each(|_| world.update());
+        let mut clone = None;
+        let used = measure(|| clone = Some(world.clone()));
+        let again = measure(|| clone.as_mut().expect("just made").clone_from(&world));
+        (used.count_total, used.bytes_total, again.count_total)
+    };
+    let [(blocks, bytes, again), (blocks1000, _, again1000)] = [0, 1000].map(clone);
+    assert!(blocks <= 8 && bytes <= 8192 && again == 0, "{blocks} blocks, {bytes} bytes, {again}");
+    assert!(blocks1000 <= 70 && again1000 == 0, "{blocks1000} blocks, {again1000} again");
+}
+
+/// Bytes that 16 marks, each with a step of one ball, and going back eight of them take, after as
+/// many before.
+fn marked_steps<const D: usize>(count: usize, spacing: f64) -> [u64; 2]
+where
+    f32: Stage<D>,
+{
+    let mut grid = Grid::<f32, D>::new(count, spacing);
+    grid.rest();
+    let mut marks = Vec::with_capacity(64);
+    let mut step = |grid: &mut Grid<f32, D>| {
+        marks.push(grid.world.mark());
+        let mut at = [0.0; D];
+        at[0] = if marks.len() % 2 == 0 { 0.0 } else { 0.04 };
+        grid.world.set_position(grid.handles[0], f32::at(at));
+        grid.world.update();
+    };
+    (0..32).for_each(|_| step(&mut grid));
+    let steps = measure(|| (0..16).for_each(|_| step(&mut grid)));
+    let back = measure(|| grid.world.rewind(marks[marks.len() - 8]));
+    [steps.bytes_total, back.bytes_total]
+}
+
+/// A mark copies nothing of the objects at rest, whether they have pairs or not.
+#[test]
+fn marks_and_rewinds_take_memory_for_changes_alone() {
+    for spacing in [0.95, 1.5] {
+        let [small, large] = [27, 8000].map(|count| marked_steps::<3>(count, spacing));
+        assert_eq!(small, large, "spacing {spacing}: bytes of steps and of going back");
+        assert!(small[0] <= 16 * 4096, "spacing {spacing}: {small:?}");
+        let [small, large] = [25, 8100].map(|count| marked_steps::<2>(count, spacing));
+        assert_eq!(small, large, "spacing {spacing}: bytes of steps and of going back");
     }
 }
