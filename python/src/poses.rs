@@ -64,7 +64,7 @@ impl<N: Numeric<D>, const D: usize> AsPose<N, D> for Identity {
     }
 }
 
-/// The poses of an argument.
+/// The poses that an argument gives: its matrices, or the identity if it is missing.
 pub(crate) enum Source<'a, N: Numeric<D>, const D: usize> {
     Identity(OnePose<Identity>),
     Matrices(Matrices<'a, N, D>),

@@ -359,7 +359,7 @@ pub(crate) enum ShapesArgument<'a, 'py, N: Numeric<D>, const D: usize> {
     Picked { shapes: Vec<ShapeHandle<N, D>>, picks: PyReadonlyArray1<'py, u32> },
 }
 
-/// The shapes of an argument, and the indices into them.
+/// The shapes that an argument gives, and the indices into them if it has the field `picks`.
 type Given<'py> = (Vec<PyRef<'py, Shape>>, Option<PyReadonlyArray1<'py, u32>>);
 
 fn given<'py>(argument: &Bound<'py, PyAny>, name: &str) -> PyResult<Given<'py>> {
@@ -379,7 +379,7 @@ fn given<'py>(argument: &Bound<'py, PyAny>, name: &str) -> PyResult<Given<'py>> 
     }
 }
 
-/// Returns the scalar and dimension of the first shape of an argument.
+/// Returns the scalar and dimension of the first shape that an argument gives.
 pub(crate) fn kind_of(argument: &Bound<'_, PyAny>, name: &str) -> PyResult<Kind> {
     if let Ok(shape) = argument.cast::<Shape>() {
         return Ok(shape.get().kind);

@@ -1,4 +1,4 @@
-//! Converts numbers of arguments to the scalar and dimension of a scene.
+//! Converts numbers that arguments give to the scalar and dimension of a scene.
 
 use impinge::math::{Real, Vector};
 
@@ -6,8 +6,8 @@ use crate::args::Numbers;
 use crate::error::CliError;
 use crate::number::significant;
 
-/// Converts a number of an argument; an error if it is infinite after rounding to the scalar.
-/// `name` is the name of the argument in the error.
+/// Converts a number that an argument gives; an error if it is infinite after rounding to the
+/// scalar. `name` is the name of the argument in the error.
 pub(crate) fn scalar<N: Real>(name: &'static str, value: f64) -> Result<N, CliError> {
     let converted = N::lit(value);
     if converted.is_finite_number() {
@@ -16,7 +16,7 @@ pub(crate) fn scalar<N: Real>(name: &'static str, value: f64) -> Result<N, CliEr
     Err(CliError::argument(name, significant(value), "is beyond the numbers of the scene"))
 }
 
-/// Converts a vector of an argument; an error unless it has exactly `D` numbers.
+/// Converts a vector that an argument gives; an error unless it has exactly `D` numbers.
 pub(crate) fn vector<N: Real, const D: usize>(
     name: &'static str,
     numbers: &Numbers,
@@ -32,7 +32,8 @@ pub(crate) fn vector<N: Real, const D: usize>(
     Ok(vector)
 }
 
-/// Converts a direction of an argument; an error if it is zero. The result is not normalized.
+/// Converts a direction that an argument gives; an error if it is zero. The result is not
+/// normalized.
 pub(crate) fn direction<N: Real, const D: usize>(
     name: &'static str,
     numbers: &Numbers,

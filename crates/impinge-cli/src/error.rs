@@ -54,7 +54,7 @@ impl CliError {
         move |error| Self::Read { path: path.to_owned(), error }
     }
 
-    /// Creates the error of an argument that is invalid for the scene or recording.
+    /// Creates the error for an argument that is invalid for the scene or recording.
     pub(crate) fn argument(
         name: &'static str,
         value: impl fmt::Display,

@@ -10,7 +10,8 @@ use oxijolt_sys::*;
 
 use crate::{Digest, sorted};
 
-/// The duration of a step in seconds. Jolt does not accept 0; no body has a velocity.
+/// The duration of a step in seconds. With 0 Jolt detects no collisions. The value does not move
+/// bodies, because none has a velocity.
 const STEP: f32 = 1.0 / 60.0;
 /// The number of object layers, and of broad-phase layers: one layer contains all bodies.
 const LAYERS: u32 = 1;

@@ -31,18 +31,19 @@ pub(crate) trait Dimension<N: Space<D>, const D: usize> {
     fn own_shape(kind: usize, bytes: &mut Bytes<'_>) -> Option<ShapeHandle<N, D>>;
     /// Returns whether the shape is a tetrahedron, whose kind changes if scaling makes it flat.
     fn is_tetrahedron(shape: &ShapeHandle<N, D>) -> bool;
-    /// Returns a body that moves and rotates at constant rates.
+    /// Returns a motion from `position` at a constant velocity and angular velocity.
     fn motion(
         position: Isometry<N, Self::Turn, D>,
         bytes: &mut Bytes<'_>,
     ) -> Box<dyn RigidMotion<N, D>>;
-    /// Changes a height, a hole or a diagonal of a height field, or all heights. `None` for other
-    /// shapes, and if the library rejects a height.
+    /// Returns a copy of a height field with another height, hole or (in 3D) diagonal, or with all
+    /// heights replaced. `None` for other shapes, and if the library rejects a height.
     fn dig(shape: &ShapeHandle<N, D>, bytes: &mut Bytes<'_>) -> Option<ShapeHandle<N, D>>;
-    /// Registers a filter that accepts only pairs that [`may_meet`].
+    /// Registers a filter that accepts a pair only if [`may_meet`] returns `true`.
     fn filter(world: &mut CollisionWorld<N, D, u8>);
-    /// Computes the convex hull of random points and, for some kinds of shapes, the surface of
-    /// `shape`. Checks the size of the hull, and that no coordinate of the surface is NaN.
+    /// Computes the convex hull of random points and, for some kinds of shapes, the outline (in 2D)
+    /// or the surface of `shape`. Checks that the hull has enough vertices, and that no coordinate
+    /// of the outline or surface is NaN.
     fn transform(shape: &ShapeHandle<N, D>, bytes: &mut Bytes<'_>);
 }
 
@@ -257,7 +258,7 @@ fn field3<N: Real>(bytes: &mut Bytes<'_>) -> Option<ShapeHandle<N, 3>> {
     Some(ShapeHandle::new(field.with_diagonals(diagonals)))
 }
 
-/// Checks that no point of a surface is NaN.
+/// Checks that no coordinate of the points is NaN.
 fn check_finite<N: Real, const D: usize>(points: &[Point<N, D>]) {
     let mut numbers = points.iter().flat_map(|point| point.iter());
     assert!(numbers.all(|x| !x.as_f64().is_nan()), "{points:?}");

@@ -33,7 +33,7 @@ pub(crate) struct Manager {
     crowd: Crowd,
     /// The unique number of this manager.
     number: u64,
-    /// The cached results about the other manager of the last query.
+    /// The cached results about the other manager that the last such query named.
     meeting: Option<Meeting>,
 }
 
@@ -154,7 +154,9 @@ impl Manager {
 }
 
 impl Manager {
-    /// Takes the cached results about another manager and updates them; the caller stores them again.
+    /// Returns up-to-date results about another manager. Updates the cached results if they are
+    /// about `other`. If none are cached, computes them; cached results about a third manager are
+    /// dropped. The cache is then empty, and the caller stores the returned results in it.
     fn meet(&mut self, other: &Self) -> Meeting {
         let crowds = Crowds(&self.crowd, &other.crowd);
         let known = self.meeting.take().filter(|meeting| meeting.other == other.number);
@@ -168,7 +170,8 @@ impl Manager {
     }
 
     /// Returns a touching pair of an object and an object of another manager: the first cached pair
-    /// if it still touches. If there is no touching pair, the cached results are up to date.
+    /// if it still touches, else the first pair of the updated results. If it returns `None`, no
+    /// pair touches, and the cached results are up to date.
     fn touching_pair_with(&mut self, other: &Self) -> Option<Pair> {
         let crowds = Crowds(&self.crowd, &other.crowd);
         let known = self.meeting.as_ref().filter(|meeting| meeting.other == other.number);

@@ -24,7 +24,7 @@ pub(crate) struct Size(pub(crate) [u32; 2]);
 /// 256 MiB.
 const MAX_SIDE: u32 = 8192;
 
-/// The reason why the text of an argument is invalid.
+/// The reason why an argument cannot be parsed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum NumberError {
     /// The text does not parse as a number.

@@ -18,8 +18,8 @@ type Isometry<const D: usize> = <f32 as Space<D>>::Isometry;
 /// A function that converts a placement to an isometry.
 type Turn<const D: usize> = fn(&Placement<D>) -> Isometry<D>;
 
-/// The number of updates before the queries: nothing moves any more, and the trees have their final
-/// order.
+/// The number of updates before the queries. No object moves during them, and they are enough for
+/// the trees to reach their final order.
 const UPDATES: usize = 128;
 
 /// The contender: a world and a tree of boxes of the same scene.
@@ -61,7 +61,8 @@ where
     f32: Space<D>,
 {
     /// Creates the contender. No object interacts with another, so that the world has queries but
-    /// no pairs. The first `moved` objects were half a unit away at the last update.
+    /// no pairs. The first `moved` objects get their positions in the scene after the last update;
+    /// until then, they are 0.5 lower on the first axis.
     fn new(name: &'static str, scene: &Scene<D>, moved: usize, isometry: Turn<D>) -> Self {
         let mut world = CollisionWorld::new(0.02);
         let mut nobody = CollisionGroups::new();
@@ -116,7 +117,7 @@ impl<const D: usize> Library<D> for Impinge<D>
 where
     f32: Space<D>,
 {
-    /// Returns the contenders of this library, the first of which the others are compared with.
+    /// Returns the contenders of this library; all others are compared with the first of them.
     fn contenders<'a>(&'a self, questions: &Questions<D>) -> Vec<Contender<'a>> {
         match questions {
             Questions::Rays(..) | Questions::Casts(..) => self.on_the_way(questions),

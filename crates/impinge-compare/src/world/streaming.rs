@@ -6,8 +6,8 @@ use impinge::narrow_phase::ContactStream;
 use super::contender::{Change, Contender, Reading};
 use super::ours::Impinge;
 
-/// A world of impinge whose contacts are read through a [`ContactStream`], which also contains the
-/// index of each contact at the previous reading.
+/// A world of impinge whose contacts are read through a [`ContactStream`]. For each contact, the
+/// stream also stores the index that the contact had at the previous reading, if it existed then.
 pub struct Streaming<const D: usize>
 where
     f32: Space<D>,
@@ -20,7 +20,7 @@ impl<const D: usize> Streaming<D>
 where
     f32: Space<D>,
 {
-    /// Reads a world through a stream.
+    /// Creates the contender from a world, with an empty stream.
     pub fn new(inner: Impinge<D>) -> Self {
         Self { inner, stream: ContactStream::new() }
     }

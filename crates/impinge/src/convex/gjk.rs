@@ -319,9 +319,9 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
     }
 
     /// Returns the separation at the end of a search whose bounds agree, or whose best normal
-    /// separates the difference from the origin up to rounding. If no points were found that face
-    /// each other along `best`, the normal `last` of the nearest point replaces it, if it is
-    /// equally good up to rounding.
+    /// separates the difference from the origin up to rounding. The normal `last` of the nearest
+    /// point replaces `best` if it is equally good up to rounding and no points were found that
+    /// face each other along `best`.
     fn final_separation(&self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
         let (mix, mut best) = (Mix::of(&self.simplex), self.best);
         if let Some(polished) = polish(difference, &mut best, self.simplex.vertices()) {

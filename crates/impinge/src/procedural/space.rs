@@ -9,8 +9,8 @@ use crate::shape::{
     FeatureId, TaperedCapsule, Tetrahedron, Triangle,
 };
 
-/// Returns a surface of meridians and parallels: `n = subdivisions` meridians, each with `4 k`
-/// parts to a full turn, `k = ⌈n / 4⌉`.
+/// Returns a surface with vertices on the ball, where meridians and parallels cross. There are
+/// `n = subdivisions` meridians from pole to pole, each in `2 k` equal parts, `k = ⌈n / 4⌉`.
 ///
 /// There are `2 + n (2 k − 1)` vertices and `2 n (2 k − 1)` triangles; the first vertex is the pole
 /// on the positive side of y, the last vertex the opposite pole. The gap is at most
@@ -26,10 +26,10 @@ use crate::shape::{
 /// ```
 #[must_use]
 pub fn ball<N: Real>(ball: &Ball<N>, subdivisions: u32) -> TriangleSurface<N> {
-    // Quadrilaterals between meridians and parallels are flat trapezoids inscribed in the sphere. A
-    // quadrilateral across the equator, which does not occur because the equator is a parallel,
-    // would be nearest to the centre: at cos(π / n) · cos(π / 4k) of the radius, which is at least
-    // cos²(π / n).
+    // Two meridians and two parallels bound a flat trapezoid, which is farther from the centre the
+    // higher its latitude. A trapezoid centred on the equator would have the distance
+    // cos(π / n) · cos(π / 4k) times the radius, which is at least cos²(π / n) times it. None is
+    // centred there, since the equator is a parallel; so all are farther away.
     let count = parts_of_turn(subdivisions);
     let quarter = count.div_ceil(4);
     let sphere =

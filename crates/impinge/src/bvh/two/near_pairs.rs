@@ -134,9 +134,11 @@ pub(crate) fn visit_pairs<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
-    /// If the limit is positive and the trees are near each other, passes one object of each tree
-    /// to `guess`: two that are probably near each other. Then opens pairs of blocks, nearest
-    /// first, until the next pair is beyond the bound.
+    /// Searches all pairs of objects, beginning with `whole`, the pair of the top blocks. If
+    /// [`TreePair::limit`] is positive and [`Self::near`] finds children of the first top block,
+    /// first passes two objects that are probably near each other to [`TreePair::guess`], one of
+    /// each tree. Then opens pairs of blocks in the order of their lower bounds, until the lowest
+    /// exceeds [`TreePair::bound`] or this bound is negative.
     fn run(&mut self, whole: BlockPair) {
         self.queue.push(Reverse(whole));
         let near = || self.near(0, whole.layers[0], 0, &self.other_box(0, &whole));

@@ -288,7 +288,9 @@ fn spoiled<N: Real, const D: usize>(case: &mut Case<N, D>, number: usize) {
     }
 }
 
-/// Replaces one length of a solid by `length`, or by zero if that is not a valid length.
+/// Returns a copy of a solid with another size: the radius of a ball, both lengths of a capsule, or
+/// the second half extent of a box is `length`. A segment then ends on the second axis at that
+/// height. A `length` that is negative or not finite counts as zero.
 fn with_length<N: Real, const D: usize>(solid: &Solid<N, D>, length: N) -> Solid<N, D> {
     let is_length = length.is_finite_number() && length >= N::ZERO;
     let length = if is_length { length } else { N::ZERO };

@@ -151,7 +151,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         both.any(|(surface, part)| surface.is_some_and(|surface| surface.is_beside_ghost(part)))
     }
 
-    /// Returns whether one of two parts bounds a body.
+    /// Returns whether one of two parts belongs to a surface that encloses a solid region.
     pub(super) fn are_bodies(&self, parts: [u32; 2]) -> bool {
         let mut both = self.surfaces.iter().zip(parts);
         both.any(|(surface, part)| surface.is_some_and(|surface| surface.is_body(part)))

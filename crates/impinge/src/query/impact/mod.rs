@@ -433,7 +433,7 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
         Some(Self { first, ordered, pair, path, scale })
     }
 
-    /// Returns the earliest impact with the solids in canonical order, and its [`Impact::toi`].
+    /// Returns the earliest impact and its [`Impact::toi`], which is finite. `None` without impact.
     #[inline(always)]
     fn touch(&self) -> Option<(PartArrival<N, D>, N)> {
         let found = if self.ordered.has_composite() {

@@ -14,10 +14,8 @@ use crate::shape::{Ball, Feature, FeatureId, SupportMap};
 /// line that grazes a round face the gap shrinks by a constant factor in each step.
 const ROUNDS: usize = 64;
 
-/// Returns the span of the line in the solid, searched within a ball around the solid, so that the
-/// origin of the ray may be at any distance.
-///
-/// If the ray hits from outside, the end of the span is infinite, as it is not used.
+/// Returns the span of time that the line of a ray spends in a solid; see [`RaySolid::span`]. The
+/// search starts on a ball around the solid, so that the origin of the ray may be at any distance.
 pub(super) fn span<N: Simplicial<D>, const D: usize>(
     map: &dyn SupportMap<N, D>,
     ray: &Ray<N, D>,
@@ -55,10 +53,10 @@ pub(super) struct RaySolid<'a, N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> RaySolid<'_, N, D> {
-    /// Returns the span of the line, as far as the first hit of the ray needs it: if the line
-    /// enters the solid at time zero or later, the end of the span is infinite. `None` if the line
-    /// misses the solid, if it leaves the ball around the solid before time zero, or if the search
-    /// takes too many steps.
+    /// Returns the span of time that the line of the ray spends in the solid. If the line enters
+    /// the solid at time zero or later, the end of the span is not needed, and is infinite. `None`
+    /// if the line misses the solid, if it leaves the ball around the solid before time zero, or
+    /// if the search for the entry takes more than [`ROUNDS`] steps.
     pub(super) fn span(&self, ray: &Ray<N, D>) -> Option<Span<N, D>> {
         // The radius is enlarged, since it is only accurate up to rounding.
         let around = roots(&ray.origin.coords, &ray.dir, self.radius * N::lit(1.0625))?;
@@ -75,7 +73,8 @@ impl<N: Real, const D: usize> RaySolid<'_, N, D> {
         let backward = Advance { solid: self, from: last, dir: -ray.dir, duration };
         let leave = match backward.first_contact() {
             Some(found) => Crossing { t: around.leave - found.t, ..found },
-            // By rounding the search from the far end missed: the line only touches the solid.
+            // The search from the far end found no hit, by rounding or because it took too many
+            // steps. The line counts as touching the solid at one point.
             None => enter,
         };
         Some(Span { enter, leave, thin: false })

@@ -1,7 +1,8 @@
-//! Closed surfaces that bound a body, and the connected pieces of surfaces.
+//! Solid regions (bodies) that closed surfaces enclose, and the connected pieces of surfaces.
 //!
-//! Part searches treat a closed surface as a skin. A solid wholly inside touches no part, so
-//! queries also test whether a body contains a point of each piece of the other shape.
+//! Part searches find only the surface of a body. A solid wholly inside touches no part of the
+//! surface, so queries also test whether the body contains a point of each piece of the other
+//! shape.
 
 use core::ops::Range;
 
@@ -9,7 +10,8 @@ use super::mesh_error::MeshError;
 use crate::math::{Mapped, Point, Pose, Real, Space};
 use crate::shape::CompositeShape;
 
-/// A body: all points around which a closed surface of a composite winds.
+/// A body: the solid region that a closed surface of a composite encloses. It consists of all
+/// points around which the surface winds.
 ///
 /// Public only because a hidden method of a public trait has it as an argument.
 #[expect(missing_debug_implementations, reason = "users cannot reach it")]

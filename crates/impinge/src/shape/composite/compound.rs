@@ -63,7 +63,7 @@ pub struct Compound<N: Space<D>, const D: usize> {
     sphere: BoundingSphere<N, D>,
     /// Whether any child is a composite with a surface, and so has seams.
     has_surface: bool,
-    /// Whether any child has a body bounded by a closed surface.
+    /// Whether any child encloses a solid region by a closed surface: has an [`EnclosedBody`].
     has_bodies: bool,
     /// Whether any child has ghost parts.
     has_ghosts: bool,
@@ -289,7 +289,8 @@ fn surface_of<N: Space<D>, const D: usize>(
     shape.geometry().as_composite()?.surface()
 }
 
-/// Returns the shape as a composite if it has bodies among its parts, else `None`.
+/// Returns the shape as a composite if its parts enclose solid regions ([`EnclosedBody`]), else
+/// `None`.
 fn bodies_of<N: Space<D>, const D: usize>(
     shape: &ShapeHandle<N, D>,
 ) -> Option<&dyn CompositeShape<N, D>> {

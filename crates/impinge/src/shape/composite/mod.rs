@@ -140,14 +140,14 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
         None
     }
 
-    /// Calls `visit` with an [`EnclosedBody`] for each body that parts of the composite bound as a
-    /// closed surface.
+    /// Calls `visit` with an [`EnclosedBody`] for each solid region that parts of the composite
+    /// enclose as a closed surface.
     #[doc(hidden)]
     fn each_body(&self, visit: &mut dyn FnMut(&EnclosedBody<'_, N, D>)) {
         let _ = visit;
     }
 
-    /// Returns whether [`Self::each_body`] visits any body. O(1).
+    /// Returns whether [`Self::each_body`] calls `visit` at least once. O(1).
     #[doc(hidden)]
     fn has_bodies(&self) -> bool {
         false

@@ -19,10 +19,10 @@ use crate::shape::{Revision, Segment};
 /// [`Segment`]; all coordinates are in the frame of the line. Segments join where the positions of
 /// their ends are equal, regardless of vertex indices.
 ///
-/// **Sides.** For most queries a line is a skin without an inside. In 2D `encloses` and
-/// `signed_distance` compute what a closed line encloses, and `solid` makes a closed line a body.
-/// In 2D contacts arise on both sides, or only on the right after `one_sided`. The left is then the
-/// solid side, as for an outline that runs counter-clockwise.
+/// **Sides.** For most queries a line has no inside. In 2D `encloses` and `signed_distance` test
+/// points against the area that a closed line encloses, and `solid` makes this area part of the
+/// shape. In 2D contacts arise on both sides, or only on the right after `one_sided`. The left is
+/// then the solid side, as for an outline that runs counter-clockwise.
 ///
 /// **Seams.** Contacts treat the line as one surface (see [`Surface`](crate::shape::Surface)): at a
 /// joint only normals of the whole line are admitted, so that solids do not catch on the joints of
@@ -265,8 +265,8 @@ impl<N: Real, const D: usize> Polyline<N, D> {
         self.front.is_some()
     }
 
-    /// Returns whether the line is a body, not a skin: `solid` was called, and no joined vertices
-    /// are apart after a move. Always false in 3D.
+    /// Returns whether the line is solid, so that the enclosed area belongs to the shape: `solid`
+    /// was called, and no joined vertices are apart after a move. Always false in 3D.
     #[must_use]
     pub const fn is_solid(&self) -> bool {
         self.is_solid && self.is_cycle
@@ -321,7 +321,7 @@ impl<N: Real> Polyline<N, 2> {
         self
     }
 
-    /// Makes the line a body instead of a skin; see [`Self::try_solid`].
+    /// Makes the area inside a closed line part of the shape; see [`Self::try_solid`].
     ///
     /// # Panics
     /// If [`Self::try_solid`] returns an error.
@@ -331,11 +331,11 @@ impl<N: Real> Polyline<N, 2> {
         or_panic(self.try_solid())
     }
 
-    /// Makes the line a body instead of a skin: the area that it [encloses](Self::encloses) belongs
-    /// to the shape.
+    /// Makes the line solid: the area that it [encloses](Self::encloses) belongs to the shape.
     ///
-    /// `TriMesh::try_solid` describes the meaning for each query, for meshes in 3D. The body lies
-    /// on the left of its segments; an outline that runs clockwise is a hole in another outline.
+    /// `TriMesh::try_solid` describes the effect on each query, for meshes in 3D. The enclosed area
+    /// lies on the left of the segments; an outline that runs clockwise is a hole in another
+    /// outline.
     ///
     /// # Errors
     /// - [`MeshError::NotClosed`] or [`MeshError::NotOriented`] if the line is not an

@@ -1,5 +1,6 @@
 //! Additional methods of the library's own surfaces. Most of them only make contacts faster to
-//! compute; the others report which parts bound a body or lie beside a ghost.
+//! compute; the others report which parts enclose a solid region or lie beside a
+//! ghost.
 
 use core::fmt;
 
@@ -47,8 +48,9 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
         None
     }
 
-    /// Returns whether the part bounds a body. A solid that overlaps such a part has contacts on
-    /// the front of the part, whichever side of the surface the centre of the solid is on.
+    /// Returns whether the part belongs to a surface that encloses a solid region. A solid that
+    /// overlaps such a part has contacts on the front of the part, on whichever side of the surface
+    /// the centre of the solid lies.
     fn is_body(&self, part: u32) -> bool {
         let _ = part;
         false

@@ -12,7 +12,7 @@
 //! | contacts and proximities | `Group`; before an update `PairGroups::note` and `note_due` | to their former positions, since `contact_views` reads in that order |
 //!
 //! The order of partners in a `PairTable` is not restored, so no result may depend on it.
-//! `Run::play_again` of the tests replays every golden scene with steps taken back;
+//! `Run::play_again` of the tests plays every golden scene and rewinds it after every tenth step;
 //! `world_model/forks.rs` tests random operations.
 
 use std::collections::VecDeque;

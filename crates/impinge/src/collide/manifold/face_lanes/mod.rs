@@ -38,9 +38,9 @@ pub(in crate::collide) struct ClipRequest<N: Real> {
     pub(in crate::collide) normal: Vector<N, 3>,
     /// Supporting feature of the solid towards the triangle, against the normal.
     part: FeatureId,
-    /// Signed distance of the nearest points if their normal is `normal`; else `None`. If it is
-    /// known, no point gets a smaller distance, and the lane is undecided if no point is that near,
-    /// up to rounding.
+    /// Signed distance of the nearest points if their normal is `normal`; else `None`. No point
+    /// gets a distance below this value. The lane is undecided if no point has this distance up to
+    /// rounding.
     pub(in crate::collide) nearest: Option<N>,
     /// Points nearer than this by more than rounding are dropped; the distances of the other points
     /// are raised to at least this.

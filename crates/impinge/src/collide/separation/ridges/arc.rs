@@ -23,9 +23,10 @@ use smallvec::SmallVec;
 
 use crate::math::{Mapped, Real, Vector, cross2, min, perp, unit};
 
-/// Cap on the directions computed for one arc. About twenty are enough in `f32`, forty in `f64`:
-/// each direction splits an arc near the best direction, on either side of it, until the bounds are
-/// good enough.
+/// The maximum number of arcs, the given arc and parts of it, that one search examines. For each it
+/// computes at most one direction, at which it may split the arc. About 20 directions are enough in
+/// `f32`, and 40 in `f64`: the splits approach the best direction from both sides, until the bounds
+/// are good enough.
 const STEPS: usize = 256;
 
 /// Height of a point along the unit vectors `u` of a circle: `base + toward · u`.
@@ -162,9 +163,9 @@ impl<N: Real> ArcSearch<N> {
         }
     }
 
-    /// Searches an arc for a smaller depth. Precondition: the depth at its ends is at least the
-    /// least so far. `highest` returns the highest line in a direction. `None` if the search does
-    /// not end after [`STEPS`] directions.
+    /// Searches an arc for a depth below [`Self::least`]. Precondition: the depths at the ends of
+    /// the arc are not below it. `highest` returns the highest line in a direction. `None` if arcs
+    /// are left after [`STEPS`] arcs have been examined.
     pub(super) fn run(
         &mut self,
         arc: Arc<N>,

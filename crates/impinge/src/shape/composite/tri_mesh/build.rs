@@ -139,7 +139,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
     }
 
     /// Reverses the front of each triangle: exchanges the second and third corner, and with them
-    /// the first and last side. A solid mesh becomes a skin.
+    /// the first and last side. A solid mesh becomes a surface without an inside.
     #[must_use]
     pub fn flipped(self) -> Self {
         let triangles = self.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();

@@ -40,9 +40,10 @@ use crate::shape::{Revision, Triangle};
 ///
 /// **Sides.** In 3D the front of a triangle is the side from which its corners run
 /// counter-clockwise. Contacts arise on both sides, or only on the front after `one_sided`, so that
-/// a solid inside a closed mesh is not pushed deeper. For most queries a mesh is a skin without an
-/// inside, unless `solid` makes a closed mesh a body. `encloses` and `signed_distance` compute what
-/// a closed skin encloses. In 2D triangles are filled, and their winding is irrelevant.
+/// a solid inside a closed mesh is not pushed deeper. For most queries a mesh is a surface without
+/// an inside, unless `solid` makes the enclosed volume part of the shape. `encloses` and
+/// `signed_distance` test points against the volume that a closed surface encloses. In 2D triangles
+/// are filled, and their winding is irrelevant.
 ///
 /// **Seams.** Contacts treat the mesh as one surface (see [`Surface`](crate::shape::Surface)): at
 /// an edge or corner only normals of the whole surface are admitted, so that solids do not catch on
@@ -238,7 +239,7 @@ impl<N: Real> TriMesh<N, 3> {
     /// equally often in both directions. O(1).
     ///
     /// True for every mesh that [is closed](Self::is_closed) and [oriented](Self::is_oriented).
-    /// Also true if bodies share a side, which then has four triangles, or if triangles have
+    /// Also true if volumes share a side, which then has four triangles, or if triangles have
     /// repeated corners. If [`Self::set_vertices`] moves joined vertices apart, the result is
     /// false. [`Self::encloses`] and [`Self::signed_distance`] compute what lies inside.
     #[must_use]

@@ -1,4 +1,4 @@
-//! Meshes in 3D that bound a body.
+//! Solid meshes in 3D: the volume that their surface encloses belongs to the shape.
 
 use super::TriMesh;
 use crate::math::{Mapped, Point, Real, max, max_component};
@@ -7,8 +7,9 @@ use crate::shape::composite::joints::Joints;
 use crate::shape::composite::mesh_error::{MeshError, or_panic};
 
 impl<N: Real, const D: usize> TriMesh<N, D> {
-    /// Returns whether the mesh is a body, not a skin: `solid` was called, and no joined vertices
-    /// are apart after a move. Always false in 2D, where triangles are filled.
+    /// Returns whether the mesh is solid, so that the enclosed volume belongs to the shape: `solid`
+    /// was called, and no joined vertices are apart after a move. Always false in 2D, where
+    /// triangles are filled.
     #[must_use]
     pub const fn is_solid(&self) -> bool {
         self.is_solid && self.is_cycle
@@ -27,7 +28,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
 }
 
 impl<N: Real> TriMesh<N, 3> {
-    /// Makes the mesh a body instead of a skin; see [`Self::try_solid`].
+    /// Makes the volume inside a closed mesh part of the shape; see [`Self::try_solid`].
     ///
     /// # Panics
     /// If [`Self::try_solid`] returns an error.
@@ -37,20 +38,20 @@ impl<N: Real> TriMesh<N, 3> {
         or_panic(self.try_solid())
     }
 
-    /// Makes the mesh a body instead of a skin: the volume that it [encloses](Self::encloses)
-    /// belongs to the shape.
+    /// Makes the mesh solid: the volume that it [encloses](Self::encloses) belongs to the shape.
     ///
-    /// A solid wholly inside touches the body: the distance is zero, the time of impact is zero,
-    /// and the contact leads out through the nearest part of the surface. The depth is measured
-    /// from the plane through the nearest point of the surface, perpendicular to the normal, to the
-    /// deepest point of the solid. Points inside belong to the body. A ray that starts inside hits
-    /// it at time 0 if the ray test treats shapes as solid. Contacts outside are those of a
-    /// [one-sided](Self::one_sided) mesh, but a solid that overlaps the surface has contacts
-    /// wherever its centre is. An inner surface whose front faces its inside bounds a cavity;
-    /// points in a cavity are outside the body.
+    /// Another solid wholly inside touches the mesh: the distance is zero, the time of impact is
+    /// zero, and the contact leads out through the nearest part of the surface. The depth is
+    /// measured from the plane through the nearest point of the surface, perpendicular to the
+    /// normal, to the deepest point of the other solid. Points inside belong to the mesh. A ray
+    /// that starts inside hits it at time 0 if the ray test treats shapes as solid. Contacts
+    /// outside are those of a [one-sided](Self::one_sided) mesh, but a solid that overlaps the
+    /// surface has contacts wherever its centre is. An inner surface whose front faces its inside
+    /// bounds a cavity; points in a cavity are outside the mesh.
     ///
     /// Later calls of [`Self::set_vertices`] are not checked: while joined vertices are apart, the
-    /// mesh is a one-sided skin. [`Self::flipped`] makes it a skin permanently.
+    /// mesh is a one-sided surface without an inside. [`Self::flipped`] makes it hollow
+    /// permanently.
     ///
     /// The cost is O(n), plus a search of the mesh for each inner surface.
     ///

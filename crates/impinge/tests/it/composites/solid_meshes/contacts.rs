@@ -1,5 +1,6 @@
-//! Compares the contacts of solids with solid meshes, in their inside and across their surface,
-//! with a scan of all triangles. Also tests impacts, points and rays.
+//! Compares contacts of solid meshes and solids that do not touch the surface with a scan of all
+//! triangles: whether there is a contact, and its depth. Also tests impacts of solids that start
+//! inside, points, rays, and a manifold.
 
 use super::{P3, V3, at, ball, cuboid, inverted, joined, skin, solid};
 use crate::support::query_support;

@@ -113,9 +113,9 @@ struct Below<V, M> {
     half: [V; 3],
 }
 
-/// Chooses the rectangle. A separating axis perpendicular to a face selects this face. If it is
-/// perpendicular to two edges, the rectangle is the most aligned face of the first box or, if only
-/// that face is tilted too far, the most aligned face of the second box.
+/// Chooses the rectangle. A separating axis perpendicular to a face selects this face. An axis
+/// perpendicular to an edge of each box selects the most aligned face of the first box; but it
+/// selects the most aligned face of the second box if only the face of the first is tilted too far.
 #[inline(always)]
 fn below<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     simd: S,
