@@ -9,7 +9,7 @@ const KIND_PAIRS: usize = ShapeKind::COUNT * ShapeKind::COUNT;
 /// Index of the group of kinds that have had no pair.
 const NONE: u8 = u8::MAX;
 
-/// Groups by the number of their kinds ([`kind_pair`](super::lanes::kind_pair)), without gaps and in
+/// Groups by the number of their kinds ([`kind_pair`](super::pair_groups::kind_pair)), without gaps and in
 /// ascending order of these numbers.
 ///
 /// A group is made for its first pair and then kept. Most worlds have pairs of few kinds, so that

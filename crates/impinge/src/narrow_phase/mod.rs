@@ -14,8 +14,6 @@
 //! Group                  row -> keys | dirty | touching (bits) | states | views? | references?
 //! ```
 
-mod composite_views;
-mod convex_views;
 mod default_narrow_phase;
 mod detector;
 mod dirty_contacts;
@@ -37,11 +35,10 @@ mod rewind;
 pub(crate) mod saved;
 mod state;
 mod stateless;
-mod stream;
 mod substep;
 mod traits;
 mod update;
-mod view;
+mod views;
 
 pub use default_narrow_phase::DefaultNarrowPhase;
 pub use detector::{DefaultProximityDispatcher, PairProximityDetector};
@@ -59,10 +56,9 @@ pub use reuse::ReuseError;
 pub(crate) use state::{CompositeState, ContactState, KeptContacts};
 pub(crate) use stateless::{ContactQuestion, contact_manifolds_at, each_manifold_at};
 pub use stateless::{contact_manifolds, each_contact_manifold};
-pub use stream::{ContactStream, StreamManifold, StreamPoint};
 pub use traits::{
     ContactAlgorithm, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,
     ProximityAlgorithm, ProximityDetector, ProximityDispatcher,
 };
-pub(crate) use view::Views;
-pub use view::{ContactPair, ProximityPair};
+pub(crate) use views::Views;
+pub use views::{ContactPair, ContactStream, ProximityPair, StreamManifold, StreamPoint};

@@ -3,10 +3,10 @@
 use core::iter;
 use core::ops::Range;
 
-use super::ObjectTable;
-use super::pair_groups::CompositeGroup;
-use super::view::{Composite, View};
+use super::{Composite, View};
 use crate::math::{Space, max};
+use crate::narrow_phase::ObjectTable;
+use crate::narrow_phase::pair_groups::CompositeGroup;
 
 /// Iterator over the manifolds with at least one contact, in memory order.
 pub(super) struct CompositeViews<'a, N: Space<D>, const D: usize> {

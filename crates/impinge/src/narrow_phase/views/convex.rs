@@ -3,11 +3,11 @@
 use core::ops::Range;
 use core::{iter, slice};
 
-use super::ObjectTable;
-use super::pair_groups::ContactGroup;
-use super::state::KeptPoints;
-use super::view::{BuiltIn, View};
+use super::{BuiltIn, View};
 use crate::math::Space;
+use crate::narrow_phase::ObjectTable;
+use crate::narrow_phase::pair_groups::ContactGroup;
+use crate::narrow_phase::state::KeptPoints;
 
 /// Iterator over the manifolds with at least one contact, group by group in memory order.
 pub(super) struct ConvexViews<'a, N: Space<D>, const D: usize> {

@@ -1,10 +1,15 @@
 //! Access to one pair, to all pairs in canonical order, or to all manifolds in memory order.
 
+mod composite;
+mod convex;
+mod stream;
+
 use crate::tables::entries;
 use core::fmt;
 
-use super::composite_views::CompositeViews;
-use super::convex_views::ConvexViews;
+use self::composite::CompositeViews;
+use self::convex::ConvexViews;
+pub use self::stream::{ContactStream, StreamManifold, StreamPoint};
 use super::group::PairKey;
 use super::pair_groups::{CompositeGroup, ContactGroup, GroupId, PairGroups};
 use super::state::KeptPoints;

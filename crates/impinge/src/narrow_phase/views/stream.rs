@@ -17,8 +17,8 @@
 use core::num::NonZeroU32;
 use core::ops::Range;
 
-use super::CollisionObjectHandle;
 use crate::math::{Point, Real, Space, Unit, Vector};
+use crate::narrow_phase::CollisionObjectHandle;
 use crate::query::{ContactId, ManifoldView};
 
 /// Number of old pairs, from the one behind the last match, among which a pair is searched.
