@@ -67,9 +67,9 @@ impl Lens {
 
     /// Moves the eye to the smallest distance at which all points are inside the angle of view.
     ///
-    /// With the tangent `t` and the eye `e`, a point is inside the right side if `x - e.x <= t (e.z
-    /// - z)`. So `e.x + t e.z` must be at least the maximum of `x + t z`. The other sides are
-    /// analogous. The eye stays in front of all points.
+    /// With the tangent `t` and the eye `e`, a point is inside the right side if
+    /// `x - e.x <= t (e.z - z)`. So `e.x + t e.z` must be at least the maximum of `x + t z`. The
+    /// other sides are analogous. The eye stays in front of all points.
     fn place_eye(&mut self, tangent: f64, points: &[Point<f64>]) {
         let mut sides = [f64::NEG_INFINITY; 4];
         let mut z = [f64::INFINITY, f64::NEG_INFINITY];

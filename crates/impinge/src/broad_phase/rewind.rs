@@ -132,10 +132,10 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         (self.exact[index], self.loose[index]) = (exact, loose);
         match (self.containers[index], home) {
             (Container::Moving, Container::Moving | Container::Still) => {
-                self.moving.set_still(id, &loose)
+                self.moving.set_still(id, &loose);
             }
             (Container::Still, Container::Moving | Container::Still) => {
-                self.still.set_still(id, &loose)
+                self.still.set_still(id, &loose);
             }
             (_, Container::Nowhere) => self.remove_from_container(id),
             (_, Container::Unbounded) => {

@@ -6,6 +6,7 @@
 use impinge::dim3::math::{Isometry, Point, Vector};
 use impinge::dim3::query::{ContactManifold, ContactPrediction, contact_manifolds};
 use impinge::dim3::shape::{ConvexHull, TriMesh};
+use impinge::math::Real;
 
 use crate::support::samples::samples;
 use crate::support::slides::Random;
@@ -17,14 +18,15 @@ fn prism(is_domed: bool) -> ConvexHull<f64> {
     let ring = |count: u32, radius: f64, height: f64| {
         (0..count).map(move |k| {
             let angle = f64::from(k) * std::f64::consts::TAU / f64::from(count);
-            Point::new(radius * angle.cos(), height, radius * angle.sin())
+            let (sine, cosine) = angle.sine_cosine();
+            Point::new(radius * cosine, height, radius * sine)
         })
     };
     let ends = ring(8, 1.0, -1.0).chain(ring(8, 1.0, 0.0)).chain(ring(8, 0.25, 1.0));
     let mut points: Vec<_> = ends.collect();
     if is_domed {
         for level in 1..=12_u32 {
-            let (sine, cosine) = (f64::from(level) * 0.11).sin_cos();
+            let (sine, cosine) = (f64::from(level) * 0.11).sine_cosine();
             points.extend(ring(25, 0.9 * cosine, 0.99 * sine));
         }
     }

@@ -3,7 +3,7 @@
 
 use crate::support::{scene_stage, world_stage};
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use impinge::math::{Point, Space};
 use impinge::narrow_phase::ContactStream;
@@ -19,7 +19,7 @@ use world_stage::{Stage, add, contacts, cube};
 struct Checked<N: Space<D>, const D: usize> {
     stream: ContactStream<N, D>,
     /// The index of each contact in the points of the last fill.
-    indices: HashMap<ContactId, usize>,
+    indices: BTreeMap<ContactId, usize>,
     /// Number of contacts that the previous fill had too, summed over all fills.
     kept: usize,
     /// Number of contacts that the previous fill did not have, summed over all fills.
@@ -28,7 +28,7 @@ struct Checked<N: Space<D>, const D: usize> {
 
 impl<N: Space<D>, const D: usize> Checked<N, D> {
     fn new() -> Self {
-        Self { stream: ContactStream::new(), indices: HashMap::new(), kept: 0, new: 0 }
+        Self { stream: ContactStream::new(), indices: BTreeMap::new(), kept: 0, new: 0 }
     }
 
     /// Fills the stream. Asserts that it has the contacts of the world, and that each point refers
@@ -36,7 +36,7 @@ impl<N: Space<D>, const D: usize> Checked<N, D> {
     fn fill<T>(&mut self, world: &CollisionWorld<N, D, T>) {
         world.read_contacts(&mut self.stream);
         assert_stream_agrees(world, &self.stream);
-        let mut indices = HashMap::new();
+        let mut indices = BTreeMap::new();
         for manifold in self.stream.manifolds() {
             for index in manifold.range() {
                 let point = &self.stream.points()[index];
@@ -107,7 +107,7 @@ fn finds_pairs_that_moved_in_memory<N: Stage<D>, const D: usize>() {
     checked.fill(&world);
     assert_eq!(checked.kept, kept, "a contact that comes back is new");
     checked.stream.clear();
-    assert!(checked.stream.points().is_empty() && checked.stream.manifolds().is_empty());
+    assert!(checked.stream.points().is_empty() && checked.stream.manifolds().is_empty(), "cleared");
     checked.indices.clear();
     checked.fill(&world);
     assert_eq!(checked.kept, kept, "nothing is known after clearing");
@@ -150,7 +150,7 @@ fn patches_3d() {
     fn zigzag<N: Space<3>>() -> ShapeHandle<N, 3> {
         let point = |n: u32| {
             let [i, k] = [n % 41, n / 41].map(f64::from);
-            [i * 0.5 - 10.0, if n % 41 % 2 == 0 { 0.0 } else { 0.125 }, k * 10.0 - 5.0]
+            [i * 0.5 - 10.0, if (n % 41).is_multiple_of(2) { 0.0 } else { 0.125 }, k * 10.0 - 5.0]
         };
         let points = (0..82).map(|n| Point::from(point(n).map(N::lit)));
         let cells = (0..40).flat_map(|n| [[n, n + 41, n + 42], [n, n + 42, n + 1]]);
@@ -168,9 +168,9 @@ fn skips_removed_objects<N: Stage<D>, const D: usize>() {
     world.update();
     let mut stream = ContactStream::new();
     world.read_contacts(&mut stream);
-    assert_eq!(stream.manifolds().len(), 1);
+    assert_eq!(stream.manifolds().len(), 1, "they overlap");
     let manifold = &stream.manifolds()[0];
-    assert_eq!([manifold.object1, manifold.object2], handles);
+    assert_eq!([manifold.object1, manifold.object2], handles, "in the order of handles");
     world.remove(&handles[..1]);
     world.add(N::on_x(0.0), cube(0.5), CollisionGroups::new(), contacts(0.0), ());
     world.read_contacts(&mut stream);
