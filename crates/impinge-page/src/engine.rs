@@ -137,43 +137,56 @@ impl Engine {
         reply(&stage.status())
     }
 
-    /// Opens a stage. If this fails, the current stage stays, unless the payload of a new stream is
-    /// invalid: then the stage is an empty stream.
+    /// Opens a stage. If this fails, the current stage stays.
     fn open(&mut self, opening: &Opening, payload: &[u8]) -> Result<(), EngineError> {
         let stage = match opening {
             Opening::Recording => open_recording(payload)?,
-            // An empty stage of arbitrary scalar and dimension; `push` replaces it when the header
-            // of the stream is complete.
-            Opening::Stream => Box::new(Shown::new(Recorded::<f32, 3>::growing(Registry::new()))),
+            Opening::Stream => return self.open_stream(payload),
             Opening::Sample { name } => open_sample(name)?,
         };
         self.show(stage);
-        if matches!(opening, Opening::Stream) {
-            self.begun = Some(Vec::new());
-            self.push(payload)?;
-        }
         Ok(())
     }
 
-    /// Appends bytes to a stream. Until the header is complete, the bytes are collected; then they
-    /// are passed to a new stage with the scalar and dimension of the header.
+    /// Opens a stream that begins with `payload`.
+    fn open_stream(&mut self, payload: &[u8]) -> Result<(), EngineError> {
+        let stage = begun_stage(payload)?;
+        self.begun = stage.is_none().then(|| payload.to_vec());
+        // Before the header is complete, the stage is an empty recording of arbitrary scalar and
+        // dimension.
+        let empty = || Box::new(Shown::new(Recorded::<f32, 3>::growing(Registry::new()))) as Opened;
+        self.stage = Some(stage.unwrap_or_else(empty));
+        Ok(())
+    }
+
+    /// Appends bytes to a stream. If this fails, the stream is as before.
     fn push(&mut self, bytes: &[u8]) -> Result<(), EngineError> {
         let Some(begun) = &mut self.begun else { return self.stage()?.push(bytes) };
         let before = begun.len();
         begun.extend(bytes);
-        match Header::read(begun) {
-            Ok(header) => {
-                let mut stage = stage_of(&header, None)?;
-                stage.push(begun)?;
-                self.show(stage);
-                Ok(())
-            }
-            Err(error) if Header::is_begun(begun, &error) => Ok(()),
+        match begun_stage(begun) {
+            Ok(Some(stage)) => self.show(stage),
+            Ok(None) => {}
             Err(error) => {
                 begun.truncate(before);
-                Err(error.into())
+                return Err(error);
             }
         }
+        Ok(())
+    }
+}
+
+/// Returns the stage of a stream that begins with `bytes`, with the scalar and dimension of its
+/// header; `None` as long as the header is incomplete.
+fn begun_stage(bytes: &[u8]) -> Result<Option<Opened>, EngineError> {
+    match Header::read(bytes) {
+        Ok(header) => {
+            let mut stage = stage_of(&header, None)?;
+            stage.push(bytes)?;
+            Ok(Some(stage))
+        }
+        Err(error) if Header::is_begun(bytes, &error) => Ok(None),
+        Err(error) => Err(error.into()),
     }
 }
 

@@ -118,10 +118,10 @@ pub(crate) fn isometry<N: Real, const D: usize>(
     na::Isometry::from_parts(na::Translation::from(pose.translation), rotation)
 }
 
-/// Normalizes a quaternion; `None` if all its components are zero or one of them is infinite.
+/// Normalizes a quaternion; `None` if all its components are zero or one of them is not finite.
 pub(crate) fn unit_quaternion(quaternion: [f64; 4]) -> Option<[f64; 4]> {
     let largest = quaternion.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
-    let is_usable = largest > 0.0 && largest.is_finite();
+    let is_usable = largest > 0.0 && quaternion.iter().all(|x| x.is_finite());
     // The components are divided by the largest magnitude first, so that their squares neither
     // overflow nor all underflow.
     let scaled = quaternion.map(|x| x / largest);
