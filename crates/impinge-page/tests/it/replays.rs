@@ -190,3 +190,20 @@ fn streams_grow_whatever_their_pieces_are() {
         assert_ne!(after["error"], Value::Null, "nothing follows the end");
     }
 }
+
+#[test]
+fn a_stream_with_bad_bytes_changes_nothing() {
+    let (bytes, bad) = (scene::<f64, 2>(), [7; 64]);
+    let mut asker = Asker::of(&bytes);
+    let before = seek(&mut asker, 7);
+    let (answer, _) = asker.ask_with(r#"{"do": "open", "kind": "stream"}"#, &bad);
+    assert_ne!(answer["error"], Value::Null, "no header");
+    assert_eq!(seek(&mut asker, 7), before, "the recording is still open");
+
+    asker.ask(r#"{"do": "open", "kind": "stream"}"#);
+    let (answer, _) = asker.ask_with(r#"{"do": "push"}"#, &bad);
+    assert_ne!(answer["error"], Value::Null, "no header");
+    let (info, _) = asker.ask_with(r#"{"do": "push"}"#, &bytes);
+    assert_eq!((&info["error"], &info["steps"]), (&Value::Null, &json!(STEPS)), "as if alone");
+    assert_eq!(seek(&mut asker, 7), before, "the same stream");
+}
