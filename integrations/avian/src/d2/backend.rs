@@ -10,6 +10,7 @@ use bevy_ecs::system::lifetimeless::SRes;
 use bevy_impinge::Glam;
 use bevy_math::{Isometry2d, Rot2, Vec2};
 use impinge::dim2::math::Isometry;
+use impinge::dim2::query::ManifoldView;
 
 use super::{Collider, PairContacts};
 use crate::manifolds::{Meeting, Touch};
