@@ -52,7 +52,7 @@ fn record<N: Recordable<D>, M: Dimension<N, D>, const D: usize>(bytes: &mut Byte
     repack(&changed, bytes);
 }
 
-/// Plays a recording forwards and backwards; returns the error, if there is one.
+/// Opens a recording, then seeks to its end and back to `step`. Returns the error, if there is one.
 fn play<N: Recordable<D>, const D: usize>(
     changed: &[u8],
     registry: &Registry<N, D, u32>,

@@ -173,7 +173,7 @@ pub enum ShownQuery {
     },
     /// The query of the object is for proximity.
     Proximity {
-        /// The object's share of the margin.
+        /// The object's share of the proximity margin.
         margin: f64,
     },
 }

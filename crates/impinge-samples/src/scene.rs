@@ -1,4 +1,4 @@
-//! Plays scenes of `impinge-scenes` in a world.
+//! Simulates scenes of `impinge-scenes` in a world.
 
 use impinge::math::{Point, Real, Unit, Vector};
 use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};

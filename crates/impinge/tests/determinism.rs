@@ -28,7 +28,7 @@ use runs::{Outcome, Run};
 use scene_stage::Play;
 
 impl<const D: usize> Run<D> {
-    /// Plays the scene in every way that must not affect the outcome, asserts that all outcomes are
+    /// Runs the scene in every way that must not affect the outcome, asserts that all outcomes are
     /// equal, and returns the outcome.
     fn in_every_way<N: Play<D>>(&self) -> Outcome {
         let outcome = self.play::<N>(None);
@@ -47,7 +47,7 @@ impl<const D: usize> Run<D> {
         outcome
     }
 
-    /// Plays the scene with both scalars and compares the hashes with the golden file.
+    /// Runs the scene with both scalars and compares the hashes with the golden file.
     fn check(&self)
     where
         f32: Play<D>,

@@ -32,7 +32,7 @@ struct Outcome {
     most_still: usize,
 }
 
-/// Plays a scene of 90 steps and returns its outcome. Many objects move, then few, so that the
+/// Runs a scene of 90 steps and returns its outcome. Many objects move, then few, so that the
 /// others come to rest, then many again. Each step also removes three objects and inserts them
 /// elsewhere. Asserts that the last pairs are those of a brute-force search.
 fn play<N: Real, const D: usize>(lanes: Lanes, count: u32, side: u32) -> Outcome {

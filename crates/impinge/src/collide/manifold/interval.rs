@@ -183,7 +183,7 @@ impl<N: Real> FeatureInterval<N> {
     #[inline(always)]
     pub(super) fn under(&self, coordinate: N) -> Point<N, 2> {
         let [from, to] = &self.corners;
-        // Sides run in either direction along the tangent.
+        // `along` is negative if the side runs against the tangent.
         let share = (coordinate - from.flat.x) * self.along / (self.along * self.along);
         from.point + (to.point - from.point) * min(max(share, N::ZERO), N::ONE)
     }

@@ -2,9 +2,9 @@
 //!
 //! [`linear`] is for solids that do not rotate: this file brings the pair into its canonical order
 //! and maps the result back to the world, and the kernel in `linear` handles one pair of solids on
-//! a straight path. [`nonlinear`] is for bodies that rotate. It uses only the separation of the
-//! pair, and only the poses and speed bounds of the motions ([`motion`], [`velocities`],
-//! [`bounds`]).
+//! a straight path. [`nonlinear`] is for bodies that rotate. It is conservative advancement: each
+//! step follows from the separation and from bounds of the speeds of points, which come from the
+//! motions ([`motion`], [`velocities`]) and the extents of the shapes ([`bounds`]).
 //!
 //! An impact is never reported late: no step is longer than the time during which the solids
 //! certainly stay apart. The number of steps is limited; the status reports a reached limit.

@@ -63,10 +63,10 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
         false
     }
 
-    /// Returns whether a surface in 3D has two properties: parts are adjacent if and only if they
-    /// have corners at one position, and a seam admits no normal along which a direction into an
-    /// adjacent part rises. Then a ball's contact with a triangle can be skipped if an adjacent
-    /// triangle hides it.
+    /// Returns whether a surface in 3D has two properties: parts are adjacent exactly where they
+    /// have coincident corners, and at a seam every direction into an adjacent part has a component
+    /// of at most zero along each admitted normal. Then the contact of a ball with a triangle can
+    /// be skipped if an adjacent triangle hides it; see `collide/separation/triangles/ball.rs`.
     fn has_regular_seams(&self) -> bool {
         false
     }

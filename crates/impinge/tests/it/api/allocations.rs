@@ -94,7 +94,7 @@ impl<N: Stage<D>, const D: usize> Grid<N, D> {
         Self { world, handles, step: 0 }
     }
 
-    /// Plays one period and returns the number of events and of contacts.
+    /// Simulates one period and returns the number of events and of contacts.
     fn play(&mut self) -> (usize, usize) {
         let (mut events, mut contacts) = (0, 0);
         for _ in 0..PERIOD {

@@ -92,8 +92,8 @@ fn area(outline: &[[f64; 2]]) -> f64 {
     outline.windows(2).map(|side| turn(first, side[0], side[1])).sum::<f64>() / 2.0
 }
 
-/// Returns the intersection of two outlines (I. E. Sutherland and G. W. Hodgman, 1974), without
-/// coinciding corners.
+/// Returns the intersection of two outlines (I. E. Sutherland and G. W. Hodgman, 1974). Consecutive
+/// corners that coincide are merged; the last corner may still coincide with the first.
 fn overlap(one: &[[f64; 2]], other: &[[f64; 2]]) -> Outline {
     let mut rest = one.to_vec();
     for (at, &from) in other.iter().enumerate() {

@@ -55,7 +55,7 @@ fn depths<N: Play<D>, const D: usize>(player: &Player<N, D>) -> BTreeMap<(usize,
     depths
 }
 
-/// Plays a scene in a world that computes all contacts anew and in a world that reuses them.
+/// Runs a scene in a world that computes all contacts anew and in a world that reuses them.
 /// Returns the number of differing depths and of all depths; depths differ only if contacts were
 /// reused.
 fn compare<N: Play<D>, const D: usize>(scene: &Scene<D>, steps: u32) -> (usize, usize) {

@@ -1,7 +1,9 @@
 //! Tests searches with many ties. Among candidates at equal distance, or hit at the same time, the
 //! result is the one with the least index, in whatever order the search visits them.
 //!
-//! The expected results come from scans of all candidates with the same test for each.
+//! The expected results for boxes and objects come from brute force: the query for a single box or
+//! object is called for every candidate. The expected triangle for a vertex is the one with the
+//! lowest index that contains the vertex.
 
 use impinge::bounding_volume::{Aabb, Ray};
 use impinge::dim3;

@@ -131,7 +131,8 @@ fn filters_hear_of_new_pairs_that_the_groups_allow() {
 
 type Log = Vec<(Vec<ContactEvent>, Vec<ProximityEvent>, usize)>;
 
-/// Plays random walks of a swarm; returns the log of all events and contacts.
+/// Simulates a swarm on random walks. Returns the events and the number of contact points of each
+/// update.
 fn swarm<N: Stage<D>, const D: usize>(margin: f64) -> Log {
     let mut random = Random::new(11);
     let mut world = World::<N, D>::new(N::lit(margin));

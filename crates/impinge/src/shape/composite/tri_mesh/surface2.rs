@@ -65,8 +65,8 @@ impl<N: Real> TriMesh<N, 2> {
     /// `normal`, and the two highest sides do not form a straight border.
     fn corner_admits(&self, part: u32, corner: usize, normal: &Vector<N, 2>) -> bool {
         let joint = self.joint_ends(part, corner)[0];
-        // The side that rises highest along `normal` to its left, and to its right. Both start as
-        // the opposite of `normal`.
+        // To the left and to the right of `normal`: of the sides that leave the corner, the
+        // direction with the largest component along `normal`; `-normal` until one is found.
         let (mut is_highest, mut highest) = (true, [-normal; 2]);
         for &triangle in self.topology.joints.parts(joint) {
             for along in self.leaving(triangle, joint) {

@@ -125,7 +125,7 @@ impl<N: Play<DIM>> Twins<N> {
     }
 }
 
-/// Plays the scene with an exchange of a phase or of algorithms every few steps. Asserts that both
+/// Runs the scene with an exchange of a phase or of algorithms every few steps. Asserts that both
 /// worlds report the same after each step.
 fn exchanges<N: Play<DIM>>(scene: &Scene<DIM>) {
     let plan = [

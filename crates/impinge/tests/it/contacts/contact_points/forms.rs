@@ -1,6 +1,6 @@
 //! Random solids of all kinds. Each has a function for the distance of a point from its surface,
-//! computed in `f64` by the reference or by hand. Convex solids also have a description for the
-//! precise reference.
+//! computed in `f64` by `impinge_reference::geometry` or by a formula of this file. Convex solids
+//! also have a description for `impinge_reference::precise`.
 #![allow(dead_code, reason = "each test binary uses a part")]
 
 use impinge::math::{Isometry2, Isometry3, Point, Pose, Real, Space, Unit, Vector};
@@ -19,11 +19,12 @@ use super::query_support::solids::RoundHull;
 /// Distance of a local point from the surface of a solid, or of one part of a composite.
 type Off<const D: usize> = Box<dyn Fn(&[f64; D]) -> f64>;
 
+/// A shape under test, with what the tests know about it.
 pub(crate) struct Form<N: Real, const D: usize> {
     pub(crate) shape: ShapeHandle<N, D>,
     /// Description of the solid, for messages.
     pub(crate) text: String,
-    /// The solid in the representation of the precise reference; `None` for composites.
+    /// The solid for `impinge_reference::precise`; `None` for composites.
     pub(crate) precise: Option<precise::Solid<D>>,
     offs: Vec<Off<D>>,
     /// Greatest distance of a point of the solid from the local origin; zero for a half-space.
@@ -41,12 +42,13 @@ impl<N: Real, const D: usize> Form<N, D> {
         Self { shape: ShapeHandle::new(shape), text, precise: None, offs, reach, beside: 0.0 }
     }
 
-    /// Adds the description for the precise reference.
+    /// Adds the description for `impinge_reference::precise`.
     fn with(self, precise: precise::Solid<D>) -> Self {
         Self { precise: Some(precise), ..self }
     }
 
-    /// Creates the form of a solid of the reference, inflated by the radius `inflation`.
+    /// Creates the form of a shape that equals `solid`, a solid of `impinge_reference::geometry`,
+    /// inflated by the radius `inflation`.
     fn known<S: Shape<N, D>>(shape: S, solid: &Solid<D>, inflation: f64) -> Self {
         let reach = solid.bounding_radius();
         let reach = if reach.is_finite() { reach + inflation } else { 0.0 };
@@ -58,7 +60,8 @@ impl<N: Real, const D: usize> Form<N, D> {
         }
     }
 
-    /// Creates the form of a composite whose parts are solids of the reference.
+    /// Creates the form of a composite whose parts equal `parts`, solids of
+    /// `impinge_reference::geometry`.
     fn composite<S: Shape<N, D>>(shape: S, parts: &[Solid<D>]) -> Self {
         let reach = parts.iter().map(Solid::bounding_radius).fold(0.0, f64::max);
         let offs = parts.iter().map(|part| metered(part, 0.0)).collect();
@@ -72,8 +75,8 @@ impl<N: Real, const D: usize> Form<N, D> {
     }
 }
 
-/// Returns the solid for the precise reference; `None` for solids of revolution, which exist in 3D
-/// only.
+/// Returns the solid for `impinge_reference::precise`; `None` for cylinders and cones, which exist
+/// in 3D only.
 fn with_all_digits<const D: usize>(solid: &Solid<D>) -> Option<precise::Solid<D>> {
     match solid {
         Solid::Rounded { vertices, radius } => {
@@ -239,8 +242,8 @@ fn off_ellipsoid<const D: usize>(half_axes: [f64; D]) -> Off<D> {
     })
 }
 
-/// Returns the distance of a local point from the surface of a solid, by the precise reference,
-/// which is slow.
+/// Returns the distance of a local point from the surface of a solid, by
+/// `impinge_reference::precise`, which is slow.
 fn off_precise<const D: usize>(solid: &precise::Solid<D>, point: &[f64; D]) -> f64 {
     let (place, origin) = (precise::Pose::at(*point), precise::Pose::at([0.0; D]));
     let dot = precise::Solid::ball(0.0);

@@ -212,8 +212,8 @@ where
     })
 }
 
-/// Asserts that the calls for each part at the greatest size are at most 1.5 times the greater of
-/// those at the two smaller sizes, so that the cost is linear in the parts.
+/// Asserts that the number of calls per part does not grow: at the largest size it is at most 1.5
+/// times the larger of the numbers at the two smaller sizes.
 fn check_growth<S, const D: usize>(label: &str, halves: [u32; 3], make: impl Fn(u32) -> S)
 where
     f64: Space<D>,

@@ -1,4 +1,4 @@
-//! Plays scenes in worlds of any scalar and dimension, for tests of whole runs.
+//! Runs scenes in worlds of any scalar and dimension, for tests of whole runs.
 
 #![allow(dead_code, reason = "each test uses a part")]
 
@@ -19,7 +19,7 @@ use impinge_scenes::{Placement, Scene, SceneGroups, SceneQuery, SceneShape};
 
 pub(crate) type World<N, const D: usize> = CollisionWorld<N, D, usize>;
 
-/// A scalar and dimension in which scenes can be played.
+/// A scalar and dimension in which scenes can be run.
 pub(crate) trait Play<const D: usize>: Space<D> {
     /// Returns the pose of a placement whose lengths are multiplied by `scale`.
     fn pose_of(placement: &Placement<D>, scale: f64) -> Self::Isometry;
