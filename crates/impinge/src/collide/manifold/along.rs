@@ -47,8 +47,9 @@ pub(crate) struct OnFace<N: Real, const D: usize> {
 }
 
 /// Builds the manifold of two convex solids along a normal. It is empty if the supporting features
-/// do not overlap in projection, if all points are beyond the prediction or nearer than `least`,
-/// and if one of the solids is a half-space.
+/// do not overlap in projection, if all points are beyond the prediction or nearer than `least`, if
+/// one of the solids is a half-space, or if a supporting feature in 2D is neither a side nor a
+/// corner.
 pub(crate) fn build_along<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     along: &Along<N, D>,
@@ -62,7 +63,8 @@ pub(crate) fn build_along<N: Space<D>, const D: usize>(
 
 /// Builds the manifold of a pair whose separation has the normal of a face of a surface, up to
 /// rounding, and the signed distance `distance`. Returns `false` if the caller has to use
-/// [`build_between`] instead; always if `distance` is beyond the prediction.
+/// [`build_between`] instead: always in 2D and if `distance` is beyond the prediction, and in the
+/// cases that [`on_face3`] lists.
 pub(crate) fn build_on_face<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     normal: &Vector<N, D>,

@@ -58,8 +58,8 @@ pub(super) fn build<N: Real>(
     choose_in_frame(pair, frame, &mut candidates, limit, out);
 }
 
-/// Returns the part of a solid's supporting feature that the nearest point lies on; the whole
-/// feature if rounding places the point outside.
+/// Returns the part of a solid's supporting feature on which the solid's nearest point to the other
+/// solid lies; the whole feature if rounding places that point outside.
 pub(super) fn part_at_witness<N: Real>(
     kind: Kind<'_, N, 3>,
     which: Which,

@@ -10,13 +10,14 @@
 //!    [`REACH`] of the size.
 //!
 //! The distance of a match is the smaller of two: how far the point moved on the first solid, in
-//! that solid's frame, and how far it moved on the second, in the second's frame. It is zero for a
-//! point that stays on a vertex of either solid. If the normal turned by more than 45°, the
-//! distance is infinite, because a solid that fell on another side begins new contacts. Pairs of
-//! the same features with a vertex among them are exempt, because they have only one point. The
-//! kernels of `batch` keep no old pose, so they compare positions on the first solid only. A corner
-//! that slides over a floor thus counts as unmoved, and so does a point of the floor that a solid
-//! slides over.
+//! that solid's frame, and how far it moved on the second, in the second's frame. So a corner that
+//! slides over a floor counts as unmoved, and so does a point of the floor that a solid slides
+//! over. The distance is zero for a point that stays on a vertex of either solid. The kernels of
+//! `batch` keep no old pose, so they compare positions on the first solid only.
+//!
+//! If the normal turned by more than 45°, the distance is infinite, because a solid that fell on
+//! another side begins new contacts. It is zero nevertheless for the same pair of features with a
+//! vertex among them, because such a pair has only one point.
 //!
 //! ```text
 //!           ┌─────────┐            ┌─────────┐
@@ -165,8 +166,8 @@ pub(super) fn moved<N: Real, const D: usize>(
 /// Cosine of the largest angle, 45°, between the old and new normal of one contact.
 const TURN: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
-/// Returns whether contacts with these normals, in the frame of the first solid, may be the same
-/// contact.
+/// Returns whether two contacts may be the same one by their normals, in the frame of the first
+/// solid: whether the angle between the normals is at most 45°. `false` for NaN.
 #[inline(always)]
 pub(in crate::collide) fn normals_agree<N: Real, const D: usize>(
     old: &Vector<N, D>,

@@ -77,8 +77,8 @@ impl<V> Boxes<V, 3> {
         let rounding_error = self.rounding_error(simd);
         let (edges, bound) =
             self.best_edges(simd, &abs_rotation, (gap + rounding_error).larger(gap));
-        // Both indices in `edges` are -1 if no pair of edges has a larger gap than the faces, up to
-        // rounding.
+        // Both indices in `edges` are -1 if no pair of edges has a gap that exceeds the best face's
+        // gap by more than the rounding error.
         let is_edges = V::all(simd, N::ZERO).simd_le(edges[0]);
         let is_second = is_second & !is_edges;
         let ends = [is_edges.select(edges[0], face), is_edges.select(edges[1], face)];
@@ -88,8 +88,8 @@ impl<V> Boxes<V, 3> {
         BestAxis { face, is_second, is_edges, normal, gap, rounding_error, is_finite }
     }
 
-    /// Returns the face with the largest gap: the index of its axis, the lanes where the face
-    /// belongs to the second box, and the gap.
+    /// Returns the face with the largest gap (the first one in a tie): the index of its axis, the
+    /// lanes where the face belongs to the second box, and the gap.
     #[inline(always)]
     fn best_face<S: Simd, N: Real>(&self, simd: S, abs_rotation: &[[V; 3]; 3]) -> (V, V::Mask, V)
     where

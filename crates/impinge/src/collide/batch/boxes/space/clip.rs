@@ -215,8 +215,8 @@ where
         self.store(slot, &position.flat, position.height, position.is_inside);
     }
 
-    /// Fills four slots with the crossings of one side of the parallelogram and all sides of the
-    /// rectangle.
+    /// Fills four slots, from `slot` on, with the crossings of one side of the parallelogram with
+    /// the four sides of the rectangle. The side is at the end `sign` of the arm `arm`.
     #[inline(always)]
     fn crossings(&mut self, slot: usize, arm: usize, sign: bool) {
         let (from, low) = self.arm_end(ends(arm, sign, false));
