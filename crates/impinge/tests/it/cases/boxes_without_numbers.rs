@@ -48,7 +48,8 @@ fn boxes_of_corners_at_the_end_of_all_numbers_are_boxes() {
     }
 }
 
-/// The search for pairs of parts of two composites needs the boxes of parts at any pose.
+/// Asserts that two composites have no contacts, and no panic occurs, at poses that are not finite
+/// or overflow. The search for pairs of parts needs the boxes of parts at such poses, too.
 #[test]
 fn manifolds_of_composites_at_poses_beyond_all_numbers() {
     let mesh = TriMesh::new(corners().to_vec(), vec![[0, 1, 2]]);

@@ -1,5 +1,5 @@
 //! Found by fuzzing: a convex child of a compound must have the same contacts whether or not
-//! another child has a surface.
+//! another child is a mesh.
 
 use impinge::math::{Isometry, Isometry2, Isometry3, Point, Vector};
 use impinge::query::contact;

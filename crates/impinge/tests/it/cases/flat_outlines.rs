@@ -7,7 +7,7 @@ use impinge::query::{Proximity, contact, distance, proximity};
 const HERE: [f64; 2] = [4.875, 0.0];
 
 /// Returns the distance between a flat solid and a small solid that lies on the line of the flat
-/// solid, beyond its end.
+/// solid, beyond its end. Asserts that contact and proximity agree with the distance.
 fn beyond(flat: &dyn Shape<f64, 2>, solid: &dyn Shape<f64, 2>) -> f64 {
     let (origin, place) = (Isometry::identity(), Isometry::translation(HERE[0], HERE[1]));
     let found = distance(&origin, flat, &place, solid);

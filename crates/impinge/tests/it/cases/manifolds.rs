@@ -116,8 +116,8 @@ fn overlap(one: &[[f64; 2]], other: &[[f64; 2]]) -> Outline {
     rest
 }
 
-/// Returns the largest area of four corners of an outline. With `given`, the four must include that
-/// corner.
+/// Returns the largest area of a quadrilateral with four corners of an outline; the area of the
+/// outline if it has fewer. With `given`, the four must include that corner.
 fn best_four(outline: &[[f64; 2]], given: Option<usize>) -> f64 {
     let count = outline.len();
     if count < 4 {
@@ -316,8 +316,8 @@ fn points_span_the_overlap<N: Space<3, Isometry = Isometry<N, UnitQuaternion<N>,
     }
 }
 
-/// The points span at least 90 % of the area of the best four corners. If a single corner is the
-/// deepest, the four must include it.
+/// Asserts that the points span at least 90 % of the area of the best four corners. If a single
+/// corner is the deepest, only choices of four that include it count.
 #[test]
 fn four_points_span_the_overlap_of_two_faces() {
     points_span_the_overlap::<f32>();

@@ -26,9 +26,9 @@ fn dot<N: Real, const D: usize, const K: usize>(
     Point::from(sum)
 }
 
-/// Returns the point with given barycentric weights, in the frame of the part. Returns `None` for a
-/// part with a shape; asserts that its weights are defined if and only if the shape is a triangle
-/// or a segment.
+/// Returns the point with these barycentric weights, in the frame of the part. Returns `None` for a
+/// part that is a [`Shape`]; asserts that its weights are defined if and only if the shape is a
+/// triangle or a segment.
 fn weighed<N: Real, const D: usize>(
     solid: &PartSolid<'_, N, D>,
     barycentric: &Barycentric<N>,

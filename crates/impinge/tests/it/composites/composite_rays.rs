@@ -47,8 +47,8 @@ fn on_side<N: Real>(random: &mut Random, corners: &[Point<N, 3>; 3]) -> Point<N,
     a + (b - a) * share
 }
 
-/// Casts rays from within a closed surface, and back from outside through its centre, exactly at
-/// edges and corners. Asserts that the surface stops each ray from within and that rays from
+/// Casts rays at points of edges and at corners of closed surfaces: from within, and from outside
+/// through the centre. Asserts that the surface stops each ray from within and that rays from
 /// outside enter and leave; returns the number of rays.
 fn through_closed<N: Real>(world: f64) -> usize {
     let mut shots = 0;
@@ -201,7 +201,8 @@ fn no_ray_slips_through_a_closed_line() {
     }
 }
 
-/// Returns the hits of all parts, each tested on its own.
+/// Returns the hits of all parts up to `max_time`, each part tested on its own, sorted by time and
+/// then by part.
 fn brute<N: Space<D>, const D: usize>(
     parts: &Pieces<N, D>,
     ray: &Ray<N, D>,

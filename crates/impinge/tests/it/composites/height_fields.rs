@@ -90,8 +90,8 @@ fn points_lie_where_the_scale_puts_them() {
     }
 }
 
-/// The two triangles of a cell cover it once, are counter-clockwise seen from the front, and share
-/// the diagonal.
+/// Asserts that the two triangles of a cell cover it once, are counter-clockwise seen from the
+/// front, and share the diagonal, also if a scale is negative.
 #[test]
 fn triangles_cover_their_cell_under_every_scale() {
     let signs = [1.0, -1.0];
@@ -224,8 +224,8 @@ fn searches_in_the_plane_find_what_looking_at_all_parts_finds() {
     check_in_plane::<f64>();
 }
 
-/// Boxes with infinite faces, such as those of half-spaces, find parts. Boxes without a finite
-/// point find none.
+/// Asserts that searches with boxes that have infinite faces, such as those of half-spaces, find
+/// parts, and that boxes without a finite point find none.
 #[test]
 fn unbounded_probes_meet_and_infinite_ones_do_not() {
     let field = HeightField::<f32, 3>::new(2, 2, vec![0.0, 0.0, 0.0, 1.0], scale3(2.0, 1.0, 2.0));

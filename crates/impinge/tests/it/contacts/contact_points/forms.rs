@@ -29,8 +29,9 @@ pub(crate) struct Form<N: Real, const D: usize> {
     offs: Vec<Off<D>>,
     /// Greatest distance of a point of the solid from the local origin; zero for a half-space.
     pub(crate) reach: f64,
-    /// Error allowed for contact points other than the deepest: a tilted face of a rounded solid is
-    /// treated as flat up to its edges.
+    /// Error allowed for contact points other than the deepest, as a length. The library treats a
+    /// tilted face of a rounded solid as flat up to its edges, so points near the edges are off the
+    /// rounded surface.
     pub(crate) beside: f64,
 }
 
@@ -224,8 +225,8 @@ fn common<N: Space<D>, const D: usize>(kind: usize, draw: &mut Draw<'_>) -> Form
     }
 }
 
-/// Returns the distance from the surface of an ellipsoid to first order, which suffices near the
-/// surface.
+/// Returns a function for the signed distance of a point from the surface of an ellipsoid, accurate
+/// to first order in that distance. For a flat ellipsoid the function uses the precise reference.
 fn off_ellipsoid<const D: usize>(half_axes: [f64; D]) -> Off<D> {
     if half_axes.contains(&0.0) {
         // A flat ellipsoid consists of its surface.
@@ -445,7 +446,8 @@ fn hull<N: Real>(draw: &mut Draw<'_>, inflation: f64) -> Form<N, 3> {
     Form::known(hull, &solid, 0.0)
 }
 
-/// Returns triangles over a square of four cells; `height` returns the height of each vertex.
+/// Returns a mesh of eight triangles over a square of four cells; `height` maps the index of each
+/// of the nine vertices to its height.
 fn floor<N: Real>(half: f64, height: impl Fn(usize) -> f64) -> Form<N, 3> {
     let corner = |index: usize| {
         let at = |step: usize| half * [-1.0, 0.0, 1.0][step];

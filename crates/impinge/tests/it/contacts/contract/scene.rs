@@ -17,7 +17,7 @@ pub(crate) const SCENES: usize = GAPS.len() * 4;
 /// `None` keeps the drawn position, usually with the origins close to each other.
 const GAPS: [Option<f64>; 5] = [Some(0.05), Some(0.0), Some(-1e-4), Some(-0.3), None];
 
-/// Rotation of one solid relative to the other.
+/// Kind of rotation of the second solid relative to the first.
 #[derive(Clone, Copy, Debug)]
 enum Alignment {
     Any,
@@ -103,7 +103,8 @@ where
         };
         let recipes = [recipe(0, random.bits()), recipe(1, random.bits())];
         let forms = recipes.map(|recipe| self.draw(&recipe));
-        // A length of the scene; two points have no length of their own, hence the minimum.
+        // The length in which offsets of the scene are measured. Two points have a bounding radius
+        // of zero, hence the minimum.
         let length = (forms[0].reach + forms[1].reach).max(0.1);
         let mut poses = self.places(length, gap, alignment, random);
         if let Some(gap) = gap {
@@ -131,8 +132,8 @@ where
         (self.form)(recipe.kind, recipe.sizes, &mut Random::new(recipe.seed))
     }
 
-    /// Returns poses with the first solid at the origin, and the second one well above or below it,
-    /// or, without a gap, at about the same height.
+    /// Returns poses with the first solid at the origin. The second one is 1.5 times `length` above
+    /// or below it; if `gap` is `None`, at most 0.01 times `length` above it.
     fn places(
         &self,
         length: f64,
