@@ -11,7 +11,8 @@ use crate::place::{Dimension, Plane, Room};
 use crate::shapes::shape;
 
 /// Records a few objects and changes bytes of the recording. Then reads and plays the result as a
-/// whole, in pieces, salvaged, and packed.
+/// whole, in pieces, salvaged, and packed. Errors are allowed, but all these ways must agree about
+/// the valid records.
 pub fn recording(data: &[u8]) {
     let bytes = &mut Bytes::new(data);
     let choice = bytes.choice(8);
