@@ -1,10 +1,12 @@
-//! Pairs of one part of each of two shapes, with tolerances independent of the frames' origins.
+//! Pairs of parts, one from each of two shapes, placed near a common origin so that tolerances do
+//! not grow with the distance of the parts from the origins of their shapes.
 //!
 //! The triangles of a mesh are in the frame of the mesh, whose origin may be far away, and the
 //! tolerances of the pair algorithms grow with all coordinates. So both parts are placed relative
 //! to an anchor close to them: the origin of the convex solid or, for two composites, the
-//! [`anchor`] of the first part. All parts that one solid is compared with are placed relative to
-//! one anchor, so that adjacent triangles still share their corners.
+//! [`anchor`] of the first part. All parts that are compared with one convex solid, or with one
+//! part of the first composite, are placed relative to one anchor, so that adjacent triangles still
+//! share their corners.
 
 use super::bounds::{aabb_of, enclosing};
 use crate::bounding_volume::Aabb;
@@ -153,8 +155,9 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
         Some((part, pose))
     }
 
-    /// Returns whether, in the frame of one of two composites, its bounding box is farther than
-    /// `limit` from a box around the other composite. False if one shape is convex.
+    /// Tests in the frame of each of two composites whether its bounding box is farther than
+    /// `limit` from a box around the other composite. Returns `true` if one of the tests succeeds,
+    /// which proves that the shapes are farther apart than `limit`. False if one shape is convex.
     pub(crate) fn are_boxes_beyond(&self, limit: N) -> bool {
         let [Some(parts1), Some(parts2)] = self.composites() else { return false };
         let is_beyond = |parts: &dyn CompositeShape<N, D>, other: usize| {
@@ -171,8 +174,8 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
     }
 }
 
-/// Orders two composites by their number of parts. Returns the index of the smaller one (0 on a
-/// tie), the smaller composite and the larger.
+/// Orders two composites by their number of parts. Returns the index of the composite with fewer
+/// parts (0 on a tie), this composite, and the composite with more parts.
 pub(crate) fn by_number<'a, N: Real, const D: usize>(
     parts1: &'a dyn CompositeShape<N, D>,
     parts2: &'a dyn CompositeShape<N, D>,
@@ -252,8 +255,9 @@ impl<N: Real, const D: usize> PartPair<'_, N, D> {
     }
 }
 
-/// Returns a point close to a part: the first corner of a triangle or segment, else the origin of
-/// the part. The point is in the frame of the composite.
+/// Returns the point relative to which a part and its partner are placed: the first corner of a
+/// triangle or segment, which is close to the part, or the origin of any other part. The point is
+/// in the frame of the composite.
 pub(crate) fn anchor<N: Real, const D: usize>(part: &Part<'_, N, D>) -> Point<N, D> {
     match &part.solid {
         PartSolid::Triangle(triangle) => part.pose.point(&triangle.corners()[0]),

@@ -41,7 +41,8 @@ pub(crate) struct InsidePiece<N: Real, const D: usize> {
     /// [`Self::leads_out`] returns `true`; `None` before such a pair is found.
     nearest: Option<PartSeparation<N, D>>,
     /// Nearest pair of those for which [`Self::leads_out`] returns `false`, because the body
-    /// continues behind the boundary; used only if `nearest` is `None`.
+    /// continues behind the boundary. Used only if `nearest` is `None`; meaningless otherwise,
+    /// because later pairs are stored without a call of [`Self::leads_out`].
     blocked: Option<PartSeparation<N, D>>,
 }
 
@@ -51,7 +52,7 @@ const BEYOND: f64 = 1.0 / 64.0;
 /// Rounding error of lengths, in units of epsilon times the largest coordinate.
 const ROUNDING: f64 = 64.0;
 
-/// Pieces of both shapes that are inside bodies of the other shape.
+/// Pieces of both shapes, each with a point inside a body of the other shape.
 pub(crate) type InsidePieces<N, const D: usize> = SmallVec<[InsidePiece<N, D>; 1]>;
 
 /// Exit plane, in the frame of the first shape: through the nearest point of the boundary,
@@ -234,7 +235,8 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
     }
 
     /// Returns whether the body ends behind the point of the boundary in `found`. The body
-    /// continues there if closed surfaces of one composite overlap.
+    /// continues there if closed surfaces of one composite overlap. Also returns `true` if the two
+    /// parts overlap by more than rounding, because then there is no exit to test.
     fn leads_out(&self, between: &Between<'_, N, D>, found: &PartSeparation<N, D>) -> bool {
         let Some(Exit { point, outward, .. }) = self.exit_at(found) else { return true };
         let outer = 1 - self.inner;

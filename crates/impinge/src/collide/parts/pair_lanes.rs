@@ -73,7 +73,8 @@ pub(crate) fn part_pairs3<N: Real>(pairs: &PartPairs<N, 3>, limit: N) -> PairMas
     )
 }
 
-/// Tests the lanes that hold pairs, one SIMD run after another.
+/// Tests the lanes that hold pairs, one SIMD run (all 8 lanes, or one lane without SIMD) after
+/// another, and merges the bits.
 #[inline(always)]
 fn masks(count: usize, of_run: impl Fn(Run) -> PairMasks) -> PairMasks {
     let mut all = PairMasks::default();
@@ -156,7 +157,9 @@ struct HeldPairs<S: Simd, V: Wide<S>, const D: usize> {
     simd: S,
     one: [[V; D]; 3],
     other: [[V; D]; 3],
-    /// The limit plus the rounding error, and the limit minus [`CERTAIN`] times the rounding error.
+    /// Thresholds for a gap along a unit axis. A gap above the first, which is the limit plus the
+    /// rounding error, proves that the pair is beyond. Gaps up to the second, which is the limit
+    /// minus [`CERTAIN`] times the rounding error, count as within.
     limits: [V; 2],
     is_precise: V::Mask,
     beyond: V::Mask,
@@ -236,7 +239,8 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         self.unsure |= !self.is_wide(along, squares);
     }
 
-    /// Returns the results. A `within` bit is set only if all directions were exact and all axes
+    /// Returns the results. No bit is set for pairs whose lengths are too small to be precise. A
+    /// `within` bit is set only if the pair is not beyond, all directions were exact, and all axes
     /// were tested (`has_all`).
     #[inline(always)]
     fn masks(&self, has_all: bool) -> PairMasks {

@@ -139,7 +139,8 @@ impl<N: Space<D>, const D: usize> TouchingSearch<'_, '_, N, D> {
         self.pairs.count = 0;
     }
 
-    /// Puts a pair into the next lane; the corners of both parts must be in one frame.
+    /// Puts a pair into the next lane, and flushes the lanes if all are full. The corners of both
+    /// parts must be in one frame.
     fn keep(&mut self, pair: [u32; 2], one: &[Vector<N, D>; 3], other: &[Vector<N, D>; 3]) {
         let lane = self.pairs.count;
         self.kept[lane] = pair;

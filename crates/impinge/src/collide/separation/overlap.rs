@@ -72,8 +72,8 @@ pub(crate) fn distance_2d<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: N) -> 
     distance(pair, limit, method_2d(pair))
 }
 
-/// Returns the signed distance, without a limit, if a part of the formula for the separation
-/// computes it; else `None`.
+/// Returns the signed distance, without a limit, of pairs for which a closed form can compute it
+/// without the normal and the points of the separation; `None` for other pairs.
 fn known_3d<N: Real>(pair: &Pair<'_, N, 3>) -> Option<N> {
     use Kind::{Capsule, Segment};
     match (pair.first, pair.second) {

@@ -35,8 +35,8 @@ pub(super) struct LaneTies<V> {
 }
 
 impl<N: Real, V> LaneCore<'_, N, V> {
-    /// Returns the vertex farthest along `direction`. In a tie, the first vertex of a list wins,
-    /// and the positive side of a box.
+    /// Returns the vertex farthest along `direction`. In a tie, returns the first of the tied
+    /// vertices or, for a box, the vertex on the positive side.
     #[inline(always)]
     pub(super) fn support<S: Simd>(&self, simd: S, direction: &[V; 3]) -> [V; 3]
     where

@@ -140,7 +140,7 @@ enum GapResult<N: Real> {
     Apart(Separation<N, 3>),
     /// The cores certainly overlap.
     Overlap,
-    /// The search found no proof.
+    /// The search found no proof, or [`FlatPair::of`] rejects the pair.
     Unproved,
 }
 
@@ -248,8 +248,9 @@ impl<'a, N: Real> FlatPair<'a, N> {
         }
     }
 
-    /// Returns the result for the solids. `core` computes the separation of the cores in units of
-    /// the pair; it is called only if they are apart.
+    /// Converts the outcome of the search into the result for the solids. The first flag that is
+    /// `true` decides; without one the pair is unproved. `core` computes the separation of the
+    /// cores in units of the pair; it is called only for a pair that is apart.
     #[inline]
     fn result(
         &self,

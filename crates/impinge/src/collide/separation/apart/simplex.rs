@@ -46,7 +46,8 @@ impl<V> LaneCorner<V> {
 /// Up to three corners and the point of their hull nearest to the origin.
 #[derive(Clone, Copy)]
 pub(super) struct LaneSimplex<V> {
-    /// Corners; in lanes with fewer corners, the last is repeated with weight zero.
+    /// Corners. If fewer than three corners span the feature, the others have weight zero and may
+    /// be copies.
     pub(super) corners: [LaneCorner<V>; 3],
     /// Barycentric weights of the corners; their sum is 1.
     pub(super) weights: [V; 3],
@@ -228,7 +229,7 @@ impl<'a, V: Copy> Fan<'a, V> {
         holds
     }
 
-    /// Returns the simplex reduced to the corners of a feature.
+    /// Returns the simplex of the newest corner and the old corners of the feature `best`.
     #[inline(always)]
     fn reduced<S: Simd, N: Real>(&self, simd: S, best: &BestFeature<V>) -> LaneSimplex<V>
     where

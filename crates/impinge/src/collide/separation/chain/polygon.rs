@@ -20,7 +20,9 @@ pub(super) fn links<N: Real>(
     with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, question, links))
 }
 
-/// Culls 8 segments at a time by their best axis; computes the others one by one along that axis.
+/// Finds the best axes of 8 segments at a time, culls the segments beyond the limit, and computes
+/// the separation of each remaining segment along its axis. `None` in the cases listed at
+/// [`links`].
 #[inline(always)]
 fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

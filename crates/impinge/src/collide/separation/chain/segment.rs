@@ -41,7 +41,8 @@ pub(super) fn links<N: Real>(
     Some(())
 }
 
-/// Computes the separation of one segment whose [`SegmentGap`] is not known.
+/// Computes the separation of one segment for which [`SegmentGaps`] has no valid lane; `None` above
+/// the limit.
 #[inline(never)]
 fn alone<N: Real>(
     question: &ChainQuestion<'_, N>,

@@ -75,7 +75,7 @@ impl<N: Real> EdgeBlock<N> {
     }
 }
 
-/// Indices of edges, ascending.
+/// Indices of the edges of one solid that an edge query compares, ascending.
 pub(super) struct CandidateEdges {
     indices: [u8; MAX_EDGES],
     len: usize,

@@ -1,4 +1,5 @@
-//! Reference face of the test, and the part of the other solid over it.
+//! Reference face of the separating axis test, and the search for the lowest point of the other
+//! solid over this face.
 
 use core::ops::ControlFlow;
 

@@ -181,8 +181,9 @@ fn sat_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     SatResult::Found(if is_second { in_first_frame(&found, pose12) } else { found })
 }
 
-/// Transforms a separation from the frame of the second solid, with the second solid as its first,
-/// into the frame of the first solid; `pose12` is the pose of the second solid.
+/// Converts a separation in the frame of the second solid, whose `point1` belongs to the second
+/// solid, into a separation in the frame of the first solid. `pose12` is the pose of the second
+/// solid in the frame of the first.
 pub(super) fn in_first_frame<N: Real>(
     found: &Separation<N, 3>,
     pose12: &Pose<N, 3>,

@@ -48,7 +48,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     found.filter(|found| found.distance <= limit)
 }
 
-/// Source of the overlap normals of two solids, which are known if the solids are coaxial.
+/// Gives the general algorithm the normal of an overlap, by [`peak`], if the solids are coaxial.
 struct CoaxialPeaks<'a, 'b, N: Real> {
     pair: &'b Pair<'a, N, 3>,
 }

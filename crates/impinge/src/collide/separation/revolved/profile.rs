@@ -168,7 +168,7 @@ impl<N: Real> ProfileView<N> {
         match self.part {
             ProfilePart::Cap => None,
             // As a function of the multiple of `along`, the distance from the axis is a hyperbola.
-            // The slope sought is that at which the hyperbola has the slope `rise`.
+            // The multiple sought is the one at which the hyperbola has the slope `rise`.
             ProfilePart::Side => {
                 let rise = -up * self.offset.y / self.offset.x;
                 let left = across - rise * rise;

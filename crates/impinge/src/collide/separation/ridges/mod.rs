@@ -73,7 +73,7 @@ fn cores<'a, N: Real>(pair: &Pair<'a, N, 3>) -> (FlatCore<'a, N, 3>, &'a dyn Sup
     }
 }
 
-/// Source of the overlap normals of two solids whose cores overlap.
+/// Gives the general algorithm the normal of least depth for a pair whose cores overlap.
 struct OverlapPeaks<'a, 'b, N: Real> {
     pair: &'b Pair<'a, N, 3>,
 }

@@ -1,4 +1,4 @@
-//! Support of cylinders and cones about the y axis.
+//! Support points, touched points and side normals of cylinders and cones about the y axis.
 
 use smallvec::SmallVec;
 
@@ -76,11 +76,11 @@ impl<N: Real> Round<N> {
         Slope { aside, along, extent: along * self.half }
     }
 
-    /// Returns up to 8 points of this solid, among which are those that touch a plane with the
-    /// normal `direction`. For the normal of a cap they are the ends of its diameters through the
-    /// first four of the points `below`. For other directions they are both ends of the line along
-    /// the side in that direction: two points of the rims or, of a cone, a point of the rim and the
-    /// apex.
+    /// Returns up to 8 points of this solid at or near a supporting plane with the normal
+    /// `direction`, from which the point of a separation is computed. For the normal of a cap they
+    /// are the ends of its diameters through the first four of the points `below`. For other
+    /// directions they are both ends of the line along the side in that direction: two points of
+    /// the rims or, of a cone, a point of the rim and the apex.
     pub(in super::super) fn touched<'a>(
         &self,
         direction: &Vector<N, 3>,
