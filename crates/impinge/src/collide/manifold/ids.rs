@@ -42,7 +42,7 @@ use crate::math::{Point, Pose, Real, Vector, max_component};
 use crate::shape::FeatureId;
 
 /// Largest distance that a contact may move in one step and stay the same contact, as a fraction of
-/// the pair's size: half the diagonal of the local box of the smaller solid.
+/// the pair's size (`collide/size.rs`).
 pub(super) const SHARE: f64 = 1.0 / 16.0;
 
 /// Largest distance, along each axis and as a fraction of the pair's size, between crossings of the

@@ -199,10 +199,10 @@ pub(crate) fn contacts_of_separation2<N: Real>(
 }
 
 /// An old point (a point of the previous manifold) may stand for the deepest point if its distance
-/// exceeds the smallest distance by at most this fraction of the pair's size (half the diagonal of
-/// the smaller solid's box). So a solid that vibrates at rest keeps its points although the deepest
-/// corner changes in each step. Such an old point gets the distance of the pair; it is off the
-/// surfaces by at most the difference.
+/// exceeds the smallest distance by at most this fraction of the pair's size (`collide/size.rs`).
+/// So a solid that vibrates at rest keeps its points although the deepest corner changes in each
+/// step. Such an old point gets the distance of the pair; it is off the surfaces by at most the
+/// difference.
 const SLACK: f64 = 1.0 / 512.0;
 
 /// Up to this number of candidates, all are kept if the limit on the number of points allows. More

@@ -12,10 +12,9 @@
 //! programming over these corners (Boyce, Dobkin, Drysdale and Guibas, "Finding extremal polygons",
 //! 1985). Both are exact up to [`FEW`] candidates; a longer hull is first reduced ([`coarsen`]).
 //!
-//! Old points (which continue points of the previous manifold) are all kept if they are at most as
-//! many as the limit, span [`ENOUGH`] of the best choice and include a deepest one. Otherwise each
-//! old point weighs slightly more than a new one. So solids at rest keep their points even where
-//! many choices are equal.
+//! Old points (which continue points of the previous manifold) are all kept if they do not exceed
+//! the limit, span [`ENOUGH`] of the best choice and include a deepest one. Otherwise each weighs a
+//! bit more than a new one. So solids at rest keep their points even among equal choices.
 
 use core::cmp::Ordering;
 
@@ -210,10 +209,8 @@ fn best_four<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> In
     chosen
 }
 
-/// Returns the positions, in `points`, of the deepest point and the other point with the largest
-/// weighted distance between them; of one deepest point only if `limit` is 1 or no distance exceeds
-/// the tolerance. If `limit` is above 2, also returns the point farthest from that other point, if
-/// it is farther than the deepest point: then the deepest point is inside a row.
+/// Returns the positions of a deepest point and the point farthest from it beyond the tolerance, if
+/// any and `limit` > 1; if the former is inside a row and `limit` > 2, also of its other end.
 fn farthest<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> Indices {
     let mut chosen = Indices::from_slice(&[a_deepest(points)]);
     let mut most = tolerance;
@@ -349,8 +346,7 @@ fn with_sides<N: Real>(
     (corners.len() > 2).then_some(corners)
 }
 
-/// Sorts the points; returns the corners of their convex hull, counter-clockwise, without corners
-/// that lie between their neighbours up to `tolerance`.
+/// Sorts the points; returns the corners of their hull, counter-clockwise, [thinned](thin).
 fn hull<N: Real>(points: &mut [Projected<N>], tolerance: N) -> Projections<N> {
     points.sort_by(|a, b| ordering(a.at.x, b.at.x).then_with(|| ordering(a.at.y, b.at.y)));
     let mut ring = Projections::new();
@@ -448,8 +444,7 @@ fn best_addition<N: Real>(ring: &[Projected<N>], indices: &[usize]) -> Option<(u
     best
 }
 
-/// Returns the polygon of `count` corners with the largest area plus bonus ([`KEPT`]) of old
-/// corners, among the polygons with a deepest corner if the hull has one.
+/// Returns `count` corners with the largest area plus bonuses, one of them deepest if possible.
 fn largest_polygon<N: Real>(mut ring: Projections<N>, count: usize) -> Projections<N> {
     let has_deepest = ring.iter().any(|corner| corner.is_deepest);
     let is_first = |corner: &Projected<N>| corner.is_deepest || !has_deepest;

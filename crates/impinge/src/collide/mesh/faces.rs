@@ -63,7 +63,8 @@ pub(crate) fn face_contacts<N: Real>(
         });
     found.clip();
     found.drop_missing();
-    // The generic path, which computes the contacts instead, does not look for backs.
+    // If the lanes served nothing, the generic path computes the contacts. It does not check on
+    // which side a face is touched, so the flag must be cleared.
     arena.are_fronts &= is_served;
     is_served
 }
@@ -218,7 +219,8 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
     }
 }
 
-/// Returns whether the faces of the solid are clipped in lanes.
+/// Returns whether the solid is a box or a hull: the kinds whose features are clipped against
+/// triangles in SIMD lanes.
 pub(super) const fn has_faces<N: Real, const D: usize>(solid: Kind<'_, N, D>) -> bool {
     matches!(solid, Kind::Cuboid(_) | Kind::Polytope(_))
 }

@@ -121,9 +121,10 @@ pub(super) fn are_alike<N: Real, const D: usize>(a: &Vector<N, D>, b: &Vector<N,
     a.dot(b) > N::lit(ALIKE)
 }
 
-/// Returns the index of the contact with the hidden face: this face lies behind the plane of the
-/// other face, while the other face lies in front of its plane and is not farther from the solid,
-/// or overlaps it. `None` if neither face hides the other.
+/// Returns the index of the contact with the hidden face of two. A face is hidden if it lies behind
+/// the plane of the other face, the other face lies in front of its plane, and the other face
+/// overlaps the solid or is not farther from it. `None` if neither face is hidden, or if the
+/// normals of both are alike.
 fn hidden_of<N: Real, const D: usize>(
     a: &TouchedFace<N, D>,
     b: &TouchedFace<N, D>,

@@ -251,7 +251,7 @@ impl NormalCells {
     }
 
     /// Returns the patches that may have the normal of a piece: those in its cell and in the two
-    /// adjacent cells.
+    /// adjacent cells, from each cell at most the [`MAX_COMPARED`] deepest.
     fn near(&self, piece: usize) -> impl Iterator<Item = usize> {
         let own = self.of_pieces.get(piece).copied().unwrap_or(0);
         let number = self.cells[own].number;
