@@ -106,7 +106,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.journal = journal;
     }
 
-    /// Makes the boxes in the trees those of the last update.
+    /// Makes the present boxes in both trees the old boxes of the next update.
     pub(super) fn settle_trees(&mut self) {
         for tree in [&mut self.moving, &mut self.still] {
             tree.refit();
@@ -125,8 +125,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.refilters_all = head.is_all_again;
     }
 
-    /// Restores the boxes of an object. If it was bounded then and is now, it stays in its present
-    /// tree.
+    /// Restores the boxes and the container of an object. An object that was bounded at the mark
+    /// and is bounded now stays in its present tree.
     fn bring_back(&mut self, &BoxNote { id, exact, loose, home }: &BoxNote<N, D>) {
         let index = id as usize;
         (self.exact[index], self.loose[index]) = (exact, loose);

@@ -25,10 +25,10 @@ use crate::shape::Shape;
 
 /// Contacts and proximities of the pairs of a world, kept from update to update.
 ///
-/// Pairs of the library's own algorithms are stored in dense arrays, one for each pair of shape
-/// kinds. They are updated in batches, without a virtual call or an allocation for each pair. Pairs
-/// of a custom dispatcher are updated one by one. A pair is skipped if neither of its objects
-/// changed.
+/// Pairs of the library's own algorithms are stored in dense arrays: one for each query and each
+/// pair of shape kinds, and one for the contacts of all pairs with composites. They are updated in
+/// batches, without a virtual call or an allocation for each pair. Pairs of a custom dispatcher are
+/// updated one by one. A pair is skipped if neither of its objects changed.
 ///
 /// ```
 /// use impinge::dim3::narrow_phase::DefaultNarrowPhase;
@@ -251,8 +251,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }
     }
 
-    /// Returns the group and the maximum number of points of a manifold if the library's own
-    /// algorithm serves the pair. `None` for a pair of a custom algorithm.
+    /// Returns the group of a pair and the maximum number of points of its manifold (0 for a
+    /// proximity) if the library's own algorithm serves the pair; else `None`.
     pub(super) fn built_in_group(
         &self,
         table: &ObjectTable<N, D>,

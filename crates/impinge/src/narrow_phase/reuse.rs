@@ -84,8 +84,9 @@ impl<N: Real, const D: usize> Default for Reference<N, D> {
 
 impl<N: Space<D>, const D: usize> Reference<N, D> {
     /// Updates the distances of the contacts of a pair and returns `true`, if the pair has moved by
-    /// less than the limit and a contact is still within the prediction or within its old distance.
-    /// Otherwise returns `false`. `pose21` returns the present relative pose.
+    /// less than the limit, and has no contacts or at least one contact within the prediction or
+    /// within its old distance. Otherwise returns `false`. `pose21` returns the present relative
+    /// pose.
     ///
     /// The limit is the smaller of `tolerance` and `prediction`, so that no contact of overlapping
     /// solids is missed.

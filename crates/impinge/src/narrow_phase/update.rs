@@ -73,8 +73,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.changes = changes;
     }
 
-    /// Returns `true` if few pairs must be computed: the pairs of changed objects, and `more` other
-    /// pairs.
+    /// Returns `true` if fewer than one in [`SPARSE`] pairs must be computed: the pairs of changed
+    /// objects, and `more` other pairs. A pair of two changed objects counts twice.
     fn is_sparse(&self, table: &ObjectTable<N, D>, more: usize) -> bool {
         let mut affected = more;
         table.changed().iter().all(|&object| {

@@ -221,7 +221,7 @@ pub(super) fn in_order(
     if handle2 < handle1 { (handle2, handle1) } else { (handle1, handle2) }
 }
 
-/// The status of a pair that is not disjoint: touching, or a proximity other than `Disjoint`.
+/// The status of a pair with contacts, or the proximity of a pair that is not disjoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum StepStatus {
     Touching,

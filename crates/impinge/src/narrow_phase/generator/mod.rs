@@ -228,7 +228,8 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         }
     }
 
-    /// Computes the contacts, or removes all of them if `are_beyond`.
+    /// Computes the contacts, or removes all of them if `are_beyond`: the shapes are certainly
+    /// farther apart than the prediction.
     fn compute(&mut self, shapes: [Geometry<'_, N, D>; 2], are_beyond: bool) {
         if are_beyond {
             self.clear();

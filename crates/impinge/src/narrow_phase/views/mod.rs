@@ -58,8 +58,9 @@ impl<'a, N: Space<D>, const D: usize> Views<'a, N, D> {
 /// The handle indices of two objects, and one of their manifolds.
 pub(crate) type View<'a, N, const D: usize> = (u32, u32, ManifoldView<'a, N, D>);
 
-/// Chains two iterators. Unlike `Iterator::chain` it does not fuse the first iterator, and does not
-/// access the second before the first has ended.
+/// Chains two iterators. Unlike `Iterator::chain` it does not record that the first iterator has
+/// ended, which makes reading faster: each later step calls it again, so it must go on returning
+/// `None`.
 struct UnfusedChain<A, B> {
     first: A,
     second: B,

@@ -301,7 +301,8 @@ fn row<N: Space<D>, const D: usize>(
     Ok(RowRecord::of::<D>(shape, &body.isometry, body.query.get(), skin))
 }
 
-/// Returns the record of an object without its prediction, its changes and its row.
+/// Returns the record of an object with `row` as its present properties, without prediction,
+/// changes and table row.
 fn described<N: Space<D>, const D: usize, T>(
     object: &CollisionObject<N, D, T>,
     row: RowRecord<N>,
@@ -320,7 +321,8 @@ fn described<N: Space<D>, const D: usize, T>(
 }
 
 impl<N: Real, T> ObjectRecord<N, T> {
-    /// Restores the object, without its prediction, changes and row. Returns it with its skin.
+    /// Restores the object, without its prediction, changes and table row. Returns the object and
+    /// its skin.
     fn restore<const D: usize>(
         self,
         handle: CollisionObjectHandle,
