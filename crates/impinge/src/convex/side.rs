@@ -26,8 +26,8 @@ const TOPS: usize = 3;
 /// Largest difference between the component of a normal along the axis and that of the side's
 /// normals at which the ring is searched.
 const NEAR: f64 = 1.0 / 16.0;
-/// Largest difference between the heights of opposite normals of a ring at which the ring is
-/// searched, in units of the pair.
+/// A ring is searched only if the height of the normal opposite to the known normal is lower than
+/// the known height by at most this value, in units of the pair.
 const MAX_UNEVENNESS: f64 = 1.0 / 8.0;
 /// Fraction of an interval that is left after a step of the golden section.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
@@ -97,8 +97,9 @@ impl<N: Real> NormalRing<N> {
         SupportCandidate::along(difference, self.at(angle)).height
     }
 
-    /// Returns whether the height of the opposite normal is close to `height`, the height at angle
-    /// zero. If the heights differ more, they vary enough to find the best normal without the ring.
+    /// Returns whether the height of the normal at angle π is at most [`MAX_UNEVENNESS`] below
+    /// `height`, the height of the known normal. If it is lower, the heights of the ring vary
+    /// enough to find the best normal without a search of the ring.
     fn is_even(&self, difference: &dyn Difference<N, 3>, height: N) -> bool {
         height - self.height(difference, N::lit(core::f64::consts::PI)) <= N::lit(MAX_UNEVENNESS)
     }

@@ -122,13 +122,13 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         KinematicSides::new(pair, normal).kinematic(point)
     }
 
-    /// Returns the feature of the first solid that touches.
+    /// Returns the touching feature of the first solid.
     #[must_use]
     pub fn feature1(&self) -> FeatureId {
         self.feature1
     }
 
-    /// Returns the feature of the second solid that touches.
+    /// Returns the touching feature of the second solid.
     #[must_use]
     pub fn feature2(&self) -> FeatureId {
         self.feature2

@@ -90,7 +90,7 @@ use crate::math::{Pose, Real, Vector};
 /// A solid in its own frame.
 ///
 /// Implement this trait to put your own type into a world. The two required methods return the
-/// shape's box and how queries treat it ([`Shape::geometry`]).
+/// shape's box, and the geometry on which queries dispatch ([`Shape::geometry`]).
 ///
 /// ```
 /// use impinge::dim2::math::Point;
@@ -109,9 +109,9 @@ use crate::math::{Pose, Real, Vector};
             or `CompositeShape`"
 )]
 pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
-    /// Returns how queries treat the solid: [`Geometry::support_map`] for a convex solid of your
-    /// own, [`Geometry::composite`] for a union of solids, or the geometry of a built-in shape that
-    /// represents the solid.
+    /// Returns the geometry on which queries dispatch: [`Geometry::support_map`] for a convex solid
+    /// of your own, [`Geometry::composite`] for a union of solids, or the geometry of a built-in
+    /// shape that represents the solid.
     fn geometry(&self) -> Geometry<'_, N, D>;
 
     /// Returns an axis-aligned box that contains the solid, in the frame of the solid. The box is

@@ -50,7 +50,7 @@ impl<N: Real, const D: usize> Path<N, D> {
         start.pose12.translation + self.velocity * along
     }
 
-    /// Returns the pair `start` at the time `along`.
+    /// Returns the pair `start` with the second solid at its pose at the time `along`.
     pub(crate) fn moved<'a>(&self, start: &Pair<'a, N, D>, along: N) -> Pair<'a, N, D> {
         let pose12 = Pose { translation: self.position_at(start, along), ..start.pose12 };
         Pair { pose12, ..*start }
@@ -121,7 +121,8 @@ pub(super) fn is_hit_at_start<N: Real>(
 
 /// The result of [`begin`]: a contact at the start, or an impact later.
 pub(crate) enum Beginning<N: Real, const D: usize> {
-    /// The solids are in contact at the start; `counts` is true if the contact is an impact.
+    /// The solids are in contact at the start. `counts` is true if that contact is an impact by
+    /// [`Path::counts_at_start`].
     InContact { arrival: Arrival<N, D>, counts: bool },
     /// The solids are apart at the start; `None` if there is no impact.
     Apart(Option<Arrival<N, D>>),
@@ -175,7 +176,7 @@ pub(crate) fn begin<N: Space<D>, const D: usize>(
 }
 
 /// Runs conservative advancement from the configuration at time `along`, in which the separation is
-/// `found`.
+/// `found`. `None` if the solids do not touch up to the end of the path.
 fn by_steps<N: Space<D>, const D: usize>(
     start: &Pair<'_, N, D>,
     path: &Path<N, D>,

@@ -235,10 +235,10 @@ pub struct Impact<N: Real, const D: usize> {
     pub part1: u32,
     /// The index of the touching part of the second shape; zero for a shape of one part.
     pub part2: u32,
-    /// The feature of the first shape's part that touches, with the id as in a
-    /// [`Witness`](super::Witness): for a rounded solid a feature of its core.
+    /// The touching feature of part `part1` of the first shape. Ids are as in a
+    /// [`Witness`](super::Witness): for a rounded solid, they name features of its core.
     pub feature1: FeatureId,
-    /// The feature of the second shape's part that touches.
+    /// The touching feature of part `part2` of the second shape.
     pub feature2: FeatureId,
     /// Whether the touch is certain, and whether it was at the start.
     pub status: ImpactStatus,
@@ -336,10 +336,9 @@ pub fn impact<N: Space<D>, const D: usize>(
 }
 
 /// Returns the first time, zero or more, at which two solids with constant velocities and without
-/// rotation touch; `None` if they never touch.
+/// rotation touch; `None` if [`impact`] returns `None`.
 ///
-/// The result is the time of [`impact`] with default options; see [`impact`] for starts in contact,
-/// the accuracy and the cost.
+/// The time of [`impact`] with default options; see there for starts in contact, accuracy and cost.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Vector};
@@ -400,8 +399,8 @@ struct Course<'m, 'a, N: Real, const D: usize> {
 }
 
 impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
-    /// Returns `None` if the latest time is negative or NaN, if bounding balls prove that the
-    /// solids stay apart, or if a pose or velocity is not finite.
+    /// Brings two solids into canonical order. `None` if the latest time is negative or NaN, if
+    /// bounding balls prove that the solids stay apart, or if a pose or velocity is not finite.
     #[inline(always)]
     fn new(
         moving1: &'m Moving<'a, N, D>,
@@ -433,7 +432,8 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
         Some(Self { first, ordered, pair, path, scale })
     }
 
-    /// Returns the earliest impact and its [`Impact::toi`], which is finite. `None` without impact.
+    /// Returns the earliest impact and its [`Impact::toi`]. `None` if there is no impact, or if its
+    /// time overflows.
     #[inline(always)]
     fn touch(&self) -> Option<(PartArrival<N, D>, N)> {
         let found = if self.ordered.has_composite() {

@@ -154,7 +154,8 @@ fn upward<N: Real, const D: usize>() -> Vector<N, D> {
     axis
 }
 
-/// Returns the line of a side of a feature; a point for a rim, which is not a straight edge.
+/// Returns the line along the side with the id `id` of a feature. Returns a point for a rim, which
+/// is not a straight edge, for an unknown id, and for a side without length.
 fn line<N: Real, const D: usize>(
     feature: &Feature<N, D>,
     id: FeatureId,

@@ -8,7 +8,8 @@ use crate::bounding_volume::Aabb;
 use crate::math::{Point, Real, Vector};
 use crate::shape::{EdgeNeighbor, MassError, Moments, Polyline, Shape, TriMesh};
 
-/// A volume is treated as zero if it is at most this fraction of the sum of its terms' magnitudes.
+/// The enclosed area or volume is treated as zero if it is at most this fraction of the sum of the
+/// magnitudes of all cones.
 const NONE: f64 = 1024.0 * f64::EPSILON;
 
 /// A sum of signed cones with their apex at the origin; a cone is positive if the origin lies

@@ -105,8 +105,8 @@ pub trait PointQuery<N: Space<D>, const D: usize> {
     /// even if the given point is inside.
     fn project_local_point(&self, point: &Point<N, D>) -> (PointProjection<N, D>, FeatureId);
 
-    /// Returns [`Self::project_local_point`] with the part of a composite and the barycentric
-    /// weights of its corners.
+    /// Returns the projection of [`Self::project_local_point`], and its location: the part of a
+    /// composite, the feature, and the barycentric weights of the part's corners.
     ///
     /// With `solid`, the projection of a point inside is the point itself, with the weights of that
     /// point. The feature is still the feature that contains the nearest point of the boundary.
@@ -365,7 +365,8 @@ pub(crate) fn holds<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns the projection onto a shape without points: the point itself, not inside.
+/// Returns the result for a composite without parts, which has no nearest point: the query point
+/// itself, not inside.
 fn nowhere<N: Real, const D: usize>(point: &Point<N, D>) -> PointProjection<N, D> {
     PointProjection { is_inside: false, point: *point }
 }

@@ -25,7 +25,8 @@ pub(super) fn span<N: Real, const D: usize>(
     Span::union_of(side(capsule, ray), Span::union_of(at_a, at_b))
 }
 
-/// Returns the span in the cylinder around the segment, cut off flat at its ends.
+/// Returns the span in the cylinder around the segment, with flat ends; `None` if the line misses
+/// the cylinder or the segment has no length.
 ///
 /// The normal is radial at both ends of the span, even if the line passes through a flat end. A
 /// flat end lies inside the balls; only its rim may come first, by rounding.

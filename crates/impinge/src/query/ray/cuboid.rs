@@ -6,8 +6,8 @@ use crate::bounding_volume::Ray;
 use crate::math::{Point, Real, Vector};
 use crate::shape::FeatureId;
 
-/// Returns the span by the slab test (Kay and Kajiya 1986), with the crossed faces; corners may be
-/// infinite.
+/// Returns the span by the slab test (Kay and Kajiya 1986), with the crossed faces; `None` if the
+/// line misses the box. Corners may be infinite.
 ///
 /// If several faces are crossed at the same time, the lowest index wins.
 pub(super) fn span<N: Real, const D: usize>(

@@ -94,7 +94,7 @@ struct MeshCast<'a, N: Real> {
     first: Option<Met<N>>,
 }
 
-/// A triangle that is hit by the ray.
+/// The triangle with the first hit so far.
 #[derive(Clone, Copy)]
 struct Met<N: Real> {
     corners: [Point<N, 3>; 3],
@@ -131,7 +131,8 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
         loosened(self.latest)
     }
 
-    /// Tests a triangle. Keeps it if its hit is the first so far.
+    /// Tests a triangle. Keeps it if its hit is the earliest so far, or as early as the earliest
+    /// and on a part with a lower index.
     #[inline(always)]
     fn propose(&mut self, part: u32, corners: &[Point<N, 3>; 3]) {
         let Some(inner) = self.own.inner_hit(corners) else {

@@ -108,7 +108,7 @@ pub struct RayIntersection<N: Real, const D: usize> {
 /// assert_eq!(cube.toi_with_ray(&place, &inner, false), Some(1.0), "where it leaves");
 /// ```
 pub trait RayCast<N: Space<D>, const D: usize> {
-    /// Returns [`Self::cast_local_ray_until`] without a latest time.
+    /// Returns the result of [`Self::cast_local_ray_until`] with an infinite `max_time`.
     fn cast_local_ray(&self, ray: &Ray<N, D>, solid: bool) -> Option<RayIntersection<N, D>> {
         self.cast_local_ray_until(ray, N::INFINITY, solid)
     }
@@ -192,7 +192,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         self.cast_local_ray_until(ray, max_time, true).is_some()
     }
 
-    /// Returns [`Self::first_hit_with_ray`] without a latest time.
+    /// Returns the result of [`Self::first_hit_with_ray`] with an infinite `max_time`.
     fn toi_and_normal_with_ray<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
@@ -252,7 +252,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         self.all_hits_with_ray(m, ray, max_time, solid).into_iter().find(|hit| counts(hit))
     }
 
-    /// Returns [`Self::local_ray_hits`] of the shape placed at `m`, with normals in the world.
+    /// Returns the hits of [`Self::local_ray_hits`] on the shape placed at `m`, in the world frame.
     ///
     /// ```
     /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -280,7 +280,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         hits
     }
 
-    /// Returns the time of [`Self::first_hit_with_ray`] without a latest time.
+    /// Returns the time of the hit of [`Self::first_hit_with_ray`] with an infinite `max_time`.
     fn toi_with_ray<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
@@ -435,7 +435,8 @@ pub(crate) fn cast_many_on<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns the first hit on a part for which `counts` is true.
+/// Returns the earliest of the parts' first hits for which `counts` returns `true`; of equally
+/// early hits, the one with the lowest part index. `None` if there is none.
 #[inline]
 pub(crate) fn first_that<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
@@ -460,7 +461,7 @@ fn is_before<N: Real, const D: usize>(
     a.toi < b.toi || (a.toi == b.toi && a.part < b.part)
 }
 
-/// Returns the hit of a ray that starts in the set.
+/// Returns the hit of a ray that starts in the set: at time zero, without a normal.
 pub(crate) fn at_start<N: Real, const D: usize>(feature: FeatureId) -> RayIntersection<N, D> {
     RayIntersection { toi: N::ZERO, normal: Vector::<N, D>::zeros(), feature, part: 0 }
 }

@@ -34,8 +34,8 @@ pub(super) fn span<N: Space<D>, const D: usize>(
         .span(ray)
 }
 
-/// Returns the accuracy of point distances, as a fraction of the size. Closed forms are exact up to
-/// rounding.
+/// Returns the accuracy of point distances, as a fraction of the rounded solid's bounding radius.
+/// Closed forms are exact up to rounding.
 fn precision<N: Real, const D: usize>(inner: Geometry<'_, N, D>) -> N {
     let rounding = N::lit(16.0) * N::EPSILON;
     match inner.0 {

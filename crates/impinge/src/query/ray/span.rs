@@ -75,7 +75,7 @@ impl<N: Real, const D: usize> Span<N, D> {
     }
 
     /// Returns the first hit at a time of zero or more. `None` if the line leaves the set before
-    /// time zero, or if it starts in a hollow set and never leaves it.
+    /// time zero, if it starts in a hollow set and never leaves it, or if it never enters the set.
     pub(super) fn first_hit(self, solid: bool) -> Option<RayIntersection<N, D>> {
         if self.enter.t >= N::ZERO {
             return self.enter.hit();

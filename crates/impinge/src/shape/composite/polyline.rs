@@ -155,7 +155,7 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
     /// also reverses each segment, so that the solid side stays solid.
     ///
     /// # Errors
-    /// If a scale is zero or not finite, or a coordinate becomes infinite.
+    /// If a factor of the scale is zero or not finite, or a coordinate becomes infinite.
     pub fn try_scaled(&self, scale: &Vector<N, D>) -> Result<Self, MeshError> {
         check_scale(scale)?;
         let scaled = |point: &Point<N, D>| Point::from(point.coords.component_mul(scale));

@@ -135,7 +135,7 @@ impl<'a, N: Real, const D: usize> SurfaceAccess<'a, N, D> {
         }
     }
 
-    /// Returns [`OwnSurface::face_seams`]; `None` for a user's surface.
+    /// Returns the result of [`OwnSurface::face_seams`]; `None` for a user's surface.
     pub(crate) fn face_seams(&self, part: u32) -> Option<FaceSeams<N>> {
         self.own?.face_seams(part)
     }
@@ -152,22 +152,22 @@ impl<'a, N: Real, const D: usize> SurfaceAccess<'a, N, D> {
         self.surface.faces(part, center)
     }
 
-    /// Returns [`OwnSurface::is_body`]; false for a user's surface.
+    /// Returns the result of [`OwnSurface::is_body`]; false for a user's surface.
     pub(crate) fn is_body(&self, part: u32) -> bool {
         self.own.is_some_and(|own| own.is_body(part))
     }
 
-    /// Returns [`OwnSurface::is_beside_ghost`]; false for a user's surface.
+    /// Returns the result of [`OwnSurface::is_beside_ghost`]; false for a user's surface.
     pub(crate) fn is_beside_ghost(&self, part: u32) -> bool {
         self.own.is_some_and(|own| own.is_beside_ghost(part))
     }
 
-    /// Returns [`OwnSurface::sidedness`]; `None` for a user's surface.
+    /// Returns the result of [`OwnSurface::sidedness`]; `None` for a user's surface.
     pub(crate) fn sidedness(&self) -> Option<Sidedness> {
         self.own?.sidedness()
     }
 
-    /// Returns [`OwnSurface::has_regular_seams`]; false for a user's surface.
+    /// Returns the result of [`OwnSurface::has_regular_seams`]; false for a user's surface.
     pub(crate) fn has_regular_seams(&self) -> bool {
         self.own.is_some_and(OwnSurface::has_regular_seams)
     }

@@ -41,7 +41,8 @@ impl<N: Real> TriMesh<N, 2> {
         self.is_open_along(part, side, &outward).then_some(outward)
     }
 
-    /// Returns whether no other triangle at a side extends from the side towards `direction`.
+    /// Returns whether, for each other triangle at a side, the direction from the side into the
+    /// triangle has a component of at most zero along `direction`.
     fn is_open_along(&self, part: u32, side: usize, direction: &Vector<N, 2>) -> bool {
         let mut is_open = true;
         self.each_beyond(part, side, |_, inward| is_open &= inward.dot(direction) <= slack());
@@ -61,8 +62,9 @@ impl<N: Real> TriMesh<N, 2> {
         }
     }
 
-    /// Returns whether the corner admits `normal`: no side that leaves the corner rises along
-    /// `normal`, and the two highest sides do not form a straight border.
+    /// Returns whether the corner admits `normal`: the directions of all sides away from the corner
+    /// have components of at most zero along `normal`, and the two sides with the largest
+    /// components, one to the left of `normal` and one to its right, do not form a straight border.
     fn corner_admits(&self, part: u32, corner: usize, normal: &Vector<N, 2>) -> bool {
         let joint = self.joint_ends(part, corner)[0];
         // To the left and to the right of `normal`: of the sides that leave the corner, the
