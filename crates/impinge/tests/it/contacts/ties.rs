@@ -93,7 +93,8 @@ fn of_equal_boxes_the_first_by_index_answers() {
 
 type World = dim3::world::CollisionWorld<f32, usize>;
 
-/// Creates a world of balls and cubes of one size at random cells. They interact with nothing.
+/// Creates a world of balls and cubes of one size at random cells. The collision groups of the
+/// objects forbid all pairs.
 fn world(random: &mut Random, count: usize) -> World {
     let mut world = World::new(0.02);
     let mut nobody = CollisionGroups::new();
@@ -196,8 +197,8 @@ fn of_equal_objects_the_first_by_handle_answers() {
     assert!(ties > 500, "{ties} ties");
 }
 
-/// Triangles of a regular grid, in random order. Up to six triangles have the vertex that is
-/// nearest to a point above it; the one with the least index is the result.
+/// Asserts for the triangles of a regular grid, in random order, which triangle is nearest to a
+/// point above a vertex: of up to six triangles with that vertex, the one with the least index.
 #[test]
 fn of_equal_triangles_the_first_by_number_answers() {
     let side = 12_u32;

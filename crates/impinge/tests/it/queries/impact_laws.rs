@@ -170,8 +170,8 @@ where
         max(N::EPSILON * N::lit(1024.0), N::lit(1e-9)) * self.extent()
     }
 
-    /// Tests the laws for bodies that also rotate; `told` converts their motions. Returns the
-    /// status of the impact, if there is one.
+    /// Tests the laws for bodies that also rotate; `told` boxes their motions. Returns the status
+    /// of the impact; `None` without an impact.
     fn turning(&self, setting: &Setting, told: Told<N, D>) -> Option<ImpactStatus> {
         let [one, two] = self.motions.map(told);
         let [shape1, shape2] = &self.shapes;
@@ -192,10 +192,11 @@ where
     }
 }
 
-/// A conversion of a motion into the form in which a test passes it.
+/// A function that boxes a motion, either as it is or wrapped in [`Opaque`].
 type Told<N, const D: usize> = fn(ConstantVelocities<N, D>) -> Box<dyn RigidMotion<N, D>>;
 
-/// A motion that gives only its positions and bounds.
+/// A motion reduced to the required methods of the trait, its positions and bounds. So no closed
+/// form for its type can be used.
 struct Opaque<M>(M);
 
 impl<N: Space<D>, M: RigidMotion<N, D>, const D: usize> RigidMotion<N, D> for Opaque<M> {

@@ -113,8 +113,8 @@ fn finds_pairs_that_moved_in_memory<N: Stage<D>, const D: usize>() {
     assert_eq!(checked.kept, kept, "nothing is known after clearing");
 }
 
-/// Tests a box that slides over a zigzag, in the second half with a skin. The pair has several
-/// manifolds in at least one fill.
+/// Fills a stream after each step of a box that slides over a zigzag, with a skin in the second
+/// half. Asserts that the pair has several manifolds in at least one fill.
 fn follows_patches<N: Stage<D>, const D: usize>(zigzag: ShapeHandle<N, D>) {
     let mut world = CollisionWorld::<N, D, ()>::new(N::lit(0.01));
     add(&mut world, 0.0, &zigzag, contacts(0.0));

@@ -55,7 +55,8 @@ fn shape<N: Real, const D: usize>(value: &Value) -> ShapeHandle<N, D> {
     }
 }
 
-/// Returns groups from masks; the filter of the corpus is a whitelist.
+/// Returns the collision groups that a step of a script describes by bit masks; the mask `filter`
+/// becomes the whitelist.
 fn groups(step: &Value) -> CollisionGroups {
     let list = |key: &str| {
         let mask = step[key].as_u64()?;
@@ -273,8 +274,8 @@ fn world_scenarios_f64() {
     assert_eq!(run_all::<f64>(), 12, "all scripts in operations");
 }
 
-/// Removes the balls of a world in this order. After each removal the others are still found, and
-/// finally a ball can be added again.
+/// Removes the balls of a world in the order `order`. Asserts after each removal that queries still
+/// find the other balls, and finally that a ball can be added again.
 fn remove_in_order<N: Stage<3>>(world: &mut CollisionWorld<N, 3, ()>, order: &[u32]) {
     let add = |world: &mut CollisionWorld<N, 3, ()>, place: u32| {
         let position = <N as Stage<3>>::on_x(f64::from(place) * 1.5);
@@ -298,7 +299,7 @@ fn remove_in_order<N: Stage<3>>(world: &mut CollisionWorld<N, 3, ()>, order: &[u
     world.remove(&[again]);
 }
 
-/// Visits all permutations (Heap's algorithm).
+/// Visits all orders of the first `count` elements (Heap's algorithm).
 fn each_order(order: &mut Vec<u32>, count: usize, visit: &mut dyn FnMut(&[u32])) {
     if count <= 1 {
         return visit(order);

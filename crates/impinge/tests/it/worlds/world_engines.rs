@@ -272,7 +272,7 @@ fn events_of_two_updates_are_kept_in_their_order<N: Stage<D>, const D: usize>() 
     assert!(world.proximity_events().is_empty(), "of all events");
 }
 
-/// A world whose data show when they are dropped.
+/// A world whose data are counted references, so that a test can see when the world drops them.
 type Counted<N, const D: usize> = CollisionWorld<N, D, Rc<u8>>;
 
 fn removed_objects_stay_beside_their_events<N: Stage<D>, const D: usize>() {

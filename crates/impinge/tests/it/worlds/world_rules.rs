@@ -193,8 +193,8 @@ fn order_is_canonical<N: Stage<D>, const D: usize>() {
     assert_eq!(world.contact_manifolds().count(), pairs.len(), "each with a contact");
 }
 
-/// The contacts of an object equal the contacts of all pairs that contain it, with the object as
-/// the first solid. Stale handles, and objects that no update has seen, have none.
+/// Asserts that `contacts_with` returns the contacts of all pairs that contain the object, with the
+/// object as the first solid. Stale handles, and objects that no update has seen, have none.
 fn an_object_sees_its_pairs_from_its_side<N: Stage<D>, const D: usize>() {
     let (mut random, mut world) = (Random::new(5), World::<N, D>::new(N::lit(0.02)));
     for number in 0..60 {
@@ -255,7 +255,7 @@ in_tests! {
     an_object_sees_its_pairs_from_its_side,
 }
 
-/// A world is `Send` and `Sync` if its data are.
+/// Asserts that a world is `Send` and `Sync` if its data are.
 #[test]
 fn worlds_are_sent_and_shared_with_their_data() {
     fn is_send_and_sync<S: Send + Sync>(_: &S) {}

@@ -1,5 +1,5 @@
-//! Tests the mass properties of closed meshes and lines, also in compounds, and that open ones are
-//! refused.
+//! Tests the mass properties of closed meshes and closed lines, also in compounds, and that open
+//! meshes and lines are refused.
 
 use impinge::math::{Isometry2, Isometry3, Point, Real, Unit, Vector};
 use impinge::procedural::space as surfaces;
@@ -132,7 +132,8 @@ fn lines_and_meshes_of_the_plane() {
     assert_eq!(mass_properties(&wire, 1.0), Err(MassError::NotClosed { part: 0 }));
 }
 
-/// The error for a part inside nested compounds reports the index of the part in the whole.
+/// Asserts that the error for a part inside nested compounds reports the index of the part in the
+/// outermost compound.
 #[test]
 fn errors_in_compounds_name_the_part() {
     let ball = ShapeHandle::new(Ball::new(1.0));

@@ -1,5 +1,5 @@
-//! Cost of contacts between large solids and shapes with many parts, counted by calls to the
-//! shapes, not by time.
+//! Measures the cost of contacts between large solids and shapes with many parts by the number of
+//! calls to the shapes, which unlike time is the same on every machine.
 
 use std::fmt::Debug;
 use std::sync::atomic::{AtomicUsize, Ordering};

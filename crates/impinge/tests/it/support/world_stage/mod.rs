@@ -70,7 +70,8 @@ pub(crate) fn add<N: Stage<D>, const D: usize>(
     world.add(N::on_x(x), shape.clone(), CollisionGroups::new(), query, ())
 }
 
-/// Updates the world, validates it, and returns the contact events.
+/// Updates the world, validates it, and returns the contact events. Asserts that each started pair
+/// has a contact.
 pub(crate) fn step<N: Space<D>, const D: usize, T>(
     world: &mut CollisionWorld<N, D, T>,
 ) -> Vec<ContactEvent> {

@@ -235,7 +235,8 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         self.tally.exchanges += 1;
     }
 
-    /// Calls that must be refused and change nothing; later checks would notice a change.
+    /// Makes calls that the world must refuse. Later comparisons with the twin would detect a
+    /// change of the world.
     fn try_nonsense(&mut self) {
         let (position, _) = draw::pose::<N, D>(&mut self.random);
         if !self.stale.is_empty() {

@@ -8,7 +8,8 @@ use super::both::Both;
 use super::draw::{self, Grid};
 use super::twins;
 
-/// Name of the passed filter in the naive world.
+/// Name under which the naive world registers the filter that the tested world gets as an argument
+/// of its update.
 const LENT: &str = "lent";
 
 impl<N: Grid<D>, const D: usize> Both<N, D> {
@@ -118,7 +119,8 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         self.tally.changed += usize::from(self.is_told(twins) != before);
     }
 
-    /// Whether two objects touch or are near in the naive world.
+    /// Returns `true` if two objects touch in the naive world, or if their proximity there is not
+    /// disjoint.
     fn is_told(&self, [first, second]: [Handle; 2]) -> bool {
         let is_near = |&(a, b, _): &(Handle, Handle, _)| (a, b) == (first, second);
         self.naive.touching_pairs().contains(&(first, second))
