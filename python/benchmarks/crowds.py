@@ -72,7 +72,8 @@ class Crowd:
         self.names = [f"m{number}" for number in range(count)]
         self.managers = {name: self._made(kind, self.places) for name, kind in SIDES.items()}
         self.others = {name: self._made(kind, beside) for name, kind in SIDES.items()}
-        # A smaller mesh for the queries of a single mesh. It fits between the others without touching them; in the touching scene it overlaps one of them.
+        # A smaller mesh for the queries of a single mesh. It fits between the others without touching them; in the
+        # touching scene it overlaps one of them.
         self.small = mesh.copy()
         self.small.apply_scale(0.75)
         self.probe = np.eye(4)
@@ -139,7 +140,8 @@ class Crowd:
 
     @staticmethod
     def compare(answers: dict[str, Any]) -> None:
-        """Prints differing results. Of a result with several values only the first is compared, and of distances only two that are both positive."""
+        """Prints differing results. Of a result with several values only the first is compared, and of distances only two
+        that are both positive."""
         ours, theirs = (answer[0] if isinstance(answer, tuple) else answer for answer in answers.values())
         if isinstance(ours, bool):
             if ours != theirs:
