@@ -104,7 +104,7 @@ struct ContactLine<V> {
     point1: PlaneLanes<V>,
     /// Signed distance of the solids along the normal; negative for an overlap.
     distance: V,
-    /// Lengths up to this count as rounding errors.
+    /// Largest length that counts as a rounding error.
     tolerance: V,
     prediction: V,
     sine: V,

@@ -77,7 +77,7 @@ impl<N: Real> Form<N, 3> for Segments3 {
     }
 }
 
-/// Two points and their squared distance.
+/// A point on each of two segments, and the squared distance of the two points.
 struct SegmentPoints<V> {
     /// Points on the first and on the second segment, in the frame of the first solid.
     points: SegmentEnds<V>,

@@ -80,7 +80,8 @@ fn bits<N: Real>(value: N) -> u64 {
     if value.partial_cmp(&value).is_some() { value.bits() } else { u64::MAX }
 }
 
-/// Lists the values of a manifold as bits, without the codes of the points.
+/// Lists positions, distances, ids, features and normal of a manifold as bits, to compare manifolds
+/// with NaN; omits the codes of the points.
 fn facts<N: Real, const D: usize>(raw: &RawManifold<N, D>) -> Vec<u64> {
     let mut facts: Vec<u64> = Vec::new();
     for point in &raw.points {
@@ -172,7 +173,7 @@ fn in_lanes<F: Batch<N, D>, N: Space<D>, const D: usize>(
     [begun, declined]
 }
 
-/// Kinds of solids to draw.
+/// Kind of a random solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Sort {
     Ball,

@@ -25,7 +25,7 @@ where
     /// Lower bound of the signed distance of the solids. A candidate that is nearer by more than
     /// rounding lies below the plane of the face and beside the face, and is dropped.
     pub(crate) least: N,
-    /// Lengths up to this are rounding errors of the pair.
+    /// Largest length that counts as a rounding error for the pair.
     pub(crate) tolerance: N,
 }
 
@@ -34,15 +34,15 @@ where
 pub(crate) struct OnFace<N: Real, const D: usize> {
     /// Normal of the face: unit vector from the first solid to the second.
     pub(crate) normal: Vector<N, D>,
-    /// Points nearer than this by more than rounding are dropped; the distances of the other points
-    /// are raised to at least this.
+    /// Least distance of a contact point. Points that are nearer by more than rounding are dropped;
+    /// the distances of the others are raised to at least `least`.
     pub(crate) least: N,
     /// Signed distance of the solids if `normal` is also the normal of their separation; else
     /// `None`.
     pub(crate) nearest: Option<N>,
-    /// Points farther than this are dropped.
+    /// Largest distance of a contact point; farther points are dropped.
     pub(crate) prediction: N,
-    /// Lengths up to this are rounding errors of the pair.
+    /// Largest length that counts as a rounding error for the pair.
     pub(crate) tolerance: N,
 }
 

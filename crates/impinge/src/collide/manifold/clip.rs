@@ -230,7 +230,8 @@ fn share<N: Real>(from: N, to: N) -> N {
     from / (from - to)
 }
 
-/// Two projected rings in one frame.
+/// The supporting features of two solids as rings, projected in one frame and measured against each
+/// other.
 struct RingClip<'a, N: Real> {
     frame: &'a ContactFrame<N, 3>,
     rings: [SupportRing<'a, N>; 2],

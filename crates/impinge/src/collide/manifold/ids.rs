@@ -136,9 +136,10 @@ pub(in crate::collide) fn are_near<N: Real, const D: usize>(
     moved(old, new, near_scale(size)) <= N::ONE
 }
 
-/// Returns the squared distance that a point moved, on the solid where it is smaller, times `scale`
-/// squared. Zero if both points are on the same vertex of either solid. If the normals do not
-/// agree, zero for the same features with a vertex among them, else infinite.
+/// Returns the smaller of the squared distances that a point moved on the two solids, times `scale`
+/// squared. Zero if the old and the new point are on the same vertex of one of the solids. If the
+/// normals do not agree ([`normals_agree`]), zero for the same features with a vertex among them,
+/// else infinite.
 #[inline]
 pub(super) fn moved<N: Real, const D: usize>(
     old: &Anchors<N, D>,
@@ -182,8 +183,8 @@ pub(in crate::collide) fn is_one_point(features: [FeatureId; 2]) -> bool {
     features.iter().any(|id| matches!(id, FeatureId::Vertex(_)))
 }
 
-/// Gives a candidate without an id the id of the old point with the same features, if one of these
-/// features is a vertex and no other candidate has the same two.
+/// Passes the id of each old point on to the candidate with the same features, if one of these
+/// features is a vertex, only one candidate has both features, and that candidate has no id yet.
 pub(in crate::collide) fn inherit_by_features<N: Real, const D: usize>(
     old: &RawManifold<N, D>,
     candidates: &mut [Candidate<N, D>],

@@ -56,7 +56,7 @@ pub(super) struct Corner<N: Real, const D: usize> {
     pub(super) id: FeatureId,
 }
 
-/// Supporting feature of a solid: a side, or a point.
+/// Supporting feature of a 2D solid: a side or a corner, projected onto the tangent.
 pub(super) struct FeatureInterval<N: Real> {
     which: Which,
     id: FeatureId,

@@ -109,7 +109,8 @@ fn nearest_first<K: PartialOrd + Copy>(
         for at in Ones::<FEW>(pending) {
             (keys[at], others[at]) = nearest(at, new);
             let has_one = keys[at] < never;
-            // An old point without a match now has none later either.
+            // The set of new points only shrinks, so an old point without a match now has none
+            // later.
             old &= !(u32::from(!has_one) << at);
         }
         // New points that are nearest to at least one old point.

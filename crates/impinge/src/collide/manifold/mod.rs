@@ -219,7 +219,7 @@ pub(in crate::collide) struct PointChoice<'a, N: Real, const D: usize> {
     pub(in crate::collide) size: &'a dyn Fn() -> N,
     /// Signed distance of the pair; one of the deepest points gets exactly this distance.
     pub(in crate::collide) distance: N,
-    /// Lengths up to this are rounding errors.
+    /// Largest length that counts as a rounding error.
     pub(in crate::collide) tolerance: N,
     /// Largest number of points; at least one is kept.
     pub(in crate::collide) limit: usize,

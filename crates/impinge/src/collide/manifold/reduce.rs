@@ -155,7 +155,7 @@ fn best_spanning<N: Real>(points: &mut Projections<N>, limit: usize, tolerance: 
     }
     ring.extend(inner);
     if ring.is_empty() {
-        // Only if areas are NaN.
+        // The hull has no corners only if areas are NaN.
         ring.push(points[a_deepest(points)]);
     }
     if ring.len() > limit {

@@ -240,7 +240,7 @@ impl<N: Real> Default for PendingClips<N> {
     }
 }
 
-/// The contacts found so far.
+/// The contacts found so far, and the triangles whose contact points are still to be clipped.
 struct FaceContacts<'s, 'a, N: Real> {
     configuration: &'s FaceConfiguration<'a, N>,
     contacts: &'s mut PartContacts<N, 3>,
@@ -348,7 +348,7 @@ impl<N: Real> FaceContacts<'_, '_, N> {
         }
     }
 
-    /// Computes the contact of a triangle by the generic path.
+    /// Computes the contact of a triangle by the generic path; `None` if there is no contact.
     fn in_general(&mut self, cache_index: usize) -> Option<PartContact<N, 3>> {
         let FaceConfiguration { query, scene, around, .. } = *self.configuration;
         let parts = [0, around.parts()[cache_index]];

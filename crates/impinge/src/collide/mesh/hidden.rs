@@ -41,7 +41,7 @@ enum PlaneSide {
     Across,
 }
 
-/// A face in contact.
+/// A face of the composite in contact with the solid.
 struct TouchedFace<N: Real, const D: usize> {
     /// Index of the face's contact.
     contact: usize,

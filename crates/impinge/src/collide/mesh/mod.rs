@@ -379,7 +379,7 @@ fn of_parts<N: Space<D>, const D: usize>(
     ManifoldRequest { prediction: prediction + margin, sine: N::ZERO, max_points: PART_POINTS }
 }
 
-/// Returns the bounding radius of a solid around its origin.
+/// Returns the bounding radius of a solid around its origin, including its rounding radius.
 fn size<N: Real, const D: usize>(map: &dyn SupportMap<N, D>) -> N {
     map.reach() + map.rounding()
 }

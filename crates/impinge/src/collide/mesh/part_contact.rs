@@ -321,9 +321,9 @@ fn over<N: Space<D>, const D: usize>(pair: &Pair<'_, N, D>, tolerance: N) -> Opt
     <N::Algorithms>::over(triangle, &center, tolerance)
 }
 
-/// Returns whether `over` is the face and the filter returned its normal, or neither is the case.
-/// If so, the contact gets the feature `over`; a ball close to a side may still have the normal of
-/// the face.
+/// Returns whether the filter returned the face's normal if and only if `over` is the face. Then
+/// the contact gets the feature `over`. Otherwise the feature is uncertain: a ball close to a side
+/// may still have the normal of the face.
 pub(super) fn is_certain<N: Real, const D: usize>(
     over: FeatureId,
     filtered: &FilteredNormal<N, D>,

@@ -169,7 +169,7 @@ fn are_coplanar<N: Real, const D: usize>(
     lead2: &Lead,
 ) -> bool {
     let piece = |lead: &Lead| &merging.pieces[lead.piece];
-    // False for NaN.
+    // The comparison is false for NaN.
     let is_same = (piece(lead1).normal - piece(lead2).normal).norm_squared() <= square_of_same();
     if !is_same {
         return false;

@@ -50,7 +50,7 @@ pub(super) struct Limits<V> {
     pub(super) prediction: V,
     /// Sine of the angle by which the boxes may rotate.
     pub(super) sine: V,
-    /// Lengths up to this count as rounding errors.
+    /// Largest length that counts as a rounding error.
     pub(super) tolerance: V,
 }
 

@@ -32,7 +32,7 @@ pub(super) struct SlotChoice<'a, N: Real, const D: usize, const COUNT: usize, co
     /// Signed distance of the boxes. The slot that [`Self::deepest`] returns gets exactly this
     /// distance.
     pub(super) gap: N,
-    /// Lengths up to this count as rounding errors.
+    /// Largest length that counts as a rounding error.
     pub(super) tolerance: N,
     /// Length scale of the pair, as `collide::size` defines it.
     pub(super) size: N,

@@ -23,7 +23,7 @@ use crate::math::simd::{Run, Simd, SimdMask};
 use crate::math::{Real, Vector, Wide};
 use crate::shape::{CLEARLY_LARGER, FACING_SINE_SQUARED, FaceRing, THIN_SQUARED};
 
-/// Largest number of corners of a face.
+/// Largest number of corners of a ring; faces with more corners are not clipped in lanes.
 const MAX: usize = FaceRing::<f32>::MAX;
 
 /// Signed distances of the corners of one outline from the sides of the other, by corner and side,

@@ -40,7 +40,8 @@ impl<N: Real> FaceClip<N> {
 /// Points of one triangle found so far.
 struct FoundPoints<'a, N: Real> {
     request: &'a ClipRequest<N>,
-    /// Points farther than this by more than the tolerance are dropped.
+    /// Largest distance of a contact point; points that are farther by more than the tolerance are
+    /// dropped.
     prediction: N,
     tolerance: N,
     points: &'a mut RawPoints<N, 3>,
@@ -56,7 +57,7 @@ impl<N: Real> FoundPoints<'_, N> {
         let new = &mut self.points[self.first..];
         let lowest = new.iter().fold(N::INFINITY, |lowest, point| min(point.distance, lowest));
         let Some(nearest) = self.request.nearest else { return Some(lowest) };
-        // False for NaN.
+        // The comparison is false for NaN.
         let is_reached = lowest <= nearest + self.tolerance;
         let deepest = new.iter_mut().find(|point| point.distance == lowest)?;
         deepest.distance = nearest;
@@ -70,7 +71,7 @@ impl<N: Real> FoundPoints<'_, N> {
     fn push(&mut self, point: &Vector<N, 3>, distance: N, [feature1, feature2]: [FeatureId; 2]) {
         let ClipRequest { normal, nearest, least, .. } = self.request;
         let mut distance = max(distance, nearest.unwrap_or(distance));
-        // False for NaN.
+        // The comparison is false for NaN.
         let is_near = distance <= self.prediction + self.tolerance;
         if !is_near || distance < *least - self.tolerance {
             return;

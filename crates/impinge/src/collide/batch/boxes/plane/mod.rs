@@ -42,7 +42,7 @@ pub(in super::super) struct LaneSides<N: Real, const L: usize> {
     slots: Slots<N, 2, SLOTS, L>,
     /// Signed distance of the boxes; negative for an overlap.
     gap: [N; L],
-    /// Lengths up to this count as rounding errors.
+    /// Largest length that counts as a rounding error.
     tolerance: [N; L],
     /// Half the diagonal of the smaller box.
     size: [N; L],

@@ -48,7 +48,7 @@ pub(super) struct BoxSides<V, M> {
     is_corner: M,
     /// Lanes where `ends[1]`, not `ends[0]`, faces the lower box.
     is_second_lower: M,
-    /// Lengths up to this count as rounding errors.
+    /// Largest length that counts as a rounding error.
     pub(super) tolerance: V,
     /// Lanes where neither side is too short: both exceed 8 tolerances along the lower side.
     pub(super) is_fit: M,
@@ -192,7 +192,7 @@ impl<V, M> BoxSides<V, M> {
         )
     }
 
-    /// Compares end `end` of the upper side with the lower side.
+    /// Compares one end of the upper side, `ends[end]`, with the lower side.
     #[inline(always)]
     fn above<S: Simd, N: Real>(&self, simd: S, end: usize) -> SideCandidate<V, M>
     where

@@ -18,7 +18,7 @@ pub(super) struct BestAxis<V, M> {
     pub(super) normal: [V; 3],
     /// Signed distance along the normal; negative for an overlap.
     pub(super) gap: V,
-    /// Length that counts as rounding error for this pair.
+    /// Length up to which differences count as rounding errors, for each pair.
     pub(super) rounding_error: V,
     /// Lanes where the pose is finite.
     pub(super) is_finite: M,
@@ -54,7 +54,7 @@ fn abs_rotation<S: Simd, V: Wide<S>>(rotation: &[[V; 3]; 3]) -> [[V; 3]; 3] {
 }
 
 impl<V> Boxes<V, 3> {
-    /// Returns for each pair the length that counts as rounding error.
+    /// Returns for each pair the length up to which differences count as rounding errors.
     #[inline(always)]
     fn rounding_error<S: Simd, N: Real>(&self, simd: S) -> V
     where

@@ -37,7 +37,7 @@ pub(in super::super) struct LaneFaces<N: Real, const L: usize> {
     corners: Corners,
     /// Signed distance of the boxes; negative for an overlap.
     gap: [N; L],
-    /// Lengths up to this count as rounding errors.
+    /// Largest length that counts as a rounding error.
     tolerance: [N; L],
     /// Length scale: half the diagonal of the smaller box.
     size: [N; L],
