@@ -42,7 +42,8 @@ enum PartOf<'a, N: Real, const D: usize> {
     Part(PartSolid<'a, N, D>),
 }
 
-/// A part of each shape, as a pair in the frame of the first part.
+/// One part of each of two shapes, placed relative to a common anchor, and the pose of the second
+/// part in the frame of the first.
 pub(crate) struct PartPair<'a, N: Real, const D: usize> {
     part1: AnchoredPart<'a, N, D>,
     part2: AnchoredPart<'a, N, D>,
@@ -63,7 +64,7 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
         Self { pair: *pair, pose21: pair.pose12.inverse() }
     }
 
-    /// Returns both shapes as composites; `None` for a convex solid.
+    /// Returns each shape as a composite; `None` for a shape that is not a composite.
     pub(crate) fn composites(&self) -> [Option<&'a dyn CompositeShape<N, D>>; 2] {
         [self.pair.first, self.pair.second].mapped(|kind| Geometry(kind).as_composite())
     }
@@ -86,8 +87,8 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
         matches!(self.pair.first, Kind::Plane(_))
     }
 
-    /// Returns the pair of the part `part1` of the first shape and `part2` of the second; the index
-    /// of a convex solid is 0.
+    /// Places part `part1` of the first shape and part `part2` of the second relative to a common
+    /// anchor. For a convex solid the index is ignored, and the solid counts as its only part.
     pub(crate) fn parts(&self, [part1, part2]: [u32; 2]) -> PartPair<'a, N, D> {
         let [composite1, composite2] = self.composites();
         if composite1.is_none() && composite2.is_none() {
@@ -184,7 +185,8 @@ pub(crate) fn by_number<'a, N: Real, const D: usize>(
 }
 
 impl<'a, N: Real, const D: usize> AnchoredPart<'a, N, D> {
-    /// Places `piece`, or the whole convex shape if it is `None`, relative to the anchor `origin`.
+    /// Places `piece`, or the whole convex shape if `piece` is `None`, relative to the anchor
+    /// `origin`.
     fn new(whole: Kind<'a, N, D>, piece: Option<Part<'a, N, D>>, origin: &Point<N, D>) -> Self {
         let Some(piece) = piece else {
             let pose = Pose::from_translation(-origin.coords);
@@ -219,7 +221,9 @@ impl<N: Real, const D: usize> PartPair<'_, N, D> {
         Pair { first: self.part1.kind(), second: self.part2.kind(), pose12: self.pose12 }
     }
 
-    /// Returns the poses of the parts in the frame of the first shape.
+    /// Returns the poses of the solids of [`Self::pair`] in the frame of the first shape. The
+    /// triangles and segments of this pair are relative to the anchor, unlike those of the
+    /// composites.
     pub(crate) fn poses(&self) -> [Pose<N, D>; 2] {
         let Pose { rotation, translation } = self.part1.pose;
         let pose1 = Pose { rotation, translation: self.origin1.coords + translation };

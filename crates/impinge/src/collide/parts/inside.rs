@@ -210,8 +210,8 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestBoundary<'_, '_, 
 }
 
 impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
-    /// Returns whether, of `parts`, the part of shape `inner` belongs to the piece and the part of
-    /// the other shape to the boundary of the body.
+    /// Returns whether `parts` consists of a part of the piece and a part of the boundary of the
+    /// body.
     pub(crate) fn has(&self, between: &Between<'_, N, D>, parts: [u32; 2]) -> bool {
         self.boundary.contains(&parts[1 - self.inner]) && self.is_own(between, parts[self.inner])
     }
@@ -222,7 +222,8 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
         composite.is_none_or(|composite| composite.piece_of(part) == self.piece)
     }
 
-    /// Calls `visit` with each part of the piece.
+    /// Calls `visit` with each part of the piece whose box overlaps the box of the other shape.
+    /// These are all parts of the piece if the piece is inside the body.
     pub(crate) fn each_part(&self, between: &Between<'_, N, D>, mut visit: impl FnMut(u32)) {
         let near = parts_near_other(between, self.inner);
         near.iter().filter(|(piece, _)| *piece == self.piece).for_each(|(_, part)| visit(*part));
@@ -268,7 +269,8 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
         let PartSeparation { separation, parts, .. } = *found;
         let Separation { normal, point1, point2, distance } = separation;
         let (point, outward) = if self.inner == 0 { (point2, normal) } else { (point1, -normal) };
-        // Another algorithm may find a gap where this one finds an overlap within rounding error.
+        // An overlap within rounding error still has an exit, because another algorithm may find a
+        // gap there.
         (distance > -rounding([&point1, &point2])).then_some(Exit { point, outward, parts })
     }
 
@@ -313,7 +315,7 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
     }
 }
 
-/// Returns the bound of the rounding error of lengths that are computed from two points.
+/// Returns an upper bound of the rounding error of lengths that are computed from two points.
 fn rounding<N: Real, const D: usize>(points: [&Point<N, D>; 2]) -> N {
     let size = max(max_component(&points[0].coords), max_component(&points[1].coords));
     N::lit(ROUNDING) * N::EPSILON * size

@@ -42,10 +42,11 @@ pub(crate) struct PartPairs<N, const D: usize> {
 /// Results for 8 pairs, one bit each. If the test of a pair is undecided, neither bit is set.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct PairMasks {
-    /// Pairs farther apart than the limit; the distance of an overlap is negative.
+    /// Pairs certainly farther apart than the limit, which is compared with the signed distance
+    /// (negative for an overlap).
     pub(crate) beyond: u8,
-    /// Pairs not farther apart than the limit. Only valid for a limit of zero or less, because the
-    /// gaps along these axes may be smaller than a positive distance.
+    /// Pairs certainly not farther apart than the limit. Only valid for a limit of zero or less,
+    /// because the gaps along these axes may be smaller than a positive distance.
     pub(crate) within: u8,
 }
 
@@ -198,7 +199,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         Self { simd, one, other, limits, is_precise, beyond: none, within: !none, unsure: none }
     }
 
-    /// Tests an axis, which may have any length, and updates the results.
+    /// Tests an axis, which may have any length, and updates `beyond` and `within`.
     #[inline(always)]
     fn along(&mut self, along: &[V; D]) {
         let squared = dot(along, along);
@@ -209,7 +210,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         let is_length = squared.simd_gt(V::all(self.simd, N::MIN_POSITIVE / N::EPSILON))
             & squared.simd_lt(V::all(self.simd, N::INFINITY));
         self.beyond |= gap.simd_gt(self.limits[0] * length) & is_length;
-        // Also false for NaN.
+        // False for a NaN gap, so that the pair does not count as within.
         self.within &= gap.simd_le(self.limits[1] * length);
     }
 

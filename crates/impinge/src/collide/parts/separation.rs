@@ -257,8 +257,8 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
     }
 }
 
-/// Lower bound of the distance to each of some parts, negative if the part may overlap, and the
-/// index of the part.
+/// Parts with lower bounds of their distances, as pairs (bound, index of the part). A part with a
+/// negative bound may overlap.
 type PartGaps<N> = SmallVec<[(N, u32); 2 * LANES]>;
 
 impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {

@@ -96,7 +96,8 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
     }
 
     /// Returns whether a part of the composite is certainly farther from the solid than `limit`;
-    /// the distance of an overlap is negative. False without slabs or corners.
+    /// the distance of an overlap is negative. False without slabs or corners, and if the lengths
+    /// are too small to be precise.
     pub(crate) fn are_beyond(&self, part: &Part<'_, N, D>, limit: N) -> bool {
         if self.slabs.is_empty() {
             return false;

@@ -61,8 +61,9 @@ impl<N: Real, V> LaneCore<'_, N, V> {
         }
     }
 
-    /// Counts the vertices whose height along the unit vector `direction` is within `tolerance` of
-    /// the largest height.
+    /// Returns the number of vertices whose height along the unit vector `direction` is within
+    /// `tolerance` of the largest height and, for two such vertices, the direction of the line
+    /// through them.
     #[inline(always)]
     pub(super) fn ties<S: Simd>(&self, simd: S, direction: &[V; 3], tolerance: V) -> LaneTies<V>
     where

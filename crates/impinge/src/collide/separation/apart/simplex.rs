@@ -57,8 +57,8 @@ pub(super) struct LaneSimplex<V> {
     pub(super) squared: V,
 }
 
-/// The nearest point to the origin on the candidate features so far, and the old corners of its
-/// feature.
+/// The nearest point to the origin on the candidate features so far, and the old corners of the
+/// feature that this point lies on.
 struct BestFeature<V> {
     nearest: [V; 3],
     squared: V,
@@ -69,7 +69,8 @@ struct BestFeature<V> {
 }
 
 impl<V> BestFeature<V> {
-    /// Selects `other` in the lanes where it is nearer and admitted.
+    /// Returns the nearer feature in each lane: `other` if it is admitted and nearer to the origin,
+    /// else `self`.
     #[inline(always)]
     fn or_nearer<S: Simd>(self, (other, is_admitted): (Self, V::Mask)) -> Self
     where

@@ -55,8 +55,9 @@ pub(in crate::collide::separation) fn distance_from<N: Real>(
     over.map_or_else(|| on_nearest_side(corners, center).distance, |(distance, _)| distance)
 }
 
-/// Returns the distance of a point that projects into the triangle, and the normal towards it.
-/// `front` is the triangle's front normal. `None` if the point projects elsewhere.
+/// Returns the distance of a point that projects into the triangle, and the unit normal of the
+/// triangle on the side of the point. `front` is the triangle's front normal. `None` if the point
+/// projects elsewhere.
 fn height_over<N: Real>(
     corners: &[Point<N, 3>; 3],
     front: &Vector<N, 3>,

@@ -125,7 +125,8 @@ impl<N: Real> BoxPair<N> {
         best.map(|edges| (edges, bound))
     }
 
-    /// Returns an axis with its unit vector, pointing from the first box to the second.
+    /// Adds the unit vector to an axis of the given kind and gap; it points from the first box to
+    /// the second.
     fn axis(&self, kind: AxisKind, gap: N) -> BoxAxis<N> {
         let direction = match kind {
             AxisKind::Face1(axis) => Vector::<N, 3>::ith(axis, N::ONE),

@@ -59,7 +59,8 @@ fn of_pair<N: Real>(pair: &Pair<'_, N, 3>) -> BoxPair<N> {
     BoxPair { half1, half2, pose12: pair.pose12 }
 }
 
-/// Returns the separation, computed from `best`, the axis of the largest gap; `None` above `limit`.
+/// Returns the separation computed from `best`, the axis of the largest gap, or by the general
+/// algorithm if the nearest points do not lie along this axis; `None` above `limit`.
 fn along_best<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,

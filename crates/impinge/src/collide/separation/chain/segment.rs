@@ -11,8 +11,8 @@ use crate::math::simd::{Level, Simd};
 use crate::math::{Point, Real, Vector, Wide, min};
 use crate::shape::{Kind, Segment};
 
-/// Computes the separations of the segments from `core`, a segment with a radius; `None` if a
-/// length in some lane is close to underflow or overflow.
+/// Adds the separations of the segments within the limit from `core`, a segment with a radius, to
+/// `links`; `None` if a length in some lane is close to underflow or overflow.
 pub(super) fn links<N: Real>(
     level: Level,
     question: &ChainQuestion<'_, N>,

@@ -125,7 +125,8 @@ struct DepthSearch<'a, N: Real> {
 }
 
 impl<N: Real> DepthSearch<'_, N> {
-    /// Searches all features for the least depth, up to `gap`; `None` if arcs are split too often.
+    /// Searches all features for the least depth, to within `gap`; `None` if arcs are split too
+    /// often.
     fn search(&mut self, gap: N) -> Option<()> {
         let mut ends = SmallVec::<[Vector<N, 3>; 16]>::new();
         for (index, (normal, vertex)) in self.flat.normals.iter().enumerate() {
