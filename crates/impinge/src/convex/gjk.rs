@@ -92,7 +92,7 @@ where
 
 /// Returns the result of [`solve`]. If `rounding`, the sum of both radii, is `Some`, the search
 /// ends at a certain overlap of the inflated cores (see [`overlaps`]). An [`Answer::Signed`] equals
-/// the result of [`solve`] bit for bit.
+/// the result of [`solve`] bit for bit. `None` if [`solve`] returns `None`.
 pub(super) fn answer<N, S, const D: usize>(
     difference: &S,
     start: &Vector<N, D>,

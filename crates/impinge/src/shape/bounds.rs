@@ -68,8 +68,8 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 }
 
-/// Runs [`extents_in_lanes`] with the vector instructions of `level`; the result does not depend on
-/// `level`.
+/// Returns the result of [`extents_in_lanes`], computed with the vector instructions of `level`.
+/// The result does not depend on `level`.
 fn extents<N: Real, const D: usize>(
     level: Level,
     blocks: &[[[N; LANES]; D]],

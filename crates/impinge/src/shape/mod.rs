@@ -2,9 +2,10 @@
 //!
 //! A convex solid is a *core* inflated by a *rounding* radius: a ball is an inflated point, a
 //! capsule an inflated segment. Algorithms run on cores and subtract the radii from the distance at
-//! the end, which is exact up to rounding and nearly free. [`Shape`] is what a world stores;
-//! [`SupportMap`] is the trait by which queries accept a user's convex solid; [`ConvexPolyhedron`]
-//! gives access to the features of solids with flat faces; [`CompositeShape`] is a union of solids.
+//! the end, which is exact up to rounding and nearly free. A world stores solids by the trait
+//! [`Shape`]; [`SupportMap`] is the trait by which queries accept a user's convex solid;
+//! [`ConvexPolyhedron`] gives access to the features of solids with flat faces; [`CompositeShape`]
+//! is a union of solids.
 
 mod bounds;
 mod compact;

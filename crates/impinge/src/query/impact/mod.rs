@@ -376,7 +376,7 @@ pub(crate) fn impact_of_pair<N: Space<D>, const D: usize>(
     Some(if course.ordered.swapped { found.flipped() } else { found })
 }
 
-/// Returns the time of [`impact_of_pair`], without computing the parts and features.
+/// Returns the time of [`impact_of_pair`], without the parts and features; `None` without impact.
 pub(crate) fn time_of_pair<N: Space<D>, const D: usize>(
     moving1: &Moving<'_, N, D>,
     moving2: &Moving<'_, N, D>,

@@ -109,7 +109,7 @@ pub(crate) struct Flight<'a, N: Space<D>, const D: usize> {
     shapes: [&'a dyn Shape<N, D>; 2],
 }
 
-/// Runs [`nonlinear_time_of_impact`] in the canonical order.
+/// Runs [`nonlinear_time_of_impact`] for the bodies in canonical order, and swaps the result back.
 pub(crate) fn impact_of_flight<N: Space<D>, const D: usize>(
     flight: &Flight<'_, N, D>,
     options: &ImpactOptions<N>,

@@ -9,7 +9,8 @@ use crate::math::{Mapped, Real, Vector, max, min, unit, unit_or};
 use crate::shape::{Capsule, FeatureId};
 
 /// Returns the span of the union of two balls and of the round side between them. The union is
-/// convex, so the span runs from the first entry to the last exit.
+/// convex, so the span runs from the first entry to the last exit; `None` if the line misses all
+/// three.
 ///
 /// A capsule without radius is treated as a segment.
 pub(super) fn span<N: Real, const D: usize>(

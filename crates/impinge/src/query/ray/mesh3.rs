@@ -188,7 +188,8 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
         is_within
     }
 
-    /// Returns the first hit, after all triangles that may be hit were tested.
+    /// Returns the first hit, after all triangles that may be hit were tested; `None` if there is
+    /// none.
     fn first(&self) -> Option<RayIntersection<N, 3>> {
         let Met { corners, part, inner } = self.first?;
         let Some(inner) = inner else {
@@ -199,7 +200,8 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
         Some(RayIntersection { toi: inner.toi, normal, feature, part })
     }
 
-    /// Casts the ray against a single triangle.
+    /// Returns the hit of the ray on a single triangle, as the algorithm for separate triangles
+    /// computes it; `None` if the ray misses the triangle.
     fn cast_alone(&self, corners: &[Point<N, 3>; 3]) -> Option<RayIntersection<N, 3>> {
         let ray = self.ray.inverse_transformed_by(&Pose::identity());
         let hit = Triangle::of_finite(*corners).cast_local_ray(&ray, self.solid)?;

@@ -435,8 +435,7 @@ pub(crate) fn cast_many_on<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns the earliest of the parts' first hits for which `counts` returns `true`; of equally
-/// early hits, the one with the lowest part index. `None` if there is none.
+/// Returns the earliest first hit on a part that `counts` accepts; of equal times, the lowest part.
 #[inline]
 pub(crate) fn first_that<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,

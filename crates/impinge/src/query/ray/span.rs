@@ -66,7 +66,7 @@ impl<N: Real, const D: usize> Span<N, D> {
         }
     }
 
-    /// Returns the union of two spans, either of which may be missing.
+    /// Returns the union of two spans; `None` stands for an empty span.
     pub(super) fn union_of(first: Option<Self>, second: Option<Self>) -> Option<Self> {
         match (first, second) {
             (Some(first), Some(second)) => Some(first.union(second)),

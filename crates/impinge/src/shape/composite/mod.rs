@@ -89,7 +89,7 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
     }
 
     /// Returns the surface with the methods that the library's own composites implement in addition
-    /// to [`Surface`].
+    /// to [`Surface`]; `None` if [`Self::surface`] returns `None`.
     #[doc(hidden)]
     fn surface_access(&self) -> Option<SurfaceAccess<'_, N, D>> {
         self.surface().map(SurfaceAccess::of_any)

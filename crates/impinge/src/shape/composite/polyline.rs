@@ -307,7 +307,7 @@ impl<N: Real> Polyline<N, 2> {
     /// segments end as start, as in every [closed](Self::closed) line. O(1).
     ///
     /// If [`Self::set_vertices`] moves joined vertices apart, the line is no longer an outline.
-    /// [`Self::encloses`] and [`Self::signed_distance`] compute what lies inside.
+    /// [`Self::encloses`] and [`Self::signed_distance`] test whether a point lies inside.
     #[must_use]
     pub const fn is_outline(&self) -> bool {
         self.is_cycle

@@ -154,8 +154,8 @@ impl<N: Real> ShapeRecords<N> {
         Self { numbers: BTreeMap::new(), limit: PartLimit::default(), records: Vec::new() }
     }
 
-    /// Returns the number of a shape. If the shape has no number yet, saves it first, and before it
-    /// the shapes that it holds.
+    /// Returns the number of a shape. If the shape has no number yet, first saves the shapes that
+    /// it holds, then the shape.
     pub(crate) fn number<const D: usize>(
         &mut self,
         shape: &ShapeHandle<N, D>,
