@@ -46,8 +46,8 @@ fn holds<const D: usize>(scene: &Scene<D>, object: usize, step: u32, world: &[f6
     (0..D).all(|i| point[i].abs() <= half_extents[i])
 }
 
-/// Checks that each box contains the points halfway to its neighbours on the grid, so that it
-/// touches all of them.
+/// Asserts the number of pairs of overlapping boxes, and that both boxes of a pair contain the
+/// point halfway between their centres, so that they touch.
 fn check_pile<const D: usize>(count: usize, expected_pairs: usize) {
     let scene: Scene<D> = pile(count);
     assert_eq!(scene.objects.len(), count, "size");
@@ -253,7 +253,7 @@ fn solids_stay_on_the_ground() {
     check::<3>(20_000..20_500);
 }
 
-/// The mesh and the height field are equal surfaces.
+/// Asserts that the mesh and the height field are equal surfaces.
 #[test]
 fn both_grounds_are_one() {
     let (mesh, field) = (terrain_mesh::<3>(3), terrain_field::<3>(3));

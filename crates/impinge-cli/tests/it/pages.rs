@@ -70,7 +70,8 @@ fn a_page_has_what_is_left_of_a_recording() {
     assert_eq!(ran.code, 0, "{ran:?}");
     assert!(ran.err.contains("29 steps are kept, 3 bytes left out"), "{ran:?}");
     let page = fs::read_to_string(desk.path("cut.html")).expect("a page");
-    // Packing omits the hashes of objects, so that unpacked recordings are compared.
+    // Packing omits the hashes of objects, so both recordings are compared after packing and
+    // unpacking.
     let packed = impinge_record::pack(&kept).expect("whole records");
     assert!(recording(&page) == unpack(&packed).expect("just packed"), "whole records alone");
 }

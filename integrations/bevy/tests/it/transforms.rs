@@ -57,7 +57,7 @@ fn roots_keep_their_numbers() {
     assert_eq!((Vec3::from(pose.translation), pose.rotation), (transform.translation, rotation));
 }
 
-/// Returns the highest point of an entity, found by a ray from above.
+/// Returns the height at which a vertical ray from above, at `x` and z = 0, first hits a collider.
 fn top(app: &bevy_app::App, x: f32) -> f32 {
     let ray = bevy_math::Ray3d::new(Vec3::new(x, 100.0, 0.0), bevy_math::Dir3::NEG_Y);
     let hit = collisions::<3>(app).cast_ray(ray, 200.0, &bevy_impinge::SpatialFilter::new());

@@ -70,7 +70,8 @@ fn a_chain_of_capsules_holds() {
     chain_holds::<Impinge>();
 }
 
-/// Contact points keep their feature ids from step to step, so that the solver is warm-started.
+/// Asserts that contact points keep their feature ids from step to step, so that the solver is
+/// warm-started.
 #[test]
 fn contacts_keep_their_names() {
     let mut app = app::<Impinge>();
@@ -98,7 +99,7 @@ fn contacts_keep_their_names() {
     assert!(velocity(&app, cubes[2]).length() < 1e-2);
 }
 
-/// Two runs give equal bits.
+/// Asserts that two runs of a pile end at the same positions, to the bit.
 #[test]
 fn runs_repeat() {
     let run = || {
