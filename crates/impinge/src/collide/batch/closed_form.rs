@@ -102,7 +102,7 @@ pub(super) struct LaneContacts<N: Real, const D: usize, const L: usize> {
     /// `gap`.
     pub(super) distances: [[N; L]; 2],
     /// Largest length that counts as a rounding error; zero in kernels that never find two
-    /// contacts, which do not use it.
+    /// contacts, because no choice between points depends on it there.
     pub(super) tolerance: [N; L],
     /// Before transposition, masks of the parts that the points lie on (see the figure); after it,
     /// one byte per pair, which [`Form::features`] decodes. With two contacts, the low four bits of

@@ -131,7 +131,7 @@ pub(crate) fn on_face3<N: Real>(
     let frame = ContactFrame::known(&planes, tangents3(&normal), tolerance, prediction);
     let (mut candidates, mut lowest) = (Candidates::new(), N::INFINITY);
     clip::candidates(pair, &frame, &mut candidates);
-    // Candidates nearer than `least` lie beside the face, below its plane.
+    // Candidates nearer than `least` by more than rounding lie beside the face, below its plane.
     candidates.retain(|candidate| candidate.distance >= least - tolerance);
     for candidate in &mut candidates {
         candidate.distance = max(candidate.distance, least);

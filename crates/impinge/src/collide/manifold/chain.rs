@@ -111,7 +111,8 @@ impl<N: Real> SegmentPair<'_, N> {
                 }
             }
         }
-        // Points nearer than `least` by more than rounding lie beside the face and below it.
+        // Points nearer than `least` by more than rounding lie beside the face, below its plane,
+        // and are dropped.
         let kept = candidates.iter().filter(|found| found.distance >= along.least - tolerance);
         for candidate in kept {
             let point = candidate.with_id(0);

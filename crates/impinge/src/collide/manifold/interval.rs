@@ -1,4 +1,5 @@
-//! Two flat-sided 2D solids: the overlap interval of their supporting sides.
+//! Contacts of two flat-sided 2D solids: the ends of the overlap interval of their supporting
+//! sides.
 //!
 //! This module computes the contacts of segments, capsules, triangles, boxes, polygons and rounded
 //! solids. It also handles other support maps whose supporting feature is a side or a corner, with

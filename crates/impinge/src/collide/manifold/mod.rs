@@ -91,7 +91,8 @@ fn build_2d<N: Real>(
     }
     let frame = ContactFrame::new(pair, separation, request, tangents2(&separation.normal));
     if !interval::build(pair, &frame, limit, out) {
-        // A user-defined solid whose supporting feature is neither a corner nor a side.
+        // One solid is user-defined and has a supporting feature that is neither a corner nor a
+        // side.
         build_witness_manifold(pair, separation, out);
     }
 }

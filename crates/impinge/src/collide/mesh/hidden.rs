@@ -23,8 +23,8 @@ use super::scene::Scene;
 use crate::math::order::{order_of, sort_keyed};
 use crate::math::{Mapped, Point, Real, Space, Vector, max, min};
 
-/// Two faces do not hide each other if the cosine of the angle between their normals is larger than
-/// this.
+/// Smallest cosine of the angle between two normals that are alike: faces with such normals do not
+/// hide each other.
 const ALIKE: f64 = 0.99;
 /// Bound of the rounding errors of heights, in units of epsilon times the lengths of both parts.
 const ROUNDING: f64 = 16.0;
