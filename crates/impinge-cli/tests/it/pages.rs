@@ -1,4 +1,5 @@
-//! Tests of `export`, `view` and `samples`.
+//! Tests of `export`, `view` and `samples`: the pages contain whole or damaged recordings, a server
+//! follows a growing one, and bad input gives errors.
 
 use std::fs;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};

@@ -1,4 +1,5 @@
-//! Tests of `record`, `replay` and `validate`.
+//! Tests of `record`, `replay` and `validate`: steps are reported, replays have the same bits, and
+//! changed, damaged or unfinished recordings are recognised.
 
 use std::fs;
 

@@ -1,4 +1,5 @@
-//! Schedules, and orders that do not depend on archetypes or on the run.
+//! Tests that the order of messages depends neither on archetypes nor on the run, in which schedule
+//! the world steps, and that changes between steps are not lost.
 
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;

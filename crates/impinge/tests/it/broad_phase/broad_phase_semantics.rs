@@ -233,8 +233,8 @@ fn a_filter_that_panics_is_asked_again() {
     broad_phase.validate().expect("sound");
 }
 
-/// A bar over a row of 5000 balls moves to and fro by half the row, so that 2500 pairs begin or end
-/// at once.
+/// Moves a bar over a row of 5000 balls to and fro by half the length of the row. Asserts that 2500
+/// pairs begin or end at once.
 #[test]
 fn an_object_with_five_thousand_pairs() {
     let mut broad_phase = DBVTBroadPhase::new(0.125);

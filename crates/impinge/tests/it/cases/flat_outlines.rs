@@ -45,7 +45,8 @@ fn triangles_of_one_point_are_points() {
     assert_eq!(beyond(&triangle, &Segment::new(Point::new(-2.0, 0.0), o)), 2.875, "towards it");
 }
 
-/// Boxes with a half extent of zero have coinciding corners too.
+/// Asserts that boxes with a half extent of zero, which have coinciding corners too, end at these
+/// corners.
 #[test]
 fn flat_boxes_end_at_their_corners() {
     let flat = Cuboid::new(Vector::new(2.0, 0.0));

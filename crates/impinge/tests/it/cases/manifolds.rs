@@ -324,7 +324,7 @@ fn four_points_span_the_overlap_of_two_faces() {
     points_span_the_overlap::<f64>();
 }
 
-/// In 2D the points are the two ends of the overlap interval of two sides.
+/// Asserts that in 2D the contact points are the two ends of the overlap interval of two sides.
 #[test]
 fn two_points_span_the_overlap_of_two_sides() {
     let random = &mut Random(8, false);

@@ -120,7 +120,8 @@ fn solids_leave_lines() {
     check::<f64>();
 }
 
-/// A body that leaves the floor still hits the wall, even a wall that it touches at the start.
+/// Asserts that a body that leaves the floor still hits the wall, even a wall that it touches at
+/// the start.
 #[test]
 fn what_leaves_the_floor_meets_the_wall() {
     let p = |x: f64, y: f64| Point::<f64, 2>::new(x, y);
@@ -140,7 +141,8 @@ fn what_leaves_the_floor_meets_the_wall() {
     assert_eq!((hit.toi, hit.normal.x), (0.0, -1.0));
 }
 
-/// Solids cast in a world leave the floor without a hit, and hit it at time zero when cast into it.
+/// Asserts that solids cast in a world leave the floor without a hit, and hit it at time zero if
+/// they are cast into it.
 #[test]
 fn worlds_cast_out_of_floors() {
     let mut world = CollisionWorld::<f32, 3, ()>::new(0.02);

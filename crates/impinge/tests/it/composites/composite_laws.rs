@@ -96,8 +96,8 @@ fn common_motion_changes_nothing() {
     }
 }
 
-/// A compound of meshes and solids has the results of a flat list of its parts, and reports the
-/// path to each part.
+/// Asserts that a nested compound of meshes and solids has the results of a flat list of its parts,
+/// and reports the path to each part.
 #[test]
 fn nested_is_as_flat() {
     let (mesh, _) = ball_mesh::<f64>(4);

@@ -225,8 +225,8 @@ fn unbounded_children_are_found_everywhere() {
     assert_eq!(compound.aabb(&Pose::identity()), Aabb::unbounded(), "placed");
 }
 
-/// The box of a placed compound is the union of its children's boxes at their placed poses, and not
-/// the box around a rotated box.
+/// Asserts that the box of a rotated compound is the union of the boxes of its rotated children,
+/// which is smaller than the box around its rotated local box.
 #[test]
 fn placed_boxes_are_tight() {
     let capsule = ShapeHandle::new(Capsule::<f64, 2>::new(2.0, 0.5));

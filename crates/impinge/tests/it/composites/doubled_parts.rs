@@ -233,8 +233,8 @@ fn triangles_without_area_are_met_where_they_stick_out() {
     sticking_out::<f64>();
 }
 
-/// Filled meshes in 2D whose triangles are listed twice have contacts of the same depth as a mesh
-/// that lists each triangle once.
+/// Asserts that filled meshes in 2D whose triangles are listed twice have contacts of the same
+/// depth as a mesh that lists each triangle once.
 #[test]
 fn filled_triangles_that_are_listed_twice_are_there_once() {
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(Point::<f64, 2>::from);

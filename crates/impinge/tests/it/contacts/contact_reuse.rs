@@ -22,8 +22,9 @@ const PREDICTION: f64 = 0.02;
 /// Movement of a pair, as a length, up to which its contacts are reused.
 const TOLERANCE: f64 = 0.002;
 
-/// Slows a scene down, so that the fastest objects need ten to a hundred steps to move by the
-/// tolerance.
+/// Returns the scene with a hundredth of its speeds, so that the fastest objects need ten to a
+/// hundred steps to move by [`TOLERANCE`]. All objects get contact queries with half of
+/// [`PREDICTION`].
 fn slow<const D: usize>(mut scene: Scene<D>) -> Scene<D> {
     for object in &mut scene.objects {
         object.query = SceneQuery::Contacts { linear: PREDICTION / 2.0, angular: 0.0 };

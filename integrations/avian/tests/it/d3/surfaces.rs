@@ -124,7 +124,8 @@ fn a_character_walks_up_a_mesh() {
     assert!(last.x > 3.5, "{last}");
 }
 
-/// A kinematic capsule pushes a dynamic box over a mesh.
+/// Asserts that a kinematic capsule pushes a dynamic box over a mesh, and that the box stays on the
+/// mesh.
 #[test]
 fn a_kinematic_body_pushes_a_box() {
     let mut app: App = app::<Impinge>();

@@ -208,7 +208,8 @@ where
         }
     }
 
-    /// Law 5: exchanging the solids flips the result.
+    /// Law 5: exchanging the solids flips each contact and its features. Two equal solids at the
+    /// same position have no defined order and are skipped.
     fn flips(&mut self, found: &Points<N, D>) {
         if self.scene.is_twin() {
             return;

@@ -215,7 +215,8 @@ where
     }
 }
 
-/// Sets coordinates far below rounding to zero, so that no product of a few of them underflows.
+/// Sets coordinates of the position to zero if they are less than 1/1024 of the rounding error of
+/// `length`, so that no product of a few coordinates underflows.
 fn drop_dust<N, R, const D: usize>(pose: &mut Isometry<N, R, D>, length: N)
 where
     N: Space<D, Isometry = Isometry<N, R, D>>,

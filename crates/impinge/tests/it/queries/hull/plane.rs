@@ -1,4 +1,4 @@
-//! Tests hulls and outlines in 2D.
+//! Tests hulls of points in 2D, and polygons made from outlines of either winding.
 
 use impinge::math::{Point, Real};
 use impinge::shape::{ConvexPolygon, ShapeError};

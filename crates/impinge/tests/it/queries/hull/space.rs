@@ -1,4 +1,5 @@
-//! Tests hulls in 3D.
+//! Tests hulls in 3D: known solids, random, flat and tiny point sets, coordinates near the limits,
+//! and errors.
 
 use impinge::math::{Point, Real};
 use impinge::shape::{ConvexHull, ShapeError};

@@ -8,7 +8,7 @@ use impinge::broad_phase::Bounds;
 use impinge::broad_phase::{BroadPhase, DBVTBroadPhase, ProxyHandle};
 use impinge::math::{Point, Real, Space, Vector};
 
-/// A linear congruential generator.
+/// A linear congruential generator, of which only the upper bits are used.
 pub(crate) struct Random(pub u64);
 
 impl Random {

@@ -12,7 +12,8 @@ use impinge::shape::{
     Ball, Capsule, Cone, ConvexHull, Cuboid, Cylinder, HeightField, Shape, ShapeHandle, TriMesh,
 };
 
-/// A small generator with the constants of Numerical Recipes.
+/// A linear congruential generator with the constants of Knuth's MMIX; only the upper bits are
+/// used.
 pub struct Random(u64);
 
 impl Random {

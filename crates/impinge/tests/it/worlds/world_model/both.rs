@@ -316,8 +316,9 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         text
     }
 
-    /// Follows the new events, after those that were kept: each start has one stop, and each old
-    /// status is the one reported before.
+    /// Asserts for each new event, after those that were kept, that a contact starts and stops in
+    /// turn, and that a proximity's old status is the new status of the pair's previous event, or
+    /// disjoint if there is none.
     fn listen(&mut self, kept: (usize, usize)) {
         for event in &self.world.contact_events()[kept.0..] {
             let consistent = match *event {

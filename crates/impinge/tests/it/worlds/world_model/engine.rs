@@ -35,8 +35,8 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         assert_eq!(object.is_fixed(), is_fixed, "at once");
     }
 
-    /// Predicts a pose, which affects only the pairs of the broad phase; validating the world
-    /// checks these.
+    /// Moves an object and predicts its next pose. The prediction may change only the pairs of the
+    /// broad phase, which the validation after each update checks.
     fn predict(&mut self) {
         let Some((handle, twin)) = self.someone() else { return };
         let from = self.naive.object(twin).expect("alive").pose;
