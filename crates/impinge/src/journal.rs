@@ -114,7 +114,8 @@ impl<U, H, K> Journal<U, H, K> {
         }
     }
 
-    /// Adds some notes, if there is a mark.
+    /// Adds several notes in their order, if there is a mark. [`Self::undo`] returns the last of
+    /// them first.
     #[inline]
     pub(crate) fn note_all(&mut self, undo: &[U])
     where
@@ -139,7 +140,8 @@ impl<U, H, K> Journal<U, H, K> {
         self.notes.kept.pop().expect("the note was made with data")
     }
 
-    /// Sets a mark. Numbers must ascend.
+    /// Sets the mark `number` and copies `head` with it. The numbers of successive marks must
+    /// ascend.
     pub(crate) fn mark(&mut self, number: u64, head: H) {
         let notes = core::mem::replace(&mut self.notes, self.spare.pop().unwrap_or_default());
         if let Some(last) = self.marks.back_mut() {
@@ -149,7 +151,7 @@ impl<U, H, K> Journal<U, H, K> {
         self.begin_period();
     }
 
-    /// Drops the marks with smaller numbers.
+    /// Drops the marks whose numbers are less than `number`, with their notes.
     pub(crate) fn forget_before(&mut self, number: u64) {
         while self.marks.front().is_some_and(|mark| mark.number < number) {
             if let Some(mark) = self.marks.pop_front() {

@@ -1,4 +1,4 @@
-//! Contact points of many pairs, as rows.
+//! The contact points of many pairs in columns, with the range of each pair.
 
 use core::ops::Range;
 

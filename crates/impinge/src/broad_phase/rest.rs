@@ -5,7 +5,7 @@ use super::finder::Container;
 use crate::bvh::NONE;
 use crate::math::Real;
 
-/// Number of updates without a change after which an object is at rest.
+/// Number of updates without a change of its loosened box after which an object is at rest.
 const REST_UPDATES: u32 = 32;
 /// An update scans at most `1 / SCAN_DIVISOR` of the slots of the tree of moving objects, plus one
 /// slot, and at most [`MAX_SCANNED`] slots. But it scans at least one slot for every
@@ -39,7 +39,7 @@ pub(super) struct RestPass {
 }
 
 impl RestPass {
-    /// The state before the first pass.
+    /// The value before the first pass: there are no slots to scan.
     pub(super) const NONE: Self =
         Self { end: 0, resting: 0, quiet_updates: 0, moves_resting: true };
 }

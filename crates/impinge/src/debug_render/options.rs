@@ -1,4 +1,4 @@
-//! Options of a drawing.
+//! Options of a drawing: which kinds of objects are drawn, in which colours and sizes.
 
 use super::{Color, MeshOptions};
 use crate::math::Real;

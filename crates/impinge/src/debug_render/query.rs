@@ -1,4 +1,4 @@
-//! Drawing of queries: contacts, closest points, rays, moving shapes.
+//! Drawing of queries and their results: contacts, closest points, boxes, rays, moving shapes.
 
 use super::drawing::{are_finite, draw_box};
 use super::{DebugDrawing, DebugRender, Drawn};

@@ -363,7 +363,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.journal.mark(number, self.substeps.clone());
     }
 
-    /// Drops the marks with smaller numbers.
+    /// Drops the marks whose numbers are less than `number`.
     pub(crate) fn forget_before(&mut self, number: u64) {
         self.journal.forget_before(number);
     }
@@ -388,7 +388,8 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.journal = journal;
     }
 
-    /// Records the row and skin of an object before they change, once for each mark.
+    /// Records row and skin of an object before their first change since the latest mark; does
+    /// nothing if there are no marks.
     fn note(&mut self, index: u32) {
         if self.journal.is_first_whole(index as usize) {
             let row = self.has_row(index).then(|| ObjectRow {

@@ -53,7 +53,7 @@ pub(super) fn usable_tolerance<N: Real>(tolerance: N) -> Result<N, ReuseError> {
     Ok(tolerance)
 }
 
-/// Relative pose and distances of a pair when its contacts were last computed.
+/// The relative pose and the contact distances of a pair at the last computation of its contacts.
 #[derive(Clone, Debug)]
 pub(crate) struct Reference<N: Real, const D: usize> {
     /// Pose of the solid in whose frame contacts are stored, relative to the other solid.
@@ -233,7 +233,7 @@ impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
     }
 }
 
-/// Returns the object in whose frame contacts are stored first, then the other object.
+/// Returns both objects of a pair, first the object in whose frame contacts are stored.
 const fn kept_order([first, second]: PairKey, is_swapped: bool) -> [u32; 2] {
     if is_swapped { [second, first] } else { [first, second] }
 }

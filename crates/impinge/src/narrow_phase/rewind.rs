@@ -16,7 +16,7 @@ use crate::collide::{PairIds, RawManifold, RawPoint};
 use crate::journal::Journal;
 use crate::math::{Pose, Real, Space, Vector};
 
-/// All data of a pair in a group.
+/// All data of one row of a group: a pair with its flags, its state and its reference.
 #[derive(Clone, Debug)]
 pub(crate) struct GroupRow<S, R> {
     key: PairKey,
@@ -353,7 +353,8 @@ impl<N: Space<D>, const D: usize> PairGroups<N, D> {
     }
 }
 
-/// State of the narrow phase that a mark copies as a whole.
+/// State of the narrow phase that a mark copies as a whole: the id counter and the keys of the
+/// dirty pairs.
 #[derive(Clone, Debug)]
 pub(crate) struct NarrowHead {
     ids: IdAllocator,
@@ -361,7 +362,7 @@ pub(crate) struct NarrowHead {
 }
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
-    /// Sets a mark; see [`Journal`](crate::journal::Journal).
+    /// Sets a mark for a later [`Self::rewind`]; see [`Journal`](crate::journal::Journal).
     pub(crate) fn mark(&mut self, number: u64) {
         let head = NarrowHead { ids: self.ids.clone(), due: self.dirty_pairs.clone() };
         self.journal.mark(number, head);
@@ -369,7 +370,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         each_group!(&mut self.groups, |_, group| group.mark(number));
     }
 
-    /// Drops the marks with smaller numbers.
+    /// Drops the marks whose numbers are less than `number`.
     pub(crate) fn forget_before(&mut self, number: u64) {
         self.journal.forget_before(number);
         self.pairs.forget_before(number);

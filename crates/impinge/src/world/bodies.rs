@@ -94,7 +94,8 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         (change_index != CHANGE_INDEX).then_some(change_index)
     }
 
-    /// Stores the object's index in the list of changes, and returns it.
+    /// Stores the object's index in the list of changes, and returns it. Panics if the index is not
+    /// less than [`MAX_CHANGES`].
     #[inline]
     pub(super) fn set_change_index(&mut self, change_index: usize) -> u32 {
         let small =
@@ -166,13 +167,15 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         self.state & PREDICTED != 0
     }
 
-    /// Marks the object as fixed, while a saved world is restored.
+    /// Marks the object as fixed without filtering its pairs again; for the restoration of a saved
+    /// world.
     #[cfg(feature = "serde")]
     pub(super) const fn restore_fixed(&mut self) {
         self.state |= FIXED;
     }
 
-    /// Marks the object as having a predicted pose, while a saved world is restored.
+    /// Marks the object as having a predicted pose, without a change of its volume; for the
+    /// restoration of a saved world.
     #[cfg(feature = "serde")]
     pub(super) const fn restore_predicted(&mut self) {
         self.state |= PREDICTED;

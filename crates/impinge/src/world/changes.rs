@@ -231,8 +231,8 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         if tree.has_all() { id } else { self.entries[id as usize].index }
     }
 
-    /// Collects the handle indices of the changed objects that still exist, sorted. The list reuses
-    /// the memory of the last one; pass it to [`Self::clear`] afterwards.
+    /// Collects the handle indices of the changed objects that still exist, sorted. The list has
+    /// the memory of the list that was last passed to [`Self::clear`]; pass this list to it, too.
     pub(crate) fn take_order(&mut self) -> Vec<u32> {
         let mut order = core::mem::take(&mut self.order);
         order.extend(self.waiting());

@@ -8,7 +8,7 @@ use crate::narrow_phase::{
 use crate::query::Proximity;
 
 /// Maximum number of pairs passed to the narrow phase at once. It is small enough that the rows of
-/// their objects are still in the cache when they are released.
+/// the pairs' objects are still in the cache when these rows are released.
 const BATCH: usize = 512;
 
 type HandlePair = (CollisionObjectHandle, CollisionObjectHandle);

@@ -1,4 +1,5 @@
-//! The bodies of a robot as groups of balls.
+//! The bodies of a robot as groups of balls, which the scan tests against each other and against
+//! obstacles.
 
 use std::collections::BTreeMap;
 

@@ -144,11 +144,11 @@ pub struct ContactStream<N: Real, const D: usize> {
     left: Vec<PairRange>,
 }
 
-/// Two handles and a manifold.
+/// The handles of two objects and a manifold of their pair.
 type NamedView<'a, N, const D: usize> =
     (CollisionObjectHandle, CollisionObjectHandle, ManifoldView<'a, N, D>);
 
-/// The contacts of a fill.
+/// The manifolds and points of one fill of a [`ContactStream`].
 #[derive(Clone, Debug)]
 struct Lists<N: Real, const D: usize> {
     manifolds: Vec<StreamManifold<N, D>>,
@@ -243,7 +243,8 @@ impl<N: Space<D>, const D: usize> ContactStream<N, D> {
     }
 }
 
-/// Replaces the id of an old pair that has a match. No pair has this id.
+/// The value that replaces the id of an old pair once the pair has a match. It is the id of no
+/// pair.
 const TAKEN: u64 = ContactId::NULL.pair;
 
 impl<N: Space<D>, const D: usize> Lists<N, D> {

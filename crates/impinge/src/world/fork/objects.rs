@@ -6,7 +6,7 @@ use crate::world::bodies::BodyMotion;
 use crate::world::objects::Slot;
 use crate::world::{CollisionObject, CollisionObjects};
 
-/// A change of the objects, which can be undone.
+/// A change of the objects, by which a rewind undoes it.
 #[derive(Clone, Copy)]
 pub(in crate::world) enum ObjectNote<N: Space<D>, const D: usize> {
     Added(CollisionObjectHandle),
@@ -28,7 +28,7 @@ pub(in crate::world) struct KeptObject<N: Space<D>, const D: usize, T> {
 }
 
 impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
-    /// Sets a mark; see [`Journal`](crate::journal::Journal).
+    /// Sets a mark for a later [`Self::rewind`]; see [`Journal`](crate::journal::Journal).
     pub(super) fn mark(&mut self, number: u64)
     where
         T: Clone,
@@ -39,7 +39,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.table.mark(number);
     }
 
-    /// Drops the marks with smaller numbers.
+    /// Drops the marks whose numbers are less than `number`.
     pub(super) fn forget_before(&mut self, number: u64) {
         self.journal.forget_before(number);
         self.table.forget_before(number);

@@ -1,8 +1,8 @@
-//! Rewinds a world to a mark in its history.
+//! Rewinding a world to a mark: an earlier state of the world that the user has marked.
 //!
 //! While there are marks, each part records its state before it changes
-//! ([`Journal`](crate::journal::Journal)). Small state is copied as a whole with the mark
-//! ([`WorldHead`]).
+//! ([`Journal`](crate::journal::Journal)). State that takes little memory is copied as a whole with
+//! the mark ([`WorldHead`]).
 //!
 //! | state | recorded by | restored by |
 //! |---|---|---|
@@ -49,7 +49,8 @@ pub struct WorldMark {
     number: u64,
 }
 
-/// State that a mark copies as a whole.
+/// The state of a world that a mark copies as a whole: events, filters, removed objects, custom
+/// phases, and the phases that the next update will install.
 pub(in crate::world) struct WorldHead<N: Space<D>, const D: usize, T> {
     number: u64,
     events: Events,
@@ -99,7 +100,7 @@ impl<N: Space<D>, const D: usize, T> History<N, D, T> {
     }
 }
 
-/// Marks and rewinding.
+/// Marks, and the return to the state of a mark.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Marks the present state, so that [`Self::rewind`] can restore it: for example before a step
     /// with guessed inputs, in a game over a network.
@@ -167,12 +168,12 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.drop_old_marks();
     }
 
-    /// Restores the state of a mark: objects with their data, shapes, groups, query types, pairs,
-    /// contacts with their ids, events, filters, and the changes that wait for the next update. The
-    /// same calls as before then give the same bits, including handles of added objects. So a
-    /// handle that was issued after the mark refers to no object until the same handle is issued
-    /// again, possibly for another object. All queries, pairs and contacts have the results that
-    /// they had at the mark, in the same order.
+    /// Restores the state that the world had at the mark: objects with their data, shapes, groups,
+    /// query types, pairs, contacts with their ids, events, filters, and the changes that wait for
+    /// the next update. The same calls as before then give the same bits, including handles of
+    /// added objects. So a handle that was issued after the mark refers to no object until the same
+    /// handle is issued again, possibly for another object. All queries, pairs and contacts have
+    /// the results that they had at the mark, in the same order.
     ///
     /// The mark stays, so that the world can return to it again; later marks end. The cost is
     /// proportional to the changes since the mark: undoing 8 updates takes as long as two to five

@@ -291,7 +291,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
 /// A placeholder for the proxy of an object, until the broad phase is restored.
 const NOT_YET: ProxyHandle = ProxyHandle::new(u32::MAX, u16::MAX);
 
-/// Returns the record of the present properties of an object.
+/// Returns the record of an object's present shape, position, query type and skin.
 fn row<N: Space<D>, const D: usize>(
     body: &WorldBody<N, D>,
     skin: N,
@@ -357,7 +357,8 @@ impl<N: Space<D>, const D: usize, T> RemovedObjects<N, D, T> {
         self.objects.values().map(record).collect()
     }
 
-    /// Restores removed objects, with handles of the table whose first generation is `first`.
+    /// Restores the removed objects whose handles are in events, with handles of the table whose
+    /// first generation is `first`.
     pub(super) fn restore(
         &mut self,
         records: Vec<RemovedRecord<N, T>>,
