@@ -323,8 +323,8 @@ impl<const D: usize> Schedule<D> {
     }
 
     /// Records a new run that ends at `end`, and returns its first slot. The run has the new
-    /// objects, and takes in the last earlier run as long as that is at most twice as long as the
-    /// new run and both together have at most `most` slots.
+    /// objects. While the last earlier run is at most twice as long as the new run, and both
+    /// together have at most `most` slots, it becomes a part of the new run.
     fn next_run(&mut self, end: usize, most: usize) -> usize {
         let mut start = self.fresh / LANES * LANES;
         self.runs.retain(|&run| run < start);

@@ -203,7 +203,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     }
 
     /// Returns the kinematic in the frames of two shapes that have the solids as parts. `pose1` and
-    /// `pose2` are the poses of the solids there; `turns` says whether rotations change each shape.
+    /// `pose2` are the poses of the solids there; `turns`: whether a rotation changes each shape.
     pub(super) fn in_frames(&self, [pose1, pose2]: [&Pose<N, D>; 2], turns: [bool; 2]) -> Self {
         Self {
             turns,

@@ -384,8 +384,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         speed(0, N::ONE) + speed(1, -N::ONE)
     }
 
-    /// Returns an upper bound of the speed along the normal that the rotation of body `index` gives
-    /// to a point at `distance` from its centre.
+    /// Returns an upper bound, for all times up to `to`, of the speed along the normal that the
+    /// rotation of body `index` gives to a point at `distance` from its centre.
     fn swing(&self, index: usize, distance: N, to: N) -> N {
         let turn = match (self.slope(index), self.direction()) {
             (Some(slope), Some(_)) => length(&slope),

@@ -305,7 +305,7 @@ impl<N: Real, const D: usize> Impact<N, D> {
 /// # Cost
 ///
 /// A query of two convex solids takes a few distance computations, about 130 at most. Each step is
-/// as long as the solids certainly stay apart (conservative advancement: Mirtich, "Impulse-based
+/// as long as the solids are known to stay apart (conservative advancement: Mirtich, "Impulse-based
 /// dynamic simulation", 1996). This is Newton's method on a convex function, which squares the
 /// error at a head-on impact and halves it at a grazing one. A composite is searched for parts on
 /// the path; of two composites, the parts of the one with fewer parts each search the other.

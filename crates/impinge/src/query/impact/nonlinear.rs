@@ -340,8 +340,8 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
         })
     }
 
-    /// Returns whether a contact at the start is an impact, by the rule of
-    /// [`impact`](super::impact).
+    /// Returns whether a contact at the start is an impact: always with `contact_at_start`, else by
+    /// the rule of [`impact`](super::impact).
     fn counts_at_start(&self, configuration: &Configuration<'_, '_, N, D>) -> bool {
         let (closing, rounding_error) =
             configuration.poses.moment.closing(&configuration.points, configuration.size);

@@ -31,7 +31,8 @@ impl<N: Real, const D: usize> Roots<N, D> {
 }
 
 /// Returns the times at which `origin + t · dir` is at the distance `radius` from zero; `None` if
-/// the line never comes that near. A line with zero `dir` is within that distance always or never.
+/// the line never comes that near. If `dir` is zero, the point `origin` is within that distance
+/// always or never.
 ///
 /// The method follows Haines, Günther and Akenine-Möller, "Precision improvements for ray/sphere
 /// intersection", 2019: the discriminant is computed from the line's point nearest to the centre,

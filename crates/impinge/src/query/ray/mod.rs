@@ -86,10 +86,10 @@ pub struct RayIntersection<N: Real, const D: usize> {
 ///
 /// A composite is the union of its parts, and the ray is cast against each part separately. So with
 /// `solid`, a ray that starts in any part hits at time zero. Without `solid`, the boundaries of all
-/// parts are hit, also where they lie inside other parts. Of parts that are hit at the same time
-/// the lowest index wins. Parts whose common corners are bitwise equal, as in a mesh or a height
-/// field, leave no gap: a ray through a common side or corner hits at least one of them, however
-/// far from the origin (Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", 2013).
+/// parts are hit, also where they lie inside other parts. Of parts hit at the same time, the lowest
+/// index is returned. Parts whose common corners are bitwise equal, as in a mesh or a height field,
+/// leave no gap: a ray through a common side or corner hits at least one of them, however far from
+/// the origin (Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", 2013).
 ///
 /// For a composite, the cost is a search for the parts along the ray, up to the hit.
 /// [`Self::intersects_ray`] ends at any part that is hit.
@@ -435,7 +435,7 @@ pub(crate) fn cast_many_on<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns the earliest first hit on a part that `counts` accepts; of equal times, the lowest part.
+/// Returns the earliest hit that `counts` accepts, in a tie on the lowest part; `None` if none.
 #[inline]
 pub(crate) fn first_that<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,

@@ -115,7 +115,7 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
         is_shared
     }
 
-    /// Appends the path to a part to `path`.
+    /// Appends to `path` the indices that lead to a part.
     fn extend_path(&self, part: u32, path: &mut PartPath) {
         path.push(part);
     }

@@ -55,7 +55,8 @@ pub(in crate::shape) fn is_across<N: Real, const D: usize>(
     unit(edge).is_none_or(|(along, _)| is_flat(along.dot(normal)))
 }
 
-/// A side clearly rises or sinks along a normal if its sine exceeds `slack` by this factor.
+/// A side clearly rises or sinks along a normal if the component of its unit direction along the
+/// normal exceeds, in magnitude, `slack` times this factor.
 const CLEAR: f64 = 8.0;
 
 /// Compares a normal at a corner with the sides that leave the corner. This decides most cases
@@ -83,7 +84,8 @@ impl<'a, N: Real, const D: usize> CornerEdges<'a, N, D> {
         self.has_perpendicular |= !is_clear;
     }
 
-    /// Returns whether a side rises, so that more sides cannot change the result.
+    /// Returns whether a side clearly rises along the normal, so that more sides cannot change the
+    /// result.
     pub(in crate::shape) const fn is_refused(&self) -> bool {
         self.has_rising
     }
@@ -114,8 +116,8 @@ pub(in crate::shape) struct Seam<N: Real, const D: usize> {
     own: Vector<N, D>,
     /// The component of the normal along the queried face or segment.
     tilt: Vector<N, D>,
-    /// A piece lies on the side to which the normal tilts if a direction into it rises along `tilt`
-    /// by more than `margin`.
+    /// A piece lies on the side to which the normal tilts if a unit direction into it has a
+    /// component along `tilt` of more than `margin`.
     margin: N,
     /// Whether the normal is a normal of the queried face or segment, and all pieces added so far
     /// are coplanar with that face or segment, within `FLAT_SINE`.

@@ -1,4 +1,4 @@
-//! Walks around the sides and corners of a mesh.
+//! Iteration over the triangles at a side or a corner of a mesh.
 //!
 //! Some meshes contain triangles without area as fillers: where a corner touches the interior of a
 //! longer side, a thin triangle joins that corner to the two ends of the side. Seams are evaluated
