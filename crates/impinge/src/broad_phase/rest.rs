@@ -73,8 +73,9 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     /// the pass goes from the last slot to the first, so that the tree can shrink.
     ///
     /// If nearly all objects are in the tree of moving objects, as after a bulk insertion, a pass
-    /// begins only after [`REST_UPDATES`] quiet updates, and every other pass only counts. If such
-    /// a pass finds at least three quarters of the objects at rest, the trees are swapped.
+    /// begins only after [`REST_UPDATES`] quiet updates, and every second pass only counts the
+    /// objects at rest. If such a pass finds at least three quarters of the objects at rest, the
+    /// trees are swapped.
     fn list_resting(&mut self, changed: usize, resting: &mut Vec<u32>) {
         let slots = self.moving.slots_in_order();
         let max_resting = MAX_RESTING.max(2 * changed);

@@ -21,7 +21,7 @@ use crate::math::Space;
 /// objects instead of by a scan of all pairs.
 const SPARSE: usize = 8;
 
-/// Indices of pairs within a chunk.
+/// Indices of pairs in the rows of a chunk, or in all rows of a group for picked pairs.
 type RowIndices = SmallVec<[usize; CHUNK]>;
 
 /// The changes of statuses in an update, each with its pair.

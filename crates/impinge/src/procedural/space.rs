@@ -72,8 +72,8 @@ pub fn ellipsoid<N: Real>(ellipsoid: &Ellipsoid<N, 3>, subdivisions: u32) -> Tri
     let is_flat = half_axes.iter().any(|&half| half == N::ZERO);
     let least = half_axes.iter().fold(N::INFINITY, |least, &half| min(half, least));
     for normal in surface.normals.iter_mut().flatten() {
-        // If a half axis is zero, the normal is along the zero axes; else its components are
-        // divided by the half axes.
+        // If a half axis is zero, the normal keeps only its components along the axes with half
+        // axis zero; else its components are divided by the half axes.
         let steep = normal.zip_map(half_axes, |x, half| match (is_flat, half == N::ZERO) {
             (true, false) => N::ZERO,
             (true, true) => x,
