@@ -376,7 +376,8 @@ fn solids_on_the_plain_slide_by_a_tenth() {
                 pairs.len() == 30 && pairs.iter().all(|pair| pair.0 == 0),
                 "{kind:?}: {pairs:?}"
             );
-            // The box of a cylinder is not the smallest one.
+            // The box of a cylinder is larger than needed, so its lower face does not show whether
+            // the cylinder lies on the ground.
             let exact = (1..=30).filter(|_| *kind != SolidKind::Cylinder);
             let lows: Vec<_> = exact.map(|n| scene.aabb(n, 4).expect("bounded").0[1]).collect();
             assert!(

@@ -24,7 +24,7 @@ fn steps(bytes: Vec<u8>) -> usize {
     last
 }
 
-/// Returns the unpacked recording of a page.
+/// Returns the recording that a page contains, unpacked.
 fn recording(page: &str) -> Vec<u8> {
     let packed = STANDARD.decode(page.lines().nth(2).expect("a line")).expect("base64");
     unpack(&packed).expect("a packed recording")

@@ -128,7 +128,7 @@ fn other_versions_scalars_and_dimensions() {
 #[test]
 fn a_length_beyond_the_end_is_refused_before_memory_is_taken() {
     let mut bytes = small();
-    // The length of the name of the writer.
+    // Overwrites the length of the writer's name in the header.
     bytes[12..16].copy_from_slice(&u32::MAX.to_le_bytes());
     let error = outcome(&bytes).expect_err("four gigabytes of name");
     assert_eq!(error, ReadError { offset: 12, problem: Problem::Truncated });

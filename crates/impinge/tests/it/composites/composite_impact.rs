@@ -340,9 +340,9 @@ impl Shape<f64, 3> for Asked {
     }
 }
 
-/// Asserts that the impact of a screw in its nut needs at most as many requests of each part as
-/// `most` searches over all parts. One search for each small step of the sliding flanks would
-/// exceed this.
+/// Asserts a bound for the impact of a screw in its nut: the requests for parts of a shape, divided
+/// by the number of parts of both shapes, are at most `most`. One search over all parts for each
+/// small step of the sliding flanks would exceed this.
 #[test]
 fn screws_are_looked_at_a_few_times() {
     let [screw, nut] =

@@ -53,7 +53,8 @@ fn far_from_the_origin<N: Play<D>, const D: usize>() {
         there.step();
         let (near, far) = (contacts_seen(&here), contacts_seen(&there));
         assert_eq!(near, far, "step {step}");
-        // Compared as text: the handles of two worlds differ, but print alike.
+        // Compared as text: handles of two worlds are never equal, but handles with the same index
+        // have the same text.
         let events = [&here.world, &there.world]
             .map(|world| format!("{:?} {:?}", world.contact_events(), world.proximity_events()));
         assert_eq!(events[0], events[1], "step {step}");
@@ -91,7 +92,8 @@ fn one_far_object<N: Stage<D>, const D: usize>() {
     fill(&mut with);
     let far = add(&mut with, 1e6, &ball(1.0), contacts(0.1));
     for round in 0..4 {
-        // Handles of two worlds are never equal, but print alike.
+        // Compared as text: handles of two worlds are never equal, but handles with the same index
+        // have the same text.
         let [alone_events, with_events] =
             [&mut alone, &mut with].map(|world| format!("{:?}", step(world)));
         assert_eq!(alone_events, with_events, "round {round}");

@@ -21,7 +21,7 @@ use world_stage::{Stage, ball, contacts, half_space, step, vector};
 
 const CASES: &str = include_str!("../../data/regression_cases.json");
 
-/// Scripts with steps in words; each has its own test below.
+/// Scripts whose steps are described in prose, so they cannot be run; each has its own test below.
 const IN_WORDS: [&str; 2] = ["parry-409-remove-to-single-leaf", "melonjs-1580-octree-depth"];
 
 /// Parent of an object, in the one script that filters by it; `None` for an object without a
@@ -324,7 +324,7 @@ fn parry_409_remove_to_single_leaf() {
         });
     }
     assert_eq!(orders, 1 + 2 + 6 + 24 + 120 + 720 + 5040, "all orders");
-    // Some of the 362880 orders of nine.
+    // 500 random orders of the 362880 orders of nine balls.
     let (mut order, random) = ((0..9).collect::<Vec<_>>(), &mut Random(9, false));
     for _ in 0..500 {
         order.sort_by_cached_key(|_| random.bits());

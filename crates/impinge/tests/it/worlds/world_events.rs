@@ -289,7 +289,8 @@ fn half_spaces_overlap_without_points<N: Stage<D>, const D: usize>() {
     assert_eq!(step(&mut world), [Started(ground, ceiling)], "antiparallel ones do touch");
 }
 
-/// The open pairs according to the events: each must start and stop in turn.
+/// The pairs that touch or are near according to the events so far, with which new events must be
+/// consistent.
 #[derive(Default)]
 struct Ledger {
     touching: Vec<(CollisionObjectHandle, CollisionObjectHandle)>,

@@ -29,7 +29,7 @@ fn groups(membership: &[usize], whitelist: &[usize], blacklist: &[usize]) -> Col
     groups
 }
 
-/// Adds a unit ball at the origin.
+/// Adds a ball of radius 1 at the origin with the given groups.
 fn add<N: Stage<D>, const D: usize>(
     world: &mut World<N, D>,
     groups: CollisionGroups,

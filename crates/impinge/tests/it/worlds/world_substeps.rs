@@ -18,7 +18,7 @@ use ContactEvent::{Started, Stopped};
 
 type World<N, const D: usize> = CollisionWorld<N, D, ()>;
 
-/// Returns two cubes side by side, with a gap.
+/// Returns a compound of two cubes of half width 1, with a gap of 1 between them.
 fn table<N: Stage<D>, const D: usize>() -> ShapeHandle<N, D> {
     let legs = [-1.5, 1.5].map(|x| (N::on_x(x), cube(1.0)));
     ShapeHandle::new(Compound::new(legs.to_vec()))
@@ -28,7 +28,7 @@ fn capsule<N: Real, const D: usize>() -> ShapeHandle<N, D> {
     ShapeHandle::new(Capsule::<N, D>::new(N::ONE, N::HALF))
 }
 
-/// Returns a ball, a box, another convex shape and a composite.
+/// Returns a ball, a box, a capsule and a compound.
 fn shapes<N: Stage<D>, const D: usize>() -> [ShapeHandle<N, D>; 4] {
     [ball(1.0), cube(1.0), capsule(), table()]
 }

@@ -31,7 +31,8 @@ impl Noise {
     }
 }
 
-/// Pose of a solid in `f64`; the world gets it rounded.
+/// Pose of a solid in `f64`. Its position is scaled and both are rounded for the world and the
+/// generator.
 #[derive(Clone, Copy)]
 struct Place {
     at: [f64; 3],

@@ -1,4 +1,4 @@
-//! Bodies on polylines and areas of triangles have no bumps at inner corners.
+//! Tests that bodies do not bump at the inner corners of polylines and of areas of triangles.
 
 use avian_impinge::d2;
 use avian2d::prelude::*;

@@ -1,4 +1,5 @@
-//! Scenes that must stay stable.
+//! Tests that stacks, pyramids and chains stay stable, that contacts keep their ids, and that runs
+//! repeat.
 
 use avian3d::prelude::*;
 use bevy_math::Vec3;

@@ -1,4 +1,4 @@
-//! Bodies on meshes have no bumps at inner edges.
+//! Tests that bodies do not bump at the inner edges of meshes.
 
 use avian3d::prelude::*;
 use bevy_app::App;

@@ -1,6 +1,6 @@
-//! Two worlds play the same scene: one with the default parts, and one whose phases and algorithms
-//! are exchanged while it plays. Both must report the same contacts, proximities and events at
-//! every step, even at a step with an exchange.
+//! Runs a scene in two worlds: one with the default parts, and one whose phases and algorithms are
+//! exchanged during the run. Both must report the same contacts, proximities and events at every
+//! step, even at a step with an exchange.
 
 use std::collections::BTreeMap;
 

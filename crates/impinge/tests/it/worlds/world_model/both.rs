@@ -16,7 +16,8 @@ use super::draw::{self, Grid};
 use super::twins::{self, OnGrid, Twins};
 use crate::support::world_stage::vector;
 
-/// Counts of what happened in a run.
+/// Counts of the events and operations of a run, with which a test asserts that each kind occurred
+/// often enough.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tally {
     pub(crate) updates: usize,
@@ -33,7 +34,7 @@ pub(crate) struct Tally {
     pub(crate) hits: usize,
     /// Number of pairs of fixed objects that overlap, summed over the updates.
     pub(crate) fixed: usize,
-    /// Number of events that were kept over an update.
+    /// Number of events of earlier updates that an update kept, summed over the updates.
     pub(crate) kept: usize,
     /// Number of pairs computed between updates; `changed` counts those that started or stopped
     /// thereby.
@@ -47,7 +48,8 @@ pub(crate) struct Tally {
     pub(crate) in_skins: usize,
 }
 
-/// Status of each pair according to the events.
+/// Contact and proximity of each pair according to the events so far, with which new events must be
+/// consistent.
 #[derive(Default)]
 struct Told {
     touching: BTreeMap<(CollisionObjectHandle, CollisionObjectHandle), ()>,

@@ -1,4 +1,4 @@
-//! Operations for authors of engines, performed on both worlds.
+//! The operations for authors of physics engines, performed on the world and its naive twin.
 
 use impinge::narrow_phase::{CollisionObjectHandle, ContactEvent};
 use impinge::world::{CollisionObject, WorldError};

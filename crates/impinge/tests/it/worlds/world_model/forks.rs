@@ -16,12 +16,12 @@ use crate::support::samples::samples;
 use crate::support::scene_stage::{Digest, digest_state};
 use crate::support::world_stage::vector;
 
-/// Greatest number of objects.
+/// Number of objects from which on operations add none.
 const MOST: usize = 40;
 /// Number of marks that the world keeps.
 const MARKS: usize = 5;
 
-/// The filters that may be registered, each with its number as name.
+/// The numbers of the filters that may be registered; the name of a filter is its number as text.
 pub(super) const FILTERS: [usize; 2] = [3, 5];
 
 pub(super) type World<N, const D: usize> = CollisionWorld<N, D, u64>;

@@ -112,7 +112,8 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         }
     }
 
-    /// Changes objects without an update.
+    /// Removes, moves or changes a quarter of the objects on average, and adds eight, without an
+    /// update.
     fn disturb(&mut self) {
         let handles: Vec<_> = self.world.collision_objects().map(Object::handle).collect();
         for &handle in handles.iter().skip(1) {
@@ -155,7 +156,7 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         }
     }
 
-    /// Moves objects a little.
+    /// Moves the objects `handles` by up to 0.3, and gives them random rotations.
     fn shift_all(&mut self, handles: &[CollisionObjectHandle]) {
         for &handle in handles {
             let object = self.world.collision_object(handle).expect("it is there");
