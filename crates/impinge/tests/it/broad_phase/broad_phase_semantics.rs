@@ -15,7 +15,8 @@ fn yes<T>(_: &T, _: &T) -> bool {
     true
 }
 
-/// Updates the broad phase and returns the events.
+/// Updates the broad phase and returns the events: the data of both objects, and `true` if the pair
+/// started.
 fn events<N: Real, BV: BoundingVolume<N>>(
     broad_phase: &mut impl BroadPhase<N, BV, u32>,
     filter: impl Fn(&u32, &u32) -> bool,

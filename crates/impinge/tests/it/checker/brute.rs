@@ -9,7 +9,7 @@ use super::robots::Robot;
 
 /// All pairs of one configuration with their distances, in ascending order of the pairs.
 pub(super) struct Brute<N> {
-    /// Whether the poses of all frames are finite.
+    /// Whether the poses of all frames are finite; otherwise the configuration has no result.
     pub(super) is_finite: bool,
     pairs: Vec<[u32; 2]>,
     distances: Vec<N>,

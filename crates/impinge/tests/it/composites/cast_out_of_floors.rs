@@ -54,7 +54,8 @@ fn leave<N: Space<3, Isometry = Isometry3<N>>>(floor: &dyn Shape<N, 3>, label: &
                 assert_eq!(hit.toi, N::ZERO, "{what}");
                 assert_eq!(hit.status, ImpactStatus::PenetratingAtStart, "{what}");
                 assert!(hit.normal.y > N::lit(1.0 - 1e-5), "{what}: {:?}", hit.normal);
-                // Clipping at an inner edge may omit the vertex beyond that edge.
+                // The distance between both points is the depth up to 1 %: clipping at an inner
+                // edge may omit the deepest vertex, which is beyond that edge.
                 let reach = (hit.world2 - hit.world1).norm().as_f64();
                 assert!((reach - depth).abs() < 0.01 * depth + 1e-5, "{what}: {reach} deep");
             }

@@ -64,7 +64,8 @@ fn check<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
         for shot in 0..20 {
             let mut local = Point::from(random.vector::<N, D>() * (scale * N::lit(6.0)));
             if shot % 4 == 0 {
-                // Moves the point onto a part.
+                // Moves the point onto the surface of the nearest part, to test points on
+                // boundaries.
                 local = scene.fast.project_local_point(&local).0.point;
             }
             let point = m.transform_point(&local);

@@ -100,7 +100,8 @@ fn grid<N: Real>() -> HeightField<N, 3> {
     )
 }
 
-/// Returns the field as a mesh, moved by `by`.
+/// Returns a mesh of the triangles of the field, translated by `by`; each triangle has its own
+/// vertices.
 fn meshed<N: Real>(field: &HeightField<N, 3>, by: &Vector<N, 3>) -> TriMesh<N, 3> {
     let (mut points, mut triangles) = (Vec::new(), Vec::new());
     for part in 0..field.num_parts() {

@@ -126,7 +126,7 @@ fn triangles_cover_their_cell_under_every_scale() {
                         "diagonal of {part}"
                     );
                 }
-                // Triangle 0 has the cell's side in the lower column.
+                // The first triangle of a cell contains the side of the cell on the lower column.
                 for row in [row, row + 1] {
                     assert!(
                         corners(&field, 2 * cell).contains(&field.point(row, column)),
@@ -357,7 +357,8 @@ fn a_large_field_is_made_and_searched_at_once() {
     let start = std::time::Instant::now();
     let field = HeightField::<f32, 3>::new(count, count, heights, scale3(1000.0, 0.01, 1000.0));
     let made = start.elapsed();
-    // A box over ten by ten cells visits few other cells.
+    // A search with a box over ten by ten cells, which have 200 triangles, visits at most 100
+    // others.
     let aabb =
         Aabb::new(Point::<f32, 3>::new(20.0, -1.0, 20.0), Point::<f32, 3>::new(30.0, 3.0, 30.0));
     let found = part_search::overlapping(field.search(), &aabb);

@@ -14,7 +14,7 @@ use impinge_reference::precise::vector::{
 };
 use impinge_reference::random::Random;
 
-/// Greatest error allowed, in units.
+/// Greatest error allowed, in units of epsilon times the size of the scene.
 const UNITS: f64 = 16.0;
 
 fn fraction<const D: usize>([a, b]: [&Vector<D>; 2], p: &Vector<D>) -> Quad {

@@ -125,7 +125,7 @@ fn names_outlast_a_thousand_steps() {
     names_last::<f64, 2>(sliding);
     names_last::<f32, 3>(sliding);
     names_last::<f64, 3>(sliding);
-    // Rocks by half a degree to both sides.
+    // Rocks the cube by half a degree to both sides.
     let rocking = |step: f64| (ACROSS, 0.0045 * ((step / 50.0) % 4.0 - 2.0).abs() - 0.0045);
     names_last::<f32, 2>(rocking);
     names_last::<f64, 2>(rocking);

@@ -260,7 +260,7 @@ fn sizes_of_zero<N: Stage<D>, const D: usize>() {
         world.set_position(handle, N::on_x(10.0 * f64::from(u32::try_from(index).expect("few"))));
     }
     let stopped = step(&mut world);
-    // All of them still lie on the half-space.
+    // Only the contacts with the half-space remain, since all shapes still lie on it.
     assert_eq!(stopped.len(), (count - 1) * (count - 2) / 2, "all but those of the half-space");
     assert!(stopped.iter().all(|event| matches!(event, ContactEvent::Stopped(..))), "stopped");
 }

@@ -17,7 +17,8 @@ use query_support::samples::{PLANE, SPACE, Sample, sample2, sample3};
 /// Number of pairs tested for each two kinds.
 const SEEDS: u64 = 6;
 
-/// Number of times on the path at which the distance is computed.
+/// Number of steps into which a path is divided; each step gives times at which the distance is
+/// computed.
 const LOOKS: u32 = 48;
 
 /// Functions that make random solids, rotations and motions of one dimension.
@@ -42,7 +43,7 @@ struct Scene<N: Space<D>, const D: usize> {
 struct Setting {
     kinds: [ShapeKind; 2],
     seed: u64,
-    /// Angle in radians by which the bodies rotate on the path between them.
+    /// Scale of the random angular velocities, in radians per unit of time.
     turn: f64,
 }
 

@@ -50,7 +50,7 @@ struct Setting {
     seed: u64,
     /// Size of the second solid relative to the first.
     ratio: f64,
-    /// Distance from the world's origin.
+    /// Scale of the random distance of the pair from the world's origin.
     offset: f64,
     /// Factor of all lengths.
     scale: f64,
@@ -301,7 +301,7 @@ fn check_impact<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
 ) -> bool {
     let random = &mut Random(setting.seed ^ 7, false);
     let mut v = [random.vector::<N, D>(), random.vector::<N, D>()];
-    // Half of the movers are sent at the other solid.
+    // In half of the cases the first solid moves towards the second.
     if setting.seed.is_multiple_of(2) {
         v[0] = (pair[1].pose.translation.vector - pair[0].pose.translation.vector) + v[0];
     }

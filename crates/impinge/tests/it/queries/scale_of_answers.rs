@@ -11,7 +11,7 @@ use impinge::shape::{
 };
 use query_support::random::Random;
 
-/// Exponents of the factors.
+/// Exponents of the factors by which shapes are scaled.
 const POWERS: [i32; 5] = [-20, -7, 5, 9, 20];
 
 /// Returns a random corner on a grid of spacing 0.25.

@@ -10,7 +10,8 @@ fn up<N: Real>() -> Vector<N, 3> {
     vector([0.0, 0.0, 1.0])
 }
 
-/// Iterates over all features of all parts.
+/// Iterates over all features of `parts` triangles: three vertices, three edges and two faces of
+/// each.
 fn features(parts: u32) -> impl Iterator<Item = (u32, FeatureId)> {
     let of_part = |part| {
         let sides = (0..3).flat_map(|at| [FeatureId::Vertex(at), FeatureId::Edge(at)]);

@@ -93,7 +93,7 @@ fn metered<const D: usize>(solid: &Solid<D>, inflation: f64) -> Off<D> {
     Box::new(move |point| meter.measure(point).0 - inflation)
 }
 
-/// Range of the sizes of random solids.
+/// Range of the lengths of random solids, and whether some of them are zero.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sizes {
     /// Lengths lie between `least` and `16 * least`.

@@ -70,7 +70,7 @@ struct Wrong {
 
 type Wrongs = BTreeMap<String, Wrong>;
 
-/// Two placed solids.
+/// Two placed solids, the prediction for their contacts, and the unit of errors.
 struct Scene<N: Real, R, const D: usize> {
     forms: [Form<N, D>; 2],
     poses: [Isometry<N, R, D>; 2],

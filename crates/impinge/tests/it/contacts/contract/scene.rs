@@ -21,24 +21,25 @@ const GAPS: [Option<f64>; 5] = [Some(0.05), Some(0.0), Some(-1e-4), Some(-0.3), 
 #[derive(Clone, Copy, Debug)]
 enum Alignment {
     Any,
-    /// Axes are mapped to axes.
+    /// A rotation that maps axes to axes.
     Aligned,
-    /// Aligned except for an angle of 1e-2 to 1e-7.
+    /// A rotation that maps axes to axes except for a tilt of 1e-7 to 1e-2 radians.
     Nearly,
-    /// Aligned except for an angle of `EPSILON / 16` to `16 * EPSILON` radians.
+    /// A rotation that maps axes to axes except for a tilt of `EPSILON / 16` to `16 * EPSILON`
+    /// radians.
     Hardly,
 }
 
 const ALIGNMENTS: [Alignment; 4] =
     [Alignment::Any, Alignment::Aligned, Alignment::Nearly, Alignment::Hardly];
 
-/// Further property of a scene.
+/// A further property of a scene, drawn at random.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Setup {
     Plain,
     /// Half of the lengths are zero.
     Degenerate,
-    /// Up to 10⁴ away from the origin.
+    /// Both solids are up to 10⁴ away from the world's origin.
     Far,
     /// Both are rotated together, so that no direction is along an axis of the world.
     Turned,
@@ -54,7 +55,7 @@ pub(crate) struct Stage<N: Real, R, const D: usize> {
     pub(crate) names: &'static [&'static str],
     pub(crate) form: fn(usize, Sizes, &mut Random) -> Form<N, D>,
     pub(crate) turns: Turns<R>,
-    /// The pose for the precise reference.
+    /// Converts a pose to the pose of the precise reference.
     pub(crate) precise: fn(&Isometry<N, R, D>) -> precise::Pose<D>,
 }
 
@@ -75,7 +76,7 @@ pub(crate) struct Scene<N: Real, R, const D: usize> {
     pub(crate) limit: N,
     /// Angular prediction.
     pub(crate) angle: N,
-    /// A small step of the second solid.
+    /// A small translation of the second solid, for tests of persistent ids.
     pub(crate) step: Vector<N, D>,
     /// Whether one solid lies in the middle of a much larger one.
     pub(crate) is_swallowed: bool,

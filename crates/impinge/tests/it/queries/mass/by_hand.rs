@@ -42,7 +42,7 @@ fn solids_of_textbooks<N: Real>() {
     let mass = 4.0 / 3.0 * PI * 1.5;
     let moments = [10.0, 9.25, 1.25].map(|sum| mass * sum / 5.0);
     check3("ellipsoid", &Ellipsoid::new(half), &found3(mass, [0.0; 3], moments));
-    // Height 6, radius 2.
+    // The cylinder and the cone have the height 6 and the radius 2.
     let mass = PI * 4.0 * 6.0;
     let (across, along) = (mass * (3.0 * 4.0 + 36.0) / 12.0, mass * 2.0);
     let cylinder = found3(mass, [0.0; 3], [across, along, across]);

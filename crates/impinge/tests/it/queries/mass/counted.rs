@@ -172,7 +172,7 @@ fn compounds_with_densities() {
     );
     let found = super::wide(&body.expect("solids"));
     assert_alike(&found, &super::wide(&(whole + heavy)), 1e-2, "nested");
-    // A custom composite with equal parts.
+    // A custom composite of such a box and such a ball.
     let parts = vec![
         (
             Pose::from(at(-2.0, 0.0, 2.0)),

@@ -42,7 +42,7 @@ fn closed_meshes<N: Inertia<3>>() {
         let found = unit(&mesh::<N>(&[cuboid(half, at, is_inverted)]));
         assert_alike(&found, &expected, share, "whichever way round");
     }
-    // A cavity, and a second body.
+    // Tests a box with a cavity, and a mesh of two bodies.
     let hollow = mesh::<N>(&[cuboid([2.0; 3], [0.0; 3], false), cuboid([1.0; 3], [0.0; 3], true)]);
     let (outer, inner) = (boxed([2.0; 3]), boxed([1.0; 3]));
     let expected = (outer.0 - inner.0, V3::zeros(), outer.2 - inner.2);

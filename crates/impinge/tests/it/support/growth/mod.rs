@@ -73,7 +73,7 @@ impl<S: CompositeShape<f64, D> + Debug, const D: usize> Surface<f64, D> for Coun
     }
 }
 
-/// A composite that counts calls, as a shape.
+/// A shape whose geometry is a composite that counts calls.
 #[derive(Debug)]
 struct Ground<S>(Counted<S>);
 

@@ -99,7 +99,7 @@ impl Score {
     }
 }
 
-/// Passes all runs to a macro, each with the name of its test.
+/// Expands `$then` with the list of all runs, each with the name of its test.
 macro_rules! for_each_run {
     ($then:ident) => {
         $then! {

@@ -38,7 +38,7 @@ pub enum Pattern {
     Slash,
     Backslash,
     Zigzag,
-    /// Vertices beside the grid, diagonals at random.
+    /// Inner vertices displaced from the grid, and random diagonals.
     Random,
     /// Every triangle has its own vertices.
     Soup,
@@ -145,7 +145,8 @@ impl<N: Space<D>, const D: usize> Sliding<N, D> {
         Self { generator: PairManifoldGenerator::default(), ids: IdAllocator::new() }
     }
 
-    /// Returns the manifolds of two placed shapes.
+    /// Updates the generator, which keeps its state between calls, and returns the manifolds of the
+    /// two placed shapes.
     pub fn update(
         &mut self,
         (m1, g1): (&N::Isometry, &dyn Shape<N, D>),

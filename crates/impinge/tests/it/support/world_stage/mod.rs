@@ -86,7 +86,7 @@ pub(crate) fn step<N: Space<D>, const D: usize, T>(
     world.contact_events().to_vec()
 }
 
-/// Runs each check for both scalars and dimensions.
+/// Defines for each check a test that runs it with both scalars and in both dimensions.
 #[allow(unused_macros, reason = "each test uses a part")]
 macro_rules! in_tests {
     ($($check:ident),* $(,)?) => {
