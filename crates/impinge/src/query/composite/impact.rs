@@ -250,13 +250,14 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
     }
 
     /// Returns a box loosened by the target distance, so that it overlaps every box within that
-    /// distance of `aabb`.
+    /// distance of `aabb`; all of space if a coordinate overflows.
     fn grown(&self, aabb: &Aabb<N, D>) -> Aabb<N, D> {
         let grown = aabb.loosened(self.path.target);
         Aabb::try_new(*grown.mins(), *grown.maxs()).unwrap_or_else(|_| Aabb::unbounded())
     }
 
-    /// Returns the latest time still to be searched; negative once the start is an impact.
+    /// Returns the latest time still to be searched: that of the first impact found so far, or else
+    /// the end of the path, with a margin for rounding. Negative once the start is an impact.
     fn end(&self) -> N {
         if self.start == WholeContact::Hit {
             return -N::ONE;

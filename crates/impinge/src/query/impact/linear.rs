@@ -57,7 +57,7 @@ impl<N: Real, const D: usize> Path<N, D> {
     }
 
     /// Returns the largest distance, at the time `along`, from which the solids may still come
-    /// within the target distance before the end.
+    /// within the target distance before the end; infinity if there is no end.
     fn limit(&self, along: N, tolerance: N) -> N {
         if !self.end.is_finite_number() {
             return N::INFINITY;
@@ -77,7 +77,8 @@ impl<N: Real, const D: usize> Path<N, D> {
         N::lit(8.0) * N::EPSILON * max_component(&self.velocity)
     }
 
-    /// Returns whether a contact at the start is an impact.
+    /// Returns whether a contact at the start is an impact: always with `contact_at_start`, else by
+    /// the rule of [`impact`](super::impact).
     pub(crate) fn counts_at_start(&self, normal: &Vector<N, D>, gap: N, tolerance: N) -> bool {
         self.contact_at_start
             || is_hit_at_start(gap, self.closing(normal), tolerance, self.rounding_error())

@@ -66,7 +66,8 @@ impl<N: Real, const D: usize> KinematicSide<N, D> {
         surface - self.outward * self.rounding
     }
 
-    /// Returns the local geometry of the core at the feature `id`.
+    /// Returns the local geometry of the core at the feature `id`. A face without a normal of its
+    /// own has the manifold's normal.
     pub(super) fn geometry(&self, id: FeatureId) -> NeighborhoodGeometry<N, D> {
         match (&self.support, id) {
             (SideSupport::Boundary(normal), _) => NeighborhoodGeometry::Plane(*normal),

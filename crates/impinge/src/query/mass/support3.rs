@@ -119,7 +119,7 @@ impl RoundFrame {
     }
 
     /// Returns the unit direction of the solid whose support point corresponds to a direction of
-    /// the round frame.
+    /// the round frame; y for a zero direction.
     fn direction(&self, round: &V3) -> V3 {
         let direction = self.axes * round.component_div(&self.widths);
         direction.try_normalize(0.0).unwrap_or_else(V3::y)

@@ -60,8 +60,8 @@ fn side<N: Real, const D: usize>(capsule: &Capsule<N, D>, ray: &Ray<N, D>) -> Op
     in_order(&span).then_some(span)
 }
 
-/// Replaces the normals by more accurate normals where the line passes through the round side
-/// itself.
+/// Replaces the normals by the directions of `points` where the line passes through the round side
+/// itself: these are more accurate. A zero point leaves the normal.
 fn refined<N: Real, const D: usize>(
     points: &[Vector<N, D>; 2],
     normals: [Vector<N, D>; 2],

@@ -151,7 +151,7 @@ fn through<N: Real>(corners: &[Sheared<N>; 3]) -> Through<N> {
 }
 
 /// Returns the crossing at `t`. Its normal points against the ray, and its face is the face on that
-/// side of the triangle.
+/// side of the triangle. For a triangle without area, the normal is opposite to the ray.
 fn crossing<N: Real>(corners: &[Point<N, 3>; 3], dir: &Vector<N, 3>, t: N) -> Crossing<N, 3> {
     let [a, b, c] = corners;
     let normal = cross(&(b - a), &(c - a));

@@ -36,9 +36,9 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
-    /// Returns the id of the vertex, side or face on which a surface point lies, up to `tolerance`.
-    /// Only the supporting feature for the unit vector `direction`, and its sides and vertices, are
-    /// considered.
+    /// Returns the id of the vertex, side or face on which a surface point lies, up to `tolerance`
+    /// from a side and twice that from a vertex. Only the supporting feature for the unit vector
+    /// `direction`, and its sides and vertices, are considered.
     pub(crate) fn part_at(
         &self,
         point: &Point<N, D>,

@@ -226,7 +226,7 @@ fn corners_of<N: Real, const D: usize>(
     triangle.mapped(|vertex| vertices[vertex as usize])
 }
 
-/// Returns the box of a triangle, as stored in the tree.
+/// Returns the box of a triangle, as stored in the tree; all of space if a coordinate is NaN.
 pub(crate) fn box_of_corners<N: Real, const D: usize>(corners: &[Point<N, D>; 3]) -> Aabb<N, D> {
     Aabb::from_points(corners).unwrap_or_else(Aabb::unbounded)
 }
