@@ -153,7 +153,8 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
     }
 
     /// Returns a box for the camera: the box around the bounded objects. If there are none, the box
-    /// is centred at 0, and its edges have the extent with which half-spaces are drawn.
+    /// is centred at 0, and its edges are half as long as those of the squares (in 2D the lines) by
+    /// which half-spaces are drawn.
     pub(crate) fn bounds<T>(&self, world: &CollisionWorld<N, D, T>) -> [[f64; 3]; 2] {
         if let Some(bounds) = bounds(world) {
             return [bounds.mins, bounds.maxs];
