@@ -3,7 +3,7 @@
 The signed distance of two convex solids is the largest gap over all unit directions: the distance if they are apart,
 minus the depth if they overlap. The gap along any direction, computed by support functions, is a lower bound. The
 distance of two points that lie in the solids is an upper bound. The lower bound is maximised over directions spread
-over the sphere, of which the best are refined.
+over the sphere; the eight best are refined by random search.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 
 from solids import Array, Solid
 
-# Rows that are searched together, to bound memory.
+# The number of pairs that are searched together, to bound memory.
 CHUNK = 200
 # Directions tried around each of the best directions in one iteration.
 TRIES = 20
@@ -38,8 +38,8 @@ def _farthest(solid: Solid, poses: Array, directions: Array) -> Array:
 
 
 def upper_bound(one: Solid, poses1: Array, two: Solid, poses2: Array, points: tuple[Array, Array]) -> Array:
-    """An upper bound (n,) of the distance from points (n, 3) of the solids; their distances outside the solids are
-    added."""
+    """An upper bound (n,) of the distance of the solids, from one point (n, 3) near each solid: the distance of the
+    points, plus a bound of the distance of each point from its solid."""
     total = np.linalg.norm(points[0] - points[1], axis=1)
     for solid, poses, at in ((one, poses1, points[0]), (two, poses2, points[1])):
         local = np.einsum("nji,nj->ni", poses[:, :3, :3], at - poses[:, :3, 3])
@@ -66,7 +66,8 @@ def _search(one: Solid, poses1: Array, two: Solid, poses2: Array) -> Array:
     directions = spread[best]
     values = np.take_along_axis(values, best, 1)
     rng = np.random.default_rng(1)
-    # The step length of each direction and its last successful move: doubled after a better try, else reduced.
+    # The step length of each direction, doubled after a try with a larger gap, else reduced; and the direction's
+    # last successful move.
     step, move = np.full(values.shape, 0.06), np.zeros(directions.shape)
     for _ in range(150):
         noise = rng.normal(size=(*directions.shape[:2], TRIES, 3))
@@ -102,6 +103,7 @@ def spiral(count: int) -> Array:
 
 
 def _axes() -> Array:
-    """The axes and the diagonals, which are the best directions of aligned solids."""
+    """The unit directions along the axes and the diagonals. The largest gap of solids with parallel axes is often
+    along one of them."""
     grid = np.stack(np.meshgrid(*[[-1.0, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     return unit(grid[np.any(grid != 0, axis=1)])

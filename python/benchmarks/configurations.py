@@ -6,8 +6,9 @@ Writes configurations.md.
 
 FOLDER has `vamp_panda.json` and `vamp_panda.npz`, and those of ur5 and fetch: the spherised robots of vamp (W. Thomason, Z.
 Kingston, L. E. Kavraki, 2024) and the problems of MotionBenchMaker (C. Chamzas et al., 2021). Configurations are random
-within the joint limits. Links may touch if they are joined, touch at the start, or touch in nearly all configurations; links
-that do not move may touch obstacles. A sample of the results is compared with single queries of all pairs.
+within the joint limits. No test is made of links that are joined, that touch at the start, or that touch in nearly all
+configurations, nor of obstacles and links that do not move. A sample of the results is compared with single queries of all
+pairs.
 """
 
 from __future__ import annotations
@@ -85,7 +86,7 @@ class Robot:
         return np.sort(np.array(wanted), axis=1)
 
     def still(self) -> Any:
-        """The spheres that no joint moves."""
+        """The indices of the spheres that no joint moves."""
         moves = [frame.joint != "fixed" for frame in self.frames]
 
         def is_still(link: int | None) -> bool:

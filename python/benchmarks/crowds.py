@@ -18,7 +18,7 @@ import trimesh
 
 from timing import arguments, machine, markdown
 
-# FCL's distances of meshes have errors of some 1e-7.
+# Distances that differ by more than this are printed. The errors of FCL's distances of meshes, about 1e-7, are far below.
 TOLERANCE = 1e-4
 
 ABOUT = """\
@@ -29,7 +29,7 @@ median of {rounds} rounds (of one where more than 2000 move), both sides in turn
 is FCL's time for both as a multiple of impinge's.
 """
 
-# If a scene has more objects than this, all of them move in one round only.
+# The largest number of objects that all move in every round. In larger scenes all objects move in one round only.
 FEW = 2000
 
 SIDES = {"impinge": impinge.trimesh.CollisionManager, "trimesh": trimesh.collision.CollisionManager}
@@ -72,7 +72,8 @@ class Crowd:
         self.names = [f"m{number}" for number in range(count)]
         self.managers = {name: self._made(kind, self.places) for name, kind in SIDES.items()}
         self.others = {name: self._made(kind, beside) for name, kind in SIDES.items()}
-        # A smaller mesh, which fits between the others without touching them.
+        # A smaller mesh for the queries of a single mesh. It fits between the others without touching them; in the
+        # touching scene it overlaps one of them.
         self.small = mesh.copy()
         self.small.apply_scale(0.75)
         self.probe = np.eye(4)
@@ -139,7 +140,8 @@ class Crowd:
 
     @staticmethod
     def compare(answers: dict[str, Any]) -> None:
-        """Prints differing results: of names only whether there are any, of distances only positive ones."""
+        """Prints differing results. Of a result with several values only the first is compared, and of distances only two
+        that are both positive."""
         ours, theirs = (answer[0] if isinstance(answer, tuple) else answer for answer in answers.values())
         if isinstance(ours, bool):
             if ours != theirs:

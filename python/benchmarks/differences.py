@@ -35,7 +35,7 @@ HEADER = ("pair", "poses", "row", "answer", "rival", "impinge", "theirs", "lower
 
 @dataclass
 class Group:
-    """The differences of one pair from one other library in one kind of result."""
+    """The differences between impinge and one other library, for one pair of solids and one kind of result."""
 
     compared: int
     verdicts: Counter[str]
@@ -53,9 +53,11 @@ class Judge:
     def __init__(self) -> None:
         self.groups: dict[tuple[str, str, str], Group] = {}
         self.rows: list[list[object]] = []
-        # The number of checked normals, of those that do not match the signed distance, and the largest mismatch.
+        # For each library and pair: the number of checked normals, the number of normals whose gap is not the signed
+        # distance, and the largest such difference.
         self.unproven: dict[tuple[str, str], tuple[int, int, float]] = {}
-        # The largest deficit of the search against the gaps along the libraries' normals, as a fraction of the size.
+        # The largest amount by which the largest gap found by the search stays below the gap along a normal of a
+        # library, as a fraction of the size.
         self.short = 0.0
         # The poses for which FCL did not return.
         self.failed: list[list[object]] = []
@@ -226,7 +228,8 @@ def _comparable(values: Array) -> Array:
 
 
 def _differing(ours: Answers, theirs: Answers, answer: str, tolerance: float) -> Array:
-    """Whether results differ. A contact and a missing contact differ only if the depth exceeds the tolerance."""
+    """Whether results differ. A contact and a missing contact differ only if the depth exceeds the tolerance; a result
+    of NaN differs from none."""
     one, two = getattr(ours, answer), getattr(theirs, answer)
     return np.asarray(_size_of_difference(one, two) > tolerance)
 
@@ -239,8 +242,8 @@ def _size_of_difference(one: Array, two: Array) -> Array:
 def _bounds(
     pair: tuple[Solid, Solid], placed: tuple[Array, Array], rows: Array, sides: dict[str, Answers]
 ) -> tuple[Array, Array, float]:
-    """Bounds (n,) of the true signed distances of rows, and the largest deficit of the search alone below the lower
-    bounds."""
+    """A lower and an upper bound (n,) of the true signed distances of rows, and the largest amount, as a fraction of
+    the size, by which the search alone stays below the lower bound."""
     one, two = pair
     poses1, poses2 = (poses[rows] for poses in placed)
     normals = np.stack([answers.normal[rows] for answers in sides.values()], axis=1)
@@ -252,7 +255,8 @@ def _bounds(
         points = answers.point1[rows], answers.point2[rows]
         found = upper_bound(one, poses1, two, poses2, points)
         apart = np.where(np.isfinite(found), np.minimum(apart, found), apart)
-    # Points in both solids bound only the distance of separated solids. For overlaps the search is the reference.
+    # The distance of two points of the solids bounds the signed distance only if the solids are apart. For overlapping
+    # solids the lower bound is taken as the truth.
     return lower, np.where(lower > 0, np.maximum(apart, lower), lower), short
 
 

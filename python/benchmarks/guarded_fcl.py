@@ -89,8 +89,8 @@ class Fcl:
             sender.send(("done", None))
 
     def loop(self, question: str, count: int) -> Callable[[], Any] | None:
-        """A loop over the first poses; `None` if FCL has no such query, or the loop does not end in a separate
-        process."""
+        """A loop over the first poses. `None` if FCL has no such query, or if a trial of the loop in a
+        separate process does not succeed."""
         if question != "contact" and not self.has_distance:
             return None
         (one, two), poses = self.objects, [side[:count] for side in self.poses]
@@ -110,7 +110,7 @@ class Fcl:
 
 
 def _returns(run: Callable[[], Any]) -> bool:
-    """Whether a loop ends, tested in a separate process."""
+    """Whether a loop ends without an error within two seconds, tested in a separate process."""
 
     def quietly() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)

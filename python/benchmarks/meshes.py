@@ -34,7 +34,7 @@ TOLERANCE = 1e-6
 
 @dataclass(frozen=True)
 class Body:
-    """A solid in both libraries, at rest in its local frame. `reach` is its approximate extent."""
+    """A solid in both libraries, at rest in its local frame. `reach` is its approximate radius."""
 
     name: str
     impinge: Any
@@ -139,7 +139,7 @@ def solids() -> list[Body]:
 
 
 def cases(one: Body, other: Body) -> dict[str, float]:
-    """The distance of the centres in each case."""
+    """The distance between the centres of both bodies, for each case."""
     reach = one.reach + other.reach
     if other.reach < one.reach:
         return {"apart": 1.5 * reach, "near": 1.08 * reach, "overlap": one.reach, "inside": 0.5 * one.reach}

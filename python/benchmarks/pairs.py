@@ -24,7 +24,8 @@ from timing import Side, arguments, interleaved, machine, markdown, write_csv
 
 PACKAGES = ("impinge", "coal", "python-fcl", "trimesh", "numpy")
 
-# The target ratio of the times of a loop over Coal and of a batch.
+# The targets for the time of a loop over Coal's functor divided by the time of a batch of impinge: of primitives,
+# and of pairs with a hull.
 GOAL_PRIMITIVES, GOAL_HULLS = 50.0, 10.0
 
 HEADER = (

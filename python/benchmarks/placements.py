@@ -14,7 +14,8 @@ FAMILIES = ("apart", "near", "aligned")
 
 
 def placements(family: str, one: Solid, two: Solid, count: int) -> tuple[Array, Array]:
-    """Poses (count, 4, 4) of both solids. They depend only on the family and the names of the pair."""
+    """Poses (count, 4, 4) of both solids. They are the same in every run, and depend only on the family, the
+    names of the pair and `count`."""
     seed = [FAMILIES.index(family), *f"{one.name}{two.name}".encode()]
     rng = np.random.default_rng(seed)
     if family == "aligned":
@@ -22,7 +23,8 @@ def placements(family: str, one: Solid, two: Solid, count: int) -> tuple[Array, 
     poses1 = matrices(Rotation.random(count, random_state=rng).as_matrix(), rng.normal(size=(count, 3)))
     poses2 = matrices(Rotation.random(count, random_state=rng).as_matrix(), np.zeros((count, 3)))
     directions = _directions(rng, one, two, poses1, poses2)
-    # The wanted gap along the direction in which the second solid lies.
+    # First the gap along `directions`, in which the second solids lie, becomes a random length. Near pairs are
+    # then moved along the direction with the largest gap.
     size = one.radius + two.radius
     _move(size * rng.uniform(0.05, 2, count), directions, (one, poses1), (two, poses2))
     if family == "near":

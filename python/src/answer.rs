@@ -34,8 +34,8 @@ impl Extent {
         }
     }
 
-    /// Converts a list with one value for each element to slots. The value of a single element is
-    /// taken out of the list.
+    /// Converts a list with one value for each element to slots. For a single element the list has
+    /// one value, which is stored without the list.
     pub(crate) fn of_list<T>(self, mut list: Vec<T>) -> Slots<T> {
         match self {
             Self::Lone { .. } if list.len() == 1 => Slots::One([list.remove(0)]),
@@ -135,7 +135,8 @@ impl<'py, N: Numeric<D>, const D: usize> IntoPyObject<'py> for Column<N, D> {
     }
 }
 
-/// Converts values other than floating-point numbers.
+/// Converts a column of values that are not floating-point numbers: one value to a Python scalar,
+/// several to an array (n,).
 fn values<'py, T: Element + IntoPyObject<'py>>(
     py: Python<'py>,
     column: Slots<T>,
@@ -146,7 +147,8 @@ fn values<'py, T: Element + IntoPyObject<'py>>(
     }
 }
 
-/// Combines columns to one object: a tuple of `class`, or the first column if `class` is `None`.
+/// Combines the columns of a result into one object: a named tuple of `class`, or the first column
+/// if `class` is `None`.
 pub(crate) fn into_python<'py, N: Numeric<D>, const D: usize>(
     py: Python<'py>,
     class: Option<&Class>,

@@ -60,7 +60,8 @@ impl NativeChecker {
         Ok(Self { kind, checker: RwLock::new(checker) })
     }
 
-    /// Replaces the obstacles.
+    /// Replaces all obstacles. `ignored` has a row (m, 2) for each pair of a body and an obstacle
+    /// that no query tests.
     fn set_obstacles(
         &self,
         shapes: Vec<PyRef<'_, Shape>>,
@@ -75,7 +76,8 @@ impl NativeChecker {
         Ok(())
     }
 
-    /// Returns the poses of all frames, or of all bodies, for each row: (n * count, D+1, D+1).
+    /// Returns the poses of all frames, or of all bodies if `of_bodies` is `true`, for each row
+    /// (one configuration): an array (n * count, D+1, D+1).
     fn place<'py>(
         &self,
         py: Python<'py>,
@@ -201,7 +203,8 @@ impl Task for Surround<'_, '_> {
     }
 }
 
-/// Converts the numbers of configurations to the scalar of the checker.
+/// Borrows the numbers of the configurations. They must be an array of the checker's scalar; an
+/// array of another type is an error.
 fn numbers<'py, N: Numeric<D>, const D: usize>(
     rows: &Bound<'py, PyAny>,
 ) -> PyResult<PyReadonlyArray1<'py, N>> {

@@ -17,12 +17,13 @@ pub(crate) fn of_batch(error: &BatchError, poses: &str) -> PyErr {
     }
 }
 
-/// Converts an error of a world, recorded or not, about a row of an argument.
+/// Converts an error of a world, with or without a recorder, to a `ValueError` that names the row
+/// of the argument.
 pub(crate) fn of_row(error: &RecordError, argument: &str, row: usize) -> PyErr {
     PyValueError::new_err(format!("{argument}[{row}]: {error}"))
 }
 
-/// Converts an error of a world about a call as a whole.
+/// Converts an error of a world that concerns no row of an argument, but the whole call.
 pub(crate) fn of_call(error: &RecordError) -> PyErr {
     PyValueError::new_err(error.to_string())
 }

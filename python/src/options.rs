@@ -6,7 +6,8 @@ use impinge::narrow_phase::GeometricQueryType;
 use impinge::world::{CollisionGroups, GroupError};
 use pyo3::prelude::*;
 
-/// Indices of groups; a missing list has the default of new objects.
+/// The groups of an object or of a query, as lists of indices. `None` keeps the default list of new
+/// objects.
 #[derive(FromPyObject)]
 pub(crate) struct GroupLists {
     membership: Option<Vec<usize>>,

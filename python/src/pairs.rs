@@ -31,7 +31,8 @@ pub(crate) trait Question: Sync {
     /// The class of the result; if `None`, the result is the only column.
     fn class(&self) -> Option<&'static Class>;
 
-    /// The name of the limit in Python, and its value.
+    /// The name of the limit in Python, and its value. A query without a limit has an empty name
+    /// and zero.
     fn limit(&self) -> (&'static str, f64);
 
     /// Runs the query for a batch of this extent.
@@ -240,7 +241,7 @@ impl Question for Nearest {
     }
 }
 
-/// Manifolds up to a prediction, as rows.
+/// Manifolds up to a prediction, with one row for each contact point.
 pub(crate) struct Manifolds {
     pub(crate) prediction: f64,
     pub(crate) max_points: Option<usize>,
@@ -304,7 +305,7 @@ impl<'a, 'py> PairCall<'a, 'py> {
         run_in(kind, Ask { call: self, question, kind })
     }
 
-    /// Computes the impacts of each pair.
+    /// Computes the first impact of each pair.
     pub(crate) fn ask_impacts(self, impacts: ImpactCall<'a, 'py>) -> PyResult<Bound<'py, PyAny>> {
         not_nan("max_time", impacts.max_time)?;
         not_nan("target_distance", impacts.target_distance)?;

@@ -27,8 +27,8 @@ pub(crate) enum PointQuestion {
 }
 
 impl PointQuestion {
-    /// Returns `surface` if the query is about the inside, for which closed surfaces are solids;
-    /// otherwise `None`.
+    /// Returns the field `surface` of a query about the inside, in which closed surfaces are
+    /// solids; `None` for a projection.
     const fn is_about_inside(self) -> Option<bool> {
         match self {
             Self::Project { .. } => None,
@@ -37,7 +37,7 @@ impl PointQuestion {
     }
 }
 
-/// Points against a side.
+/// A query about points and the placed shapes of a side.
 struct AskPoints<'a, 'py> {
     side: SideArgument<'a, 'py>,
     points: &'a Bound<'py, PyAny>,
@@ -107,8 +107,8 @@ impl<'py> Task for AskPoints<'_, 'py> {
 }
 
 impl AskPoints<'_, '_> {
-    /// Returns the results of a query about the inside if a shape is a surface. Closed surfaces are
-    /// solids here.
+    /// Computes a query about the inside for shapes of which at least one is a surface or polyline.
+    /// Closed surfaces count as solids here.
     fn of_solids<N: Numeric<D>, const D: usize>(
         &self,
         given: &GivenSide<'_, '_, N, D>,
@@ -138,7 +138,7 @@ impl AskPoints<'_, '_> {
     }
 }
 
-/// Rays against a side.
+/// Rays that are cast on the placed shapes of a side.
 struct CastRays<'a, 'py> {
     side: SideArgument<'a, 'py>,
     rays: [&'a Bound<'py, PyAny>; 2],

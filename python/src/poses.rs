@@ -81,7 +81,7 @@ impl<'a, N: Numeric<D>, const D: usize> Deref for Source<'a, N, D> {
     }
 }
 
-/// Whether `shape` is that of a matrix or of an array of matrices.
+/// Whether an array of this shape is a matrix (D+1, D+1), or an array of such matrices.
 fn is_usable<const D: usize>(shape: &[usize]) -> bool {
     matches!(shape, [rows, columns] | [_, rows, columns] if [*rows, *columns] == [D + 1, D + 1])
 }

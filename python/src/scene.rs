@@ -60,7 +60,8 @@ impl<'py> Task for Write<'_, 'py> {
     }
 }
 
-/// The query type of the objects of scenes, which has no effect.
+/// The query type of the objects of scenes. It has no effect, because the world of a scene is never
+/// updated.
 const fn contacts<N: Real>() -> GeometricQueryType<N> {
     GeometricQueryType::Contacts(N::ZERO, N::ZERO)
 }
@@ -70,7 +71,8 @@ fn recorder<N: Numeric<D>, const D: usize>() -> Result<Recorder<N, D, ()>, Recor
     Recorder::new(N::ZERO, Registry::new())
 }
 
-/// Shares equal shapes: a recording stores a shape once for each handle, a scene once for each value.
+/// Replaces equal shapes by one shared handle. A recording stores a shape once for each handle; so
+/// a scene stores each distinct shape once.
 struct EqualShapes<N: Numeric<D>, const D: usize> {
     /// The key is the recording of the shape alone.
     by_bytes: BTreeMap<Vec<u8>, ShapeHandle<N, D>>,
@@ -79,7 +81,7 @@ struct EqualShapes<N: Numeric<D>, const D: usize> {
 }
 
 impl<N: Numeric<D>, const D: usize> EqualShapes<N, D> {
-    /// Returns the shared handle of all shapes equal to this.
+    /// Returns the handle that replaces all shapes equal to `shape`.
     fn shared(&mut self, shape: &ShapeHandle<N, D>) -> Result<ShapeHandle<N, D>, RecordError> {
         if let Some([_, shared]) = self.last.as_ref().filter(|[given, _]| given.is_same(shape)) {
             return Ok(shared.clone());
@@ -127,7 +129,7 @@ fn scene_of_bytes<'py>(py: Python<'py>, bytes: &[u8]) -> PyResult<SceneParts<'py
     Ok((shapes, poses, kind.dim(), kind.dtype()))
 }
 
-/// Returns the shape of a scene with a single object.
+/// Returns the shape of the last object of a scene. The scene of a pickled shape has one object.
 #[pyfunction]
 fn shape_of_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Py<Shape>> {
     let (mut shapes, ..) = scene_of_bytes(py, bytes)?;

@@ -22,7 +22,7 @@ use crate::space::{Kind, Numeric, Task, run_in};
 #[pyclass(frozen, module = "impinge")]
 pub(crate) struct Shape {
     pub(crate) kind: Kind,
-    /// A `ShapeHandle` of this scalar and dimension.
+    /// A `ShapeHandle` of the scalar and dimension of `kind`.
     handle: Arc<dyn Any + Send + Sync>,
     /// The function of the package that creates such shapes.
     name: String,
@@ -135,7 +135,7 @@ impl Shape {
         read_back::faces(py, self)
     }
 
-    /// Shapes are equal if they have the same name, dim and dtype, and were created from the same numbers.
+    /// Shapes are equal if they have the same name, dim and dtype, and the same bytes as a scene.
     fn __eq__(slf: &Bound<'_, Self>, other: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
         let py = slf.py();
         let Ok(other) = other.cast::<Self>() else { return Ok(py.NotImplemented()) };
@@ -170,7 +170,8 @@ impl Shape {
     }
 }
 
-/// Returns the bytes of a scene of this shape alone, which are equal for equal shapes.
+/// Returns the bytes of a scene of this shape alone. Equality, hashes and pickles of shapes use
+/// these bytes.
 fn bytes_of<'py>(shape: &Bound<'py, Shape>) -> PyResult<Bound<'py, PyBytes>> {
     scene_bytes(shape.as_any(), &shape.py().None().into_bound(shape.py()))
 }
@@ -415,7 +416,8 @@ impl<'a, 'py, N: Numeric<D>, const D: usize> ShapesArgument<'a, 'py, N, D> {
         }
     }
 
-    /// Returns all shapes that elements may pick.
+    /// Returns the shapes of the argument without repetition by elements: one, one for each
+    /// element, or those that `picks` refers to.
     pub(crate) fn distinct(&self) -> &[ShapeHandle<N, D>] {
         match self {
             Self::One(shape) => core::slice::from_ref(*shape),

@@ -48,7 +48,8 @@ impl<N: Numeric<D>, const D: usize> GivenSide<'_, '_, N, D> {
         self.shapes.lone().is_some() && self.poses.is_lone()
     }
 
-    /// Whether there is one convex shape at one pose, for which a query takes about a microsecond.
+    /// Whether there is one shape that is not a composite, at one pose. A query about it takes
+    /// about a microsecond.
     pub(crate) fn is_quick(&self) -> bool {
         let shape = self.shapes.lone().map(|shape| shape.geometry().kind());
         shape.is_some_and(|kind| kind != ShapeKind::Composite) && self.poses.is_lone()
@@ -59,10 +60,11 @@ impl<N: Numeric<D>, const D: usize> GivenSide<'_, '_, N, D> {
         self.shapes.at(element)
     }
 
-    /// Returns `true` if any shape of the side is a surface or a polyline.
+    /// Returns `true` if any shape of the side is a surface or a polyline, or a compound with one.
     ///
     /// # Errors
-    /// `ValueError` names the row of a surface that is not closed, unless `surface` is `true`.
+    /// Unless `surface` is `true`, `ValueError` for a surface that is not closed. It names the row
+    /// if the argument is a sequence of shapes.
     pub(crate) fn has_surface(&self, surface: bool) -> PyResult<bool> {
         let [name, _] = self.names;
         let mut has_surface = false;
@@ -122,7 +124,7 @@ pub(crate) struct Elements<'a, N: Numeric<D>, const D: usize> {
 }
 
 /// Returns the common number of elements of arguments; an argument with a single element fits any
-/// number.
+/// number. `ValueError` names an argument of another length.
 pub(crate) fn common(lengths: &[(&str, usize)]) -> PyResult<usize> {
     let len = lengths.iter().map(|(_, len)| *len).find(|len| *len != 1).unwrap_or(1);
     match lengths.iter().find(|(_, given)| *given != 1 && *given != len) {

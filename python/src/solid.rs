@@ -45,7 +45,7 @@ impl<N: Real> Bounding<2> for N {
         shape.as_shape::<Polyline<N, 2>>()?.encloses(point)
     }
 
-    /// Meshes have no kind in 2D, where their triangles are filled.
+    /// Returns `None` for a mesh: in 2D its triangles are filled.
     fn standing(shape: &ShapeHandle<N, 2>) -> Option<Standing> {
         if let Some(line) = shape.as_shape::<Polyline<N, 2>>() {
             let is_closed = line.is_outline();
@@ -92,10 +92,11 @@ pub(crate) fn standing<N: Numeric<D>, const D: usize>(
     N::standing(shape)
 }
 
-/// Returns an error for an open surface.
+/// Returns an error if `standing` is that of an open surface; `name` is the argument with the
+/// shape.
 ///
 /// # Errors
-/// `ValueError`, with the name of the shape.
+/// `ValueError`, with the name of the argument and the name of the shape.
 pub(crate) fn refuse_open(standing: Option<Standing>, name: &str) -> PyResult<()> {
     let Some(Standing::Open(kind)) = standing else { return Ok(()) };
     Err(PyValueError::new_err(format!(

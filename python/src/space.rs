@@ -83,7 +83,7 @@ impl<N, const D: usize> Numeric<D> for N where
 /// A computation that is generic over the scalar and the dimension. It is a trait, because a closure cannot be
 /// generic.
 pub(crate) trait Task {
-    /// Its result.
+    /// The result of the computation.
     type Answer;
 
     /// Runs the computation.

@@ -1,7 +1,9 @@
-//! Long computations: the interpreter is released, receives progress, and may interrupt the computation.
+//! Runs long computations with the interpreter released, shows their progress, and stops them on
+//! Ctrl-C or at an exception.
 //!
-//! Signals and progress bars belong to the calling thread. It sleeps while another thread computes, wakes every
-//! [`TICK`], and stops the computation by the callback of the batch.
+//! Signals and progress bars belong to the calling thread. That thread sleeps while another thread
+//! computes. It wakes every [`TICK`] and stops the computation through the progress callback of the
+//! batch.
 
 use core::ops::ControlFlow;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -17,7 +19,8 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use crate::answer::Extent;
 use crate::threads::Crew;
 
-/// Batches of at most this many elements run in the calling thread. The library does not divide them either.
+/// The largest number of elements that are computed in the calling thread, if there is no progress
+/// bar. The library does not divide batches of this size among threads either.
 const SMALL: usize = 64;
 
 /// The interval at which signals are checked and progress is updated.
@@ -106,8 +109,8 @@ pub(crate) fn each<T: Send>(
     })
 }
 
-/// Runs `work` with the interpreter released: directly if it is short, otherwise in another thread that reports
-/// progress.
+/// Runs `work` with the interpreter released: in this thread if there are at most [`SMALL`]
+/// elements and no progress bar, otherwise in another thread that reports progress.
 fn released<T: Send>(
     py: Python<'_>,
     len: usize,
@@ -121,7 +124,8 @@ fn released<T: Send>(
     py.detach(|| beside(call, &crew, &work))
 }
 
-/// Computes chunks of elements. After a stop the remaining chunks are empty.
+/// Computes chunks of [`SMALL`] elements on all threads, and reports each. After a stop the
+/// remaining chunks are left out of the results.
 fn in_chunks<T: Send>(
     len: usize,
     report: Report<'_>,
@@ -166,7 +170,7 @@ fn beside<T: Send>(
     })
 }
 
-/// The shared state of the two threads.
+/// The state shared by the calling thread and the thread that computes.
 #[derive(Debug, Default)]
 struct Watch {
     done: AtomicUsize,

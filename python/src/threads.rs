@@ -32,7 +32,7 @@ static FIRST: OnceLock<u32> = OnceLock::new();
 /// Whether this process is a child of the first one.
 static IS_CHILD: AtomicBool = AtomicBool::new(false);
 
-/// The cached pools of the current process.
+/// The cached pools, and the process that they belong to.
 static POOLS: Mutex<Pools> = Mutex::new(Pools { process: 0, all: None, one: None });
 
 thread_local! {
@@ -40,7 +40,8 @@ thread_local! {
     static SETTLED: Cell<u32> = const { Cell::new(0) };
 }
 
-/// Pools that are used often.
+/// The pools that are kept between calls: one with a thread for each core, and one with a single
+/// thread.
 struct Pools {
     /// The id of the process that owns the pools.
     process: u32,
@@ -95,15 +96,15 @@ pub(crate) fn note_process(module: &Bound<'_, PyModule>) -> PyResult<()> {
     Ok(())
 }
 
-/// Records that this process is a child.
+/// Records that this process is a child. Python calls this function in each child after `fork`.
 #[pyfunction]
 fn note_fork() {
     IS_CHILD.store(true, Ordering::Relaxed);
 }
 
-/// Prepares the calling thread for work outside of a [`Crew`]. In a child such work would be divided among threads
-/// that do not exist, so the calling thread becomes a pool of one thread, once. This costs a few kilobytes for each
-/// thread.
+/// Prepares the calling thread for work outside of a [`Crew`]. In a child such work would be
+/// divided among threads that do not exist, so the calling thread becomes a pool of one thread at
+/// the first call. This costs a few kilobytes for each thread.
 ///
 /// # Errors
 /// `RuntimeError` if the system cannot create a pool.
@@ -115,7 +116,8 @@ pub(crate) fn settle() -> PyResult<()> {
     if SETTLED.get() == process {
         return Ok(());
     }
-    // A thread that became such a pool in the parent is still one, because the pool has no other thread.
+    // A thread that became a pool of one thread in the parent is still one in the child, because
+    // this pool has no other thread.
     if rayon::current_thread_index().is_none() {
         let own = ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
         own.map_err(|error| PyRuntimeError::new_err(format!("no pool: {error}")))?;
@@ -128,7 +130,8 @@ fn is_first(process: u32) -> bool {
     *FIRST.get_or_init(|| process) == process
 }
 
-/// Returns the pool in the slot that `place` selects, for the current process; it is created if it is missing.
+/// Returns the pool in the slot that `place` selects, for the current process. A missing pool is
+/// created with `count` threads, see [`make`].
 fn kept(
     process: u32,
     count: usize,

@@ -80,7 +80,8 @@ fn pairs_in_tile<'py>(
     run_in(kind, AskTile { side, ids, tiles, tile, call: Call::new(threads, progress), kind })
 }
 
-/// Returns the axes and positions of the cuts of `number` tiles; `boxes` is an array (n, 2, D) in C order.
+/// Returns the cuts of space into `number` tiles as two columns: the axis and the position of each
+/// cut. `boxes` is an array (n, 2, D) in C order.
 #[pyfunction]
 fn tile_cuts<'py>(
     boxes: &Object<'py>,
@@ -92,13 +93,14 @@ fn tile_cuts<'py>(
     run_in(Kind::parse(dim, dtype)?, CutTiles { boxes, number, clearance })
 }
 
-/// Returns the bounds of each tile: (n, 2, D).
+/// Returns the lower and upper corner of each tile: (n, 2, D).
 #[pyfunction]
 fn tile_bounds<'py>(py: Python<'py>, tiles: GivenTiles<'py>) -> PyResult<Object<'py>> {
     run_in(tiles.kind()?, Bounds { py, tiles })
 }
 
-/// Returns the starts of the tiles of each box, and the tiles; `boxes` is an array (n, 2, D) in C order.
+/// Returns the two arrays of `TileRows`: the offset of each box's first tile, followed by the total
+/// number, and the indices of the tiles. `boxes` is an array (n, 2, D) in C order.
 #[pyfunction]
 fn tiles_meeting<'py>(
     tiles: GivenTiles<'py>,
@@ -158,7 +160,7 @@ fn read_boxes<N: Numeric<D>, const D: usize>(
     corners.as_chunks().0.iter().enumerate().map(read).collect()
 }
 
-/// Converts boxes to an array (n, 2, D).
+/// Converts boxes to an array (n, 2, D); `None` becomes a row of NaN.
 fn boxes_array<N: Numeric<D>, const D: usize>(
     py: Python<'_>,
     boxes: impl ExactSizeIterator<Item = Option<Aabb<N, D>>>,
@@ -174,7 +176,7 @@ fn boxes_array<N: Numeric<D>, const D: usize>(
     Ok(array.into_any())
 }
 
-/// Computes boxes.
+/// The task of [`boxes`].
 struct AskBoxes<'a, 'py> {
     side: SideArgument<'a, 'py>,
     kind: Kind,
@@ -196,7 +198,7 @@ impl<'py> Task for AskBoxes<'_, 'py> {
     }
 }
 
-/// Computes the pairs of a tile.
+/// The task of [`pairs_in_tile`].
 struct AskTile<'a, 'py> {
     side: SideArgument<'a, 'py>,
     ids: &'a Bound<'py, PyAny>,
@@ -226,7 +228,7 @@ impl<'py> Task for AskTile<'_, 'py> {
     }
 }
 
-/// Cuts space into tiles.
+/// The task of [`tile_cuts`].
 struct CutTiles<'a, 'py> {
     boxes: &'a Bound<'py, PyAny>,
     number: u32,
@@ -248,7 +250,7 @@ impl<'py> Task for CutTiles<'_, 'py> {
     }
 }
 
-/// Computes the bounds of tiles.
+/// The task of [`tile_bounds`].
 struct Bounds<'py> {
     py: Python<'py>,
     tiles: GivenTiles<'py>,
@@ -262,7 +264,7 @@ impl<'py> Task for Bounds<'py> {
     }
 }
 
-/// Computes the tiles that boxes overlap.
+/// The task of [`tiles_meeting`].
 struct Meeting<'a, 'py> {
     tiles: GivenTiles<'py>,
     boxes: &'a Bound<'py, PyAny>,
@@ -281,7 +283,7 @@ impl<'py> Task for Meeting<'_, 'py> {
     }
 }
 
-/// Computes the tiles that contain points.
+/// The task of [`tile_owners`].
 struct Owners<'a, 'py> {
     tiles: GivenTiles<'py>,
     points: &'a Bound<'py, PyAny>,

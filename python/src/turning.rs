@@ -69,7 +69,7 @@ impl<'py, N: Numeric<D>, const D: usize> Angular<'py, N, D> {
         Ok(Self { rows: Some(rows.cast::<PyArrayDyn<N>>()?.try_readonly()?), is_lone })
     }
 
-    /// Returns all numbers, row by row.
+    /// Returns all numbers, row by row; one row of zeros for a missing argument.
     fn numbers(&self) -> PyResult<Vec<N>> {
         Ok(match &self.rows {
             None => vec![N::ZERO; <N as Turning<D>>::ANGULAR],
@@ -78,7 +78,7 @@ impl<'py, N: Numeric<D>, const D: usize> Angular<'py, N, D> {
     }
 }
 
-/// The first or the second body of each pair.
+/// The bodies on one side of all pairs. A list of length one is used for all pairs.
 struct Bodies<'a, N: Numeric<D>, const D: usize> {
     shapes: Vec<&'a ShapeHandle<N, D>>,
     positions: Vec<N::Isometry>,
@@ -158,8 +158,8 @@ impl<'py> Task for AskTurning<'_, 'py> {
     }
 }
 
-/// Returns the columns of `Impact`: time, normal, both points, and whether the time is that of an
-/// impact.
+/// Returns the columns of `Impact`: time, normal, both points, and whether the search reached the
+/// target distance. It did not if there is no impact, or if the steps were spent before.
 fn columns<N: Numeric<D>, const D: usize>(
     found: &[Option<Impact<N, D>>],
     extent: Extent,

@@ -14,7 +14,8 @@ pub(crate) enum Numbers<'py, N: Element> {
 }
 
 impl<'py, N: Element> Numbers<'py, N> {
-    /// Reads an array. It is a single vector or matrix if it has `axes` axes.
+    /// Reads an array. A single vector or matrix has `axes` axes, an array of several has one axis
+    /// more.
     pub(crate) fn of(array: &Bound<'py, PyArrayDyn<N>>, axes: usize) -> PyResult<Self> {
         Ok(if array.ndim() == axes {
             Self::One(array.to_vec()?)

@@ -1,4 +1,4 @@
-"""The configuration checker against single queries at the poses that it computes."""
+"""Compares the configuration checker with single queries of all pairs at the poses that it computes."""
 
 import impinge
 import numpy as np

@@ -126,7 +126,8 @@ def test_progress_counts_all_elements():
 
 
 def slow_batch(progress=None, count=4000):
-    """A batch that takes some hundredths of a second for each pose: a convex hull in a surface."""
+    """A batch that takes some hundredths of a second for each pose: the manifolds of a large convex hull in a height
+    field."""
     grid = np.random.default_rng(1).uniform(0, 1, (60, 60))
     field = impinge.HeightField(grid, [10, 1, 10])
     poses = np.tile(np.eye(4), (count, 1, 1))

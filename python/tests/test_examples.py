@@ -24,7 +24,7 @@ def test_examples(path, capsys):
 
 @pytest.mark.parametrize("path", TEXTS, ids=lambda path: path.stem)
 def test_texts(path):
-    """The blocks of a page form one program."""
+    """Runs all blocks of a page as one program; an exception fails the test."""
     blocks = re.findall(r"^```python\n(.*?)^```", path.read_text(), re.MULTILINE | re.DOTALL)
     assert blocks
     exec(compile("\n".join(blocks), str(path), "exec"), {"__name__": "__main__"})

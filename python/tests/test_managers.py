@@ -102,7 +102,8 @@ def test_any_changes(count, size):
 
 @pytest.mark.parametrize("spacing", [1.01, 0.95])
 def test_a_grid_that_moves(spacing):
-    """More objects than the log of changes holds; all move, or one; all are apart, or all touch their neighbours."""
+    """Checks touching pairs and distances of a grid with more objects than the log of changes holds. All objects move, or
+    one; all are apart, or all touch their neighbours."""
     side = 7
     grid = np.argwhere(np.ones((side,) * 3)) * spacing
     manager, beside = CollisionManager(), CollisionManager()

@@ -25,7 +25,7 @@ pub(crate) struct RayHit {
     /// The distance from the start of the ray to the point, in units of the world.
     pub(crate) length: Number,
     pub(crate) point: Vec<Number>,
-    /// The outward normal; zero if the ray starts inside.
+    /// The outward normal; zero if the ray starts inside the object and objects are not hollow.
     pub(crate) normal: Vec<Number>,
     /// The index of the part that is hit; 0 for a convex shape.
     pub(crate) part: u32,

@@ -94,7 +94,7 @@ impl Log {
     /// end, but no incomplete record.
     ///
     /// A recording with unknown shapes is returned unchanged, since it cannot be replayed here. The
-    /// page shows other shapes in their place.
+    /// page shows balls in their place.
     pub(crate) fn into_page_bytes(self) -> Result<Vec<u8>, CliError> {
         match run_in(self.kind, WholeRecords(&self)) {
             Err(CliError::Recording { error, .. })
@@ -145,8 +145,8 @@ const fn kind_of(header: &Header) -> Option<Kind> {
     Some(Kind { dimension, scalar })
 }
 
-/// Returns the name of a recorded object: its data if that is printable text, otherwise `#` and the
-/// index of its handle.
+/// Returns the name of a recorded object: its data if that is a text, not empty and without control
+/// characters; otherwise `#` and the index of its handle.
 pub(crate) fn name_of<N: Space<D>, const D: usize>(
     object: &CollisionObject<N, D, Label>,
 ) -> String {

@@ -93,8 +93,9 @@ fn grown<N: Stage<D>, const D: usize>(aabb: &Aabb<N, D>, reach: N) -> Aabb<N, D>
     aabb.loosened(reach)
 }
 
-/// Returns an error if the next update of a world would store more than `limit` pairs, with boxes
-/// enlarged by `margin`.
+/// Returns an error if the next update of a world could store more than `limit` pairs. The counted
+/// pairs are those whose boxes overlap after they are enlarged by `margin`, by the query limit of
+/// one object and by the largest query limit of all objects.
 ///
 /// If there are so few objects that all their pairs are within the limit, nothing is computed.
 /// Otherwise the search takes O(n log n) for n objects, plus a constant time for each pair up to

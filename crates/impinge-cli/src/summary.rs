@@ -12,7 +12,7 @@ use crate::log::{Label, name_of};
 use crate::number::Number;
 use crate::state::State;
 
-/// The counts of a step.
+/// The numbers of objects, pairs, contacts and events of a world after a step.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct StepSummary {
     /// The number of updates made so far.

@@ -110,7 +110,7 @@ impl Box3d {
         self.offsets.push(if is_ground(shape) { REST_OFFSET } else { 0.0 });
     }
 
-    /// Converts the new placements of some objects.
+    /// Converts the new placements of the moved objects, and stores them for the next step.
     pub fn prepare(&mut self, moved: &[(usize, Placement<3>)]) {
         self.moved.clear();
         self.moved.extend(moved.iter().map(|(index, placement)| {

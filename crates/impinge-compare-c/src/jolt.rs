@@ -173,7 +173,7 @@ impl Jolt {
         self.bodies.push(body);
     }
 
-    /// Converts the new placements of some objects.
+    /// Converts the new placements of the moved objects, and stores them for the next step.
     pub fn prepare(&mut self, moved: &[(usize, Placement<3>)]) {
         self.moved.clear();
         self.moved.extend(moved.iter().map(|(index, placement)| {

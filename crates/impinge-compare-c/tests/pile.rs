@@ -1,5 +1,5 @@
-//! Tests that every engine finds as many touching pairs as a pile has neighbours on its grid, at
-//! every step.
+//! Tests that at every step every engine finds as many touching pairs as the grid of a pile has
+//! pairs of neighbours.
 
 #![cfg(any(feature = "box2d", feature = "box3d", feature = "jolt"))]
 

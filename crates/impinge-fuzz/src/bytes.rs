@@ -103,7 +103,7 @@ impl<'a> Bytes<'a> {
     }
 
     /// Returns up to 12 tuples of indices below `count`, and rarely one more whose indices equal
-    /// `count`.
+    /// `count` and are thus invalid.
     pub(crate) fn indices<const ENDS: usize>(&mut self, count: usize) -> Vec<[u32; ENDS]> {
         let parts = self.choice(13);
         let mut index = || self.choice(count.max(1)) as u32;

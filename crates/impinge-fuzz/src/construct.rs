@@ -87,7 +87,8 @@ pub(crate) fn moved<N: Real, const D: usize>(
     vertices.iter().map(other).collect()
 }
 
-/// Returns a box between two random corners; `None` if the constructor rejects the corners.
+/// Returns a box with a random lower corner and random edge lengths; `None` if the constructor
+/// rejects the corners.
 pub(crate) fn any_box<N: Real, const D: usize>(bytes: &mut Bytes<'_>) -> Option<Aabb<N, D>> {
     let low = bytes.point::<N, D>();
     Aabb::try_new(low, low + bytes.sizes::<N, D>()).ok()

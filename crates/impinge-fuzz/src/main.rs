@@ -17,7 +17,7 @@ use impinge_fuzz::{TARGETS, Target};
 /// Inputs that once panicked: a target and hexadecimal digits per line, `#` before a comment.
 const REGRESSIONS: &str = include_str!("../regressions.txt");
 
-/// The longest random input.
+/// Random inputs have at least 8 bytes and less than 8 more than this number.
 const MAX_BYTES: u64 = 512;
 
 /// Inputs that take longer than this are printed.
@@ -132,7 +132,7 @@ impl Random {
         if first < 64 { second & 31 } else { second }
     }
 
-    /// Returns random bytes; in one of eight cases the bytes of a regression with up to four bytes
+    /// Returns random bytes; in one of eight cases the bytes of a regression with one to four bytes
     /// changed.
     fn input(&mut self, known: &[Vec<u8>]) -> Vec<u8> {
         if known.is_empty() || self.below(8) > 0 {

@@ -73,8 +73,8 @@ impl<N: Space<D>, const D: usize> Kept<N, D> {
         }
     }
 
-    /// Updates the generator, and checks that contact ids are unique and that old ids do not
-    /// return.
+    /// Updates the generator. Checks that each manifold has at least one and at most `max_points`
+    /// points, that contact ids are unique, and that ids of ended contacts do not return.
     fn update<M: Dimension<N, D>>(
         &mut self,
         pair: &Pair<N, M::Turn, D>,

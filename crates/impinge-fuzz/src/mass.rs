@@ -37,7 +37,8 @@ impl Task for Masses {
         let inverse = body.inverse_mass();
         assert!(body.mass() >= N::ZERO && inverse >= N::ZERO, "{}", context());
         assert!(inverse.is_finite_number() && body.mass().is_finite_number(), "{}", context());
-        // The centre of a mesh with winding numbers of both signs may be anywhere.
+        // The centre of a convex shape lies in its box. The centre of a mesh with winding numbers
+        // of both signs may be anywhere, so composites are not checked.
         if bytes.is_moderate() && parts_of(&*shape).is_none() {
             let (aabb, noise) = (shape.local_aabb(), reach(&*shape) * N::EPSILON * N::lit(64.0));
             let around = Vector::<N, D>::repeat(noise);

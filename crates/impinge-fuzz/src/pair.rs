@@ -67,7 +67,8 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D
         panic!("\n{own:?}\nis not\n{other:?}\nswapped, of\n{self:?}");
     }
 
-    /// Returns the tolerance for the rounding errors of a length.
+    /// Returns the tolerance for the rounding errors of a length: 256 epsilons of the sum of both
+    /// positions and both extents.
     pub(crate) fn tolerance(&self) -> N {
         let places = [&self.m1, &self.m2]
             .iter()

@@ -11,7 +11,8 @@ use crate::place::{Dimension, Plane, Room};
 use crate::shapes::shape;
 
 /// Records a few objects and changes bytes of the recording. Then reads and plays the result as a
-/// whole, in pieces, salvaged, and packed.
+/// whole, in pieces, salvaged, and packed. Errors are allowed, but all these ways must agree about
+/// the valid records.
 pub fn recording(data: &[u8]) {
     let bytes = &mut Bytes::new(data);
     let choice = bytes.choice(8);
@@ -52,7 +53,7 @@ fn record<N: Recordable<D>, M: Dimension<N, D>, const D: usize>(bytes: &mut Byte
     repack(&changed, bytes);
 }
 
-/// Plays a recording forwards and backwards; returns the error, if there is one.
+/// Opens a recording, then seeks to its end and back to `step`. Returns the error, if there is one.
 fn play<N: Recordable<D>, const D: usize>(
     changed: &[u8],
     registry: &Registry<N, D, u32>,

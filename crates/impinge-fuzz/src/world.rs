@@ -240,9 +240,9 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         }
     }
 
-    /// Applies the events after the kept events, to `touching` and `near`. For each pair, starts
-    /// and stops alternate, and each proximity event begins with the status of the previous event
-    /// of the pair.
+    /// Applies the events after the kept events, to `touching` and `near`. Checks that for each
+    /// pair starts and stops alternate, and that each proximity event begins with the status of the
+    /// previous event of the pair.
     fn hear(&mut self, kept: (usize, usize)) {
         for event in &self.world.contact_events()[kept.0..] {
             let (handles, changed) = match *event {
@@ -262,7 +262,8 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         }
     }
 
-    /// Checks that the pairs of the world are the pairs that follow from its events.
+    /// Checks that the touching and near pairs of the world are those that follow from its events,
+    /// and that no two contacts have the same id.
     fn check_pairs(&self) {
         let mut ids = BTreeSet::new();
         let mut touching = BTreeSet::new();

@@ -18,7 +18,7 @@ use crate::shapes::shape;
 type World<N, const D: usize> = CollisionWorld<N, D, u8>;
 type Object<N, const D: usize> = CollisionObject<N, D, u8>;
 
-/// Runs the kind of query that the next byte selects.
+/// Runs the kind of query that the next byte selects, and checks the result.
 pub(crate) fn ask<N: Space<D>, M: Dimension<N, D>, const D: usize>(
     world: &World<N, D>,
     bytes: &mut Bytes<'_>,
@@ -34,7 +34,7 @@ pub(crate) fn ask<N: Space<D>, M: Dimension<N, D>, const D: usize>(
 
 type Keyed<N, A> = (N, CollisionObjectHandle, A);
 
-/// Returns the result of each object, sorted by key and handle.
+/// Returns the result of each object that has one, sorted by key and handle.
 fn ranked<N: Space<D>, A, const D: usize>(
     world: &World<N, D>,
     ask: impl Fn(&Object<N, D>) -> Option<(N, A)>,

@@ -73,7 +73,8 @@ pub struct StepMark {
     pub added: u32,
     /// The number of objects that were removed.
     pub removed: u32,
-    /// The number of changes of shapes, groups, query types, data and filters.
+    /// The number of other changes: of shapes, groups, query types, data, filters, skins and fixed
+    /// flags, and requests to filter again.
     pub changed: u32,
     /// The number of queries.
     pub queries: u32,
@@ -173,7 +174,7 @@ pub enum ShownQuery {
     },
     /// The query of the object is for proximity.
     Proximity {
-        /// The object's share of the margin.
+        /// The object's share of the proximity margin.
         margin: f64,
     },
 }

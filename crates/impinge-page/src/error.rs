@@ -40,7 +40,7 @@ pub enum EngineError {
     Rotation([f64; 4]),
     /// The value of a control has an invalid type, for instance a list.
     Value(String),
-    /// The bytes are not a recording that can be played.
+    /// The bytes are not a recording that can be replayed.
     Read(ReadError),
     /// The dimension of a recording is neither 2 nor 3, or its numbers have neither 4 nor 8 bytes.
     Kind {

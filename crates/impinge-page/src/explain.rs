@@ -151,8 +151,9 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         Why { touch, text, tests }
     }
 
-    /// Returns whether the pair touches as of the last update, and a phrase that describes the
-    /// contacts or the proximity of the pair.
+    /// Returns whether the pair touches as of the last update, and a phrase that describes its
+    /// contacts or its proximity. A pair touches if it intersects or has contacts, predicted ones
+    /// included.
     fn found(&self) -> (bool, String) {
         let (one, two) = (self.one.handle(), self.two.handle());
         if let Some(pair) = self.world.proximity_pair(one, two) {

@@ -33,7 +33,8 @@ pub struct Recorded<N: Viewed<D>, const D: usize> {
 }
 
 impl<N: Viewed<D>, const D: usize> Recorded<N, D> {
-    /// Opens a recording that does not grow, at its first update.
+    /// Opens a recording that does not grow, at step 1, the state after its first update; at step 0
+    /// if it has no updates.
     ///
     /// Takes time in proportion to the number of bytes, again for each stand-in, and copies the
     /// bytes.

@@ -40,7 +40,7 @@ pub trait Stage {
     /// Goes to a step of a recording, or to its last step if it has fewer; an error for samples.
     fn seek(&mut self, step: usize) -> Result<(), EngineError>;
 
-    /// Advances by `steps` steps. A recording stays at its end.
+    /// Advances by `steps` steps. A recording advances at most to its last step.
     fn advance(&mut self, steps: u64) -> Result<(), EngineError>;
 
     /// Goes back to the start: the first update of a recording, step 0 of a sample.
@@ -67,7 +67,7 @@ pub trait Stage {
     /// Returns the objects nearest to a point.
     fn nearest(&self, asked: &NearestRequest) -> NearestAnswer;
 
-    /// Moves an object to a position that the reader has chosen, and updates the world.
+    /// Moves an object to a position that the user of the page has chosen, and updates the world.
     fn drag(&mut self, asked: &DragRequest) -> Result<(), EngineError>;
 }
 

@@ -1,4 +1,5 @@
-//! Computes the marks of the time line: the steps of a recording that have changes.
+//! Computes the marks of the time line: the steps of a recording with events, queries or changes
+//! other than moves.
 
 use impinge_record::Mark;
 
@@ -7,8 +8,9 @@ use crate::answer::StepMark;
 /// The maximum number of marks that are sent to the page.
 pub(crate) const MAX_MARKS: usize = 10_000;
 
-/// Returns a mark for each step with changes. If there are more than [`MAX_MARKS`] such steps, each
-/// mark has the sums of several consecutive marks, at the step of the first of them.
+/// Returns a mark for each step with events, queries or changes other than moves. If there are more
+/// than [`MAX_MARKS`] such steps, consecutive marks are combined: the result has the sums of their
+/// counts, at the step of the first of them.
 pub(crate) fn marks(of_updates: &[Mark]) -> Vec<StepMark> {
     let marks = (1..).zip(of_updates).map(|(step, mark)| step_mark(step, mark));
     let marks: Vec<_> =

@@ -12,7 +12,7 @@
 //! ([`Replay::queries`]). [`pack`] compresses it for transfer.
 //!
 //! User-defined shapes and pair filters are code. A recording contains only their names, and a
-//! [`Registry`] maps these names to objects. `FORMAT.md` describes the bytes.
+//! [`Registry`] maps these names to the shapes and filters. `FORMAT.md` describes the bytes.
 //!
 //! Recordings are treated as untrusted input: errors have an offset, lengths are compared with the
 //! remaining bytes before memory is allocated, and shapes are created by the constructors of the

@@ -33,14 +33,15 @@ pub(crate) struct Player<N: Recordable<D>, const D: usize, T> {
     pub(crate) world: CollisionWorld<N, D, T>,
     handles: Vec<Option<CollisionObjectHandle>>,
     observer: Observer,
-    /// The sorted pairs of indices that the next update rejects; empty if it has no filter.
+    /// The sorted pairs of indices that the filter of the next update rejects; empty if it rejects
+    /// none, or if the update has no filter.
     refused: Vec<[u32; 2]>,
     /// The queries since the last update, with their results.
     asked: Vec<Asked<N, D>>,
     /// The queries between the last two updates, with their results.
     pub(crate) queries: Vec<Asked<N, D>>,
-    /// Whether no call was applied yet that changes the world. A key frame then creates the
-    /// objects; otherwise it only replaces the phases.
+    /// Whether no call was applied yet, apart from those that define shapes. A key frame then
+    /// creates the objects; otherwise it only replaces the phases.
     is_new: bool,
     /// Whether a key frame has created the objects and no update followed. In the next update all
     /// pairs start.

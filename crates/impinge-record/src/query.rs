@@ -132,7 +132,7 @@ pub enum Detail<N: Space<D>, const D: usize> {
     Ray(RayIntersection<N, D>),
     /// The projection of a point.
     Projection(PointProjection<N, D>),
-    /// The distance of an object, and the closest points.
+    /// The distance between an object and the shape of the query, and their closest points.
     Near {
         /// The distance.
         distance: N,

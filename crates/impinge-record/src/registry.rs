@@ -1,4 +1,4 @@
-//! Objects of which a recording contains only the names: shapes of user-defined types, and pair
+//! The items of which a recording contains only the names: shapes of user-defined types, and pair
 //! filters.
 
 use core::fmt;

@@ -70,7 +70,7 @@ pub struct Replay<N: Recordable<D>, const D: usize, T> {
     divergence: Option<Divergence>,
 }
 
-/// The end of a recording that could not be read.
+/// The unreadable end of a recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loss {
     /// The offset at which the unreadable part begins; the bytes before it are kept.

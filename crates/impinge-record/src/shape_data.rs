@@ -78,8 +78,8 @@ pub struct Field<N: Space<D>, const D: usize> {
     pub keeps_internal_edges: bool,
 }
 
-/// Converts a shape to data; `number` returns the index of a shape within it. `None` for a
-/// user-defined type.
+/// Converts a shape to data. For a rounded shape or a compound, `number` returns the index of each
+/// shape that it contains. `None` for a user-defined type.
 pub(crate) fn data_of<N: Recordable<D>, const D: usize>(
     shape: &ShapeHandle<N, D>,
     number: &mut dyn FnMut(&ShapeHandle<N, D>) -> Result<u32, RecordError>,

@@ -53,7 +53,8 @@ impl<N: Recordable<D>, const D: usize> ShapeTable<N, D> {
         self.push(data, handle)
     }
 
-    /// Creates the shape with this data; an error if it would be too complex.
+    /// Creates the shape with this data; an error if it would be too complex, if the library
+    /// rejects the data, or if the data has an undefined index or an unknown name.
     fn make<T>(
         &self,
         data: &ShapeData<N, D>,
@@ -90,8 +91,8 @@ impl<N: Recordable<D>, const D: usize> ShapeTable<N, D> {
     }
 }
 
-/// The shapes that a recorder has written. The shapes are kept alive, since an address identifies
-/// each shape.
+/// The shapes that a recorder has written, or will write before its next record. They are kept
+/// alive, since an address identifies each of them.
 #[derive(Clone, Debug)]
 pub(crate) struct KnownShapes<N: Space<D>, const D: usize> {
     table: ShapeTable<N, D>,

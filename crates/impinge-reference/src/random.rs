@@ -79,8 +79,8 @@ impl Random {
         (step as f64 - steps as f64) / (1u64 << k) as f64
     }
 
-    /// Returns a number in [low, high), rounded toward zero to an `f32`. The result is an `f32`
-    /// without rounding if it is in the normal range of `f32`.
+    /// Returns a number of [low, high), rounded toward zero to an `f32`. It must be in the normal
+    /// range of `f32`. The rounding can move it out of the interval if a bound is not an `f32`.
     pub fn single(&mut self, low: f64, high: f64) -> f64 {
         f32_toward_zero(self.range(low, high))
     }

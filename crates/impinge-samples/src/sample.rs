@@ -74,8 +74,8 @@ where
     /// If the world rejects a change.
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError>;
 
-    /// Counts the events of the world and runs queries. It is called after each update of the
-    /// world.
+    /// Evaluates the world after an update, for instance by counting events or by queries. It is
+    /// called after each update of the world; the default does nothing.
     ///
     /// # Errors
     /// If the world rejects a query.

@@ -1,4 +1,4 @@
-//! Plays scenes of `impinge-scenes` in a world.
+//! Simulates scenes of `impinge-scenes` in a world.
 
 use impinge::math::{Point, Real, Unit, Vector};
 use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
@@ -58,7 +58,7 @@ where
 }
 
 /// Converts a shape of a scene. The numbers are passed to the constructors of the library
-/// unchanged, apart from rounding to `f32`.
+/// unchanged, apart from rounding to `f32`; normals of planes are normalized again.
 fn shape_of<const D: usize>(shape: &SceneShape<D>) -> ShapeHandle<f32, D>
 where
     f32: Dimension<D>,

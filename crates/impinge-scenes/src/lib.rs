@@ -7,7 +7,7 @@
 //! Everything is computed in `f64` with `+ − × ÷ √` and rounding alone, so that a scene is the same
 //! on every platform. Positions and sizes are then rounded to `f32`, so that worlds of both scalars
 //! get equal numbers. A rotation is stored as an axis and a tangent (see [`Placement`]), from which
-//! each reader computes it in the precision of its own scalar.
+//! each program that runs the scene computes the rotation in the precision of its own scalar.
 //!
 //! This crate does not depend on the library: shapes and groups are plain numbers.
 
@@ -56,7 +56,7 @@ pub struct SceneObject<const D: usize> {
     pub groups: SceneGroups,
     /// The motion: the placement at each step.
     pub motion: Motion<D>,
-    /// The steps at which the object is alive.
+    /// The steps at which the object is alive, that is, part of the world.
     pub alive: Range<u32>,
 }
 

@@ -5,8 +5,8 @@ use crate::rounded;
 /// A rigid placement: a rotation about the local origin, then a translation.
 ///
 /// The rotation is given by Cayley's rational parametrisation: a unit vector along the axis, and
-/// the tangent of half the angle. This form needs no trigonometry, and each reader computes a
-/// rotation that is accurate to its own scalar: [`Placement::<2>::complex`],
+/// the tangent of half the angle. This form needs no trigonometry, and each program that runs a
+/// scene computes a rotation that is accurate to its own scalar: [`Placement::<2>::complex`],
 /// [`Placement::<3>::quaternion`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement<const D: usize> {

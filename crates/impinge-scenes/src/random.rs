@@ -40,8 +40,8 @@ impl Random {
         usize::try_from(self.bits() % (bound as u64)).expect("below a usize")
     }
 
-    /// Returns a unit vector. Points of a cube are drawn until one lies in the unit ball, which is
-    /// then normalized.
+    /// Returns a random unit vector; all directions are equally likely. Draws points of a cube
+    /// until one lies in the unit ball, but not near its centre, and normalizes this point.
     pub fn direction<const D: usize>(&mut self) -> [f64; D] {
         loop {
             let v: [f64; D] = std::array::from_fn(|_| self.between(-1.0, 1.0));

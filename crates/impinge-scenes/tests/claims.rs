@@ -46,8 +46,8 @@ fn holds<const D: usize>(scene: &Scene<D>, object: usize, step: u32, world: &[f6
     (0..D).all(|i| point[i].abs() <= half_extents[i])
 }
 
-/// Checks that each box contains the points halfway to its neighbours on the grid, so that it
-/// touches all of them.
+/// Asserts the number of pairs of overlapping boxes, and that both boxes of a pair contain the
+/// point halfway between their centres, so that they touch.
 fn check_pile<const D: usize>(count: usize, expected_pairs: usize) {
     let scene: Scene<D> = pile(count);
     assert_eq!(scene.objects.len(), count, "size");
@@ -253,7 +253,7 @@ fn solids_stay_on_the_ground() {
     check::<3>(20_000..20_500);
 }
 
-/// The mesh and the height field are equal surfaces.
+/// Asserts that the mesh and the height field are equal surfaces.
 #[test]
 fn both_grounds_are_one() {
     let (mesh, field) = (terrain_mesh::<3>(3), terrain_field::<3>(3));
@@ -376,7 +376,8 @@ fn solids_on_the_plain_slide_by_a_tenth() {
                 pairs.len() == 30 && pairs.iter().all(|pair| pair.0 == 0),
                 "{kind:?}: {pairs:?}"
             );
-            // The box of a cylinder is not the smallest one.
+            // The box of a cylinder is larger than needed, so its lower face does not show whether
+            // the cylinder lies on the ground.
             let exact = (1..=30).filter(|_| *kind != SolidKind::Cylinder);
             let lows: Vec<_> = exact.map(|n| scene.aabb(n, 4).expect("bounded").0[1]).collect();
             assert!(

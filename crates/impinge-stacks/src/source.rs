@@ -31,7 +31,7 @@ pub struct Choices {
     pub reuse: Option<f64>,
 }
 
-/// A world of impinge.
+/// A world of impinge, as a source of contacts.
 #[expect(missing_debug_implementations, reason = "a world has no short description")]
 pub struct Impinge<N: Stage<D>, const D: usize> {
     world: CollisionWorld<N, D, usize>,

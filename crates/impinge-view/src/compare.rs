@@ -7,8 +7,8 @@ use crate::image::Image;
 pub struct Difference {
     /// The width and height of each image.
     pub sizes: [[u32; 2]; 2],
-    /// The number of pixels that differ by more than the tolerance. Pixels that only one image has
-    /// are included.
+    /// The number of pixels that differ by more than the tolerance. Pixels of [`Self::picture`]
+    /// that are not in both images are included.
     pub pixels: u64,
     /// The largest difference of a channel, among the pixels that both images have.
     pub largest: u8,

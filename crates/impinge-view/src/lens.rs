@@ -3,7 +3,8 @@
 use crate::camera::Camera;
 use impinge::dim3::math::{Point, Vector};
 
-/// A camera, placed so that its angle of view covers the framed content.
+/// A camera that is placed so that it sees the framed content, and the bounds of this content in
+/// the image plane.
 #[derive(Clone, Debug)]
 pub(crate) struct Lens {
     axes: [Vector<f64>; 3],

@@ -45,7 +45,7 @@ pub(crate) fn pieces(flat: &Flat, dots: &[Dot], view: &View, samples: f64) -> Ve
     faces.chain(strokes).chain(dots).collect()
 }
 
-/// Draws the opaque pieces in their order, then the transparent pieces from far to near. At last,
+/// Draws the opaque pieces in their order, then the transparent pieces from far to near. Finally,
 /// draws the hidden parts of pieces that show through, with a third of their alpha.
 pub(crate) fn draw(pieces: &[Piece], raster: &mut Raster) {
     let (opaque, mut transparent): (Vec<_>, Vec<_>) =

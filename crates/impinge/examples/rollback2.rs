@@ -41,7 +41,8 @@ fn build() -> (World, [CollisionObjectHandle; 2]) {
     (world, players)
 }
 
-/// Plays one frame: the players walk, and the objects that they touch are pushed out of the way.
+/// Simulates one frame: the players walk, and the objects that they touch are pushed out of the
+/// way.
 fn step(world: &mut World, players: [CollisionObjectHandle; 2], inputs: [Vector<f32>; 2]) {
     for (player, input) in players.into_iter().zip(inputs) {
         move_by(world, player, input * 0.0625);
@@ -108,8 +109,8 @@ impl Side {
         Self { me, world, players, frames, arrived, now: 0, returns: 0, repeated: 0 }
     }
 
-    /// Plays the next frame. If the input of the other player has not arrived, the last one that
-    /// arrived is used as prediction.
+    /// Simulates the next frame. If the input of the other player has not arrived, the last one
+    /// that arrived is used as prediction.
     fn play(&mut self) {
         let last = self.arrived.last().copied().unwrap_or_else(Vector::zeros);
         let other = self.arrived.get(self.now).copied().unwrap_or(last);
@@ -126,8 +127,8 @@ impl Side {
     }
 
     /// Stores an input of the other player: it is for the first frame without a received input,
-    /// which was played some frames ago. If the prediction of this input was wrong, plays this
-    /// frame and all later frames again.
+    /// which was simulated some frames ago. If the prediction of this input was wrong, simulates
+    /// this frame and all later frames again.
     fn receive(&mut self, input: Vector<f32>) {
         let frame = self.arrived.len();
         self.arrived.push(input);

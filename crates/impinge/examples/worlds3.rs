@@ -47,8 +47,8 @@ impl Dice {
     }
 }
 
-/// Plays a match. Balls fly through a hall and through each other; a ball that would leave the hall
-/// is reflected.
+/// Simulates a match. Balls fly through a hall and through each other; a ball that would leave the
+/// hall is reflected.
 fn play(ball: &ShapeHandle<f32>, seed: u64) -> Summary {
     let mut dice = Dice(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15)); // spreads similar seeds
     let mut world = World::new(0.05);

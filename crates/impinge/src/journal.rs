@@ -1,7 +1,8 @@
 //! An undo journal: notes that revert the changes since a mark.
 //!
-//! An owner notes the old state before it changes it. To return to a mark, it reverts its notes, the newest first, so
-//! that entries of dense arrays return to their former indices. Without marks nothing is noted.
+//! The owner of a journal notes the old state before each change. To return to a mark, it undoes
+//! the noted changes, the newest first, so that entries of dense arrays return to the indices that
+//! they had at the mark. Without marks nothing is noted.
 //!
 //! ```text
 //! marks      1       2     3
@@ -9,15 +10,15 @@
 //! kept       A             F            data of the notes a and f
 //! ```
 //!
-//! Forgetting a mark drops its notes. If `U` owns no memory, this takes constant time; therefore rare data with memory
-//! of its own is kept in a list of its own, `K`.
+//! Forgetting a mark drops its notes. If `U` owns no memory, this takes constant time; therefore
+//! rare data that owns memory is kept in a separate list, as values of type `K`.
 
 use core::fmt;
 use std::collections::VecDeque;
 
 /// Notes `U` since each mark, state `H` copied whole with each mark, and data `K` of rare notes.
 pub(crate) struct Journal<U, H = (), K = ()> {
-    /// The oldest first.
+    /// The marks, the oldest first.
     marks: VecDeque<Mark<U, H, K>>,
     /// The notes since the last mark.
     notes: Notes<U, K>,
@@ -25,7 +26,8 @@ pub(crate) struct Journal<U, H = (), K = ()> {
     spare: Vec<Notes<U, K>>,
     /// By index of an object: the period in which it was last noted, plus 1 if the whole of it was noted then.
     noted: Vec<u32>,
-    /// Even, and greater than 0 if there are marks. Each mark and each return to a mark begins a period.
+    /// The current period: even, and greater than 0 if there are marks. Each mark and each return
+    /// to a mark begins a new period.
     period: u32,
 }
 
@@ -74,8 +76,8 @@ impl<U, H, K> Journal<U, H, K> {
         !self.marks.is_empty()
     }
 
-    /// Returns `true` if there are marks and the object has not been noted since the last one; it counts as noted from
-    /// then on.
+    /// Returns `true` if there are marks and the object with this index has not been noted since
+    /// the last mark or return to a mark. From then on it counts as noted.
     #[inline]
     pub(crate) fn is_first(&mut self, index: usize) -> bool {
         self.is_on() && {
@@ -87,7 +89,9 @@ impl<U, H, K> Journal<U, H, K> {
         }
     }
 
-    /// As [`Self::is_first`], for a note of the whole object, which makes notes of its parts superfluous.
+    /// Returns `true` if there are marks and the object with this index has not been noted as a
+    /// whole since the last mark or return to a mark. From then on it counts as noted as a whole,
+    /// so that [`Self::is_first`] returns `false`, too.
     #[inline]
     pub(crate) fn is_first_whole(&mut self, index: usize) -> bool {
         let whole = self.period + 1;
@@ -110,7 +114,8 @@ impl<U, H, K> Journal<U, H, K> {
         }
     }
 
-    /// Adds some notes, if there is a mark.
+    /// Adds several notes in their order, if there is a mark. [`Self::undo`] returns the last of
+    /// them first.
     #[inline]
     pub(crate) fn note_all(&mut self, undo: &[U])
     where
@@ -129,12 +134,14 @@ impl<U, H, K> Journal<U, H, K> {
         }
     }
 
-    /// Takes the data of the note that [`Self::undo`] has just returned. Each note with data must be followed by this.
+    /// Takes the data of the note that [`Self::undo`] has just returned. The owner must call this
+    /// for each note with data, before the next call of [`Self::undo`].
     pub(crate) fn take_kept(&mut self) -> K {
         self.notes.kept.pop().expect("the note was made with data")
     }
 
-    /// Sets a mark. Numbers must ascend.
+    /// Sets the mark `number` and copies `head` with it. The numbers of successive marks must
+    /// ascend.
     pub(crate) fn mark(&mut self, number: u64, head: H) {
         let notes = core::mem::replace(&mut self.notes, self.spare.pop().unwrap_or_default());
         if let Some(last) = self.marks.back_mut() {
@@ -144,7 +151,7 @@ impl<U, H, K> Journal<U, H, K> {
         self.begin_period();
     }
 
-    /// Drops the marks with smaller numbers.
+    /// Drops the marks whose numbers are less than `number`, with their notes.
     pub(crate) fn forget_before(&mut self, number: u64) {
         while self.marks.front().is_some_and(|mark| mark.number < number) {
             if let Some(mark) = self.marks.pop_front() {
@@ -161,7 +168,8 @@ impl<U, H, K> Journal<U, H, K> {
         self.marks.iter().any(|mark| mark.number == number)
     }
 
-    /// Takes the newest note since a mark; `None` when there is none left. By then later marks are gone.
+    /// Removes the newest note since mark `number` and returns it. `None` if no note is left; by
+    /// then the later marks have been removed.
     pub(crate) fn undo(&mut self, number: u64) -> Option<U> {
         loop {
             if let Some(undo) = self.notes.list.pop() {
@@ -178,7 +186,7 @@ impl<U, H, K> Journal<U, H, K> {
         }
     }
 
-    /// Returns the state copied with the last mark.
+    /// Returns the state copied with the last mark; `None` if there are no marks.
     pub(crate) fn head(&self) -> Option<&H> {
         self.marks.back().map(|mark| &mark.head)
     }

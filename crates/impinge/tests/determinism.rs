@@ -1,13 +1,14 @@
 //! Tests that a scene gives the same bits in a second run, with every instruction set of the
 //! machine, with any number of threads, in every build and on every platform.
 //!
-//! After each step a hash takes in everything that the world reports: manifolds (points, normals,
-//! depths, features, contact ids), proximities and events. `golden/state_hashes.txt` has the final
-//! hash of each scene, dimension and scalar. It is the same on every platform and in every build,
-//! because the pipeline only adds, multiplies, divides, takes roots, compares and rounds, in a
-//! fixed order, and takes sines from a software library. `crates/impinge-wasm` plays the same
-//! scenes in WebAssembly. The file changes only together with a deliberate change of results; then
-//! run `IMPINGE_BLESS=1 cargo test -p impinge --test determinism` and commit the file.
+//! The hash of a scene covers everything that the world reports after each step: manifolds (points,
+//! normals, depths, features, contact ids), proximities and events. `golden/state_hashes.txt` has
+//! the final hash of each scene, dimension and scalar. It is the same on every platform and in
+//! every build, because the pipeline only adds, multiplies, divides, takes roots, compares and
+//! rounds, in a fixed order, and takes sines from a software library. `crates/impinge-wasm` plays
+//! the same scenes in WebAssembly. The file changes only together with a deliberate change of
+//! results; then run `IMPINGE_BLESS=1 cargo test -p impinge --test determinism` and commit the
+//! file.
 
 #[macro_use]
 #[path = "it/support/scene_stage/runs.rs"]
@@ -28,8 +29,9 @@ use runs::{Outcome, Run};
 use scene_stage::Play;
 
 impl<const D: usize> Run<D> {
-    /// Plays the scene in every way that must not affect the outcome, asserts that all outcomes are
-    /// equal, and returns the outcome.
+    /// Runs the scene twice, with steps taken back, with each instruction set of the machine and,
+    /// with the feature `parallel`, on 1, 2 and 4 threads. Asserts that all outcomes are equal, and
+    /// returns the outcome.
     fn in_every_way<N: Play<D>>(&self) -> Outcome {
         let outcome = self.play::<N>(None);
         assert_eq!(self.play::<N>(None), outcome, "a second run");
@@ -47,7 +49,8 @@ impl<const D: usize> Run<D> {
         outcome
     }
 
-    /// Plays the scene with both scalars and compares the hashes with the golden file.
+    /// Runs the scene with both scalars and compares the hashes with the golden file. Asserts that
+    /// the scene has enough contacts and events for the hash to mean anything.
     fn check(&self)
     where
         f32: Play<D>,
@@ -66,8 +69,8 @@ fn golden_file() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden/state_hashes.txt")
 }
 
-/// Reads the golden hashes, by key. Each line of the file has the scene, the dimension, the scalar
-/// and 16 hexadecimal digits.
+/// Reads the golden hashes, by key; the map is empty if the file cannot be read. Each line of the
+/// file has the scene, the dimension, the scalar and 16 hexadecimal digits.
 fn golden() -> BTreeMap<String, u64> {
     let text = fs::read_to_string(golden_file()).unwrap_or_default();
     let lines = text.lines().filter(|line| !line.starts_with('#'));

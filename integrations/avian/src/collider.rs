@@ -111,7 +111,7 @@ where
     }
 
     /// Replaces the scale; see [`scaled`]. If the shape cannot be scaled by these factors, logs an
-    /// error and keeps the old scale.
+    /// error and keeps the old scale. A collider with an error is unchanged.
     pub(crate) fn rescale(&mut self, scale: Vec_<D>, detail: u32) {
         let Ok(shape) = &self.shape else { return };
         if scale == self.scale {

@@ -196,7 +196,8 @@ where
         Self::made(children.and_then(|children| Ok(Compound::try_new(children)?)))
     }
 
-    /// Returns all points within `radius` of this convex shape: corners and edges become round.
+    /// Returns a collider of all points within `radius` of this convex shape, whose corners and
+    /// edges become round.
     #[must_use]
     pub fn rounded(self, radius: f32) -> Self {
         Self::made(self.shape.and_then(|shape| Ok(Rounded::try_from_handle(shape, radius)?)))

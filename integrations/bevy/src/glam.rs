@@ -68,8 +68,8 @@ where
     pub(crate) scale: Vector<f32, D>,
 }
 
-/// The largest cosine between two scaled axes that count as perpendicular: about 0.06°. The error of a chain of
-/// rotations in `f32` is about 1e-6.
+/// The largest cosine between two scaled axes that count as perpendicular: 0.06° from a right
+/// angle. The error of a chain of rotations in `f32` is about 1e-6.
 pub(crate) const MAX_SHEAR: f32 = 1e-3;
 /// The largest relative difference of two scales that is attributed to rounding in a chain of transforms.
 const SCALE_ROUNDING: f32 = 1e-5;

@@ -69,7 +69,8 @@ fn list(indices: &[u32]) -> Vec<[u32; 3]> {
     indices.chunks_exact(3).map(|corners| [corners[0], corners[1], corners[2]]).collect()
 }
 
-/// Returns the triangles of a strip. Every second triangle of a strip is reversed.
+/// Returns the triangles of a strip. In a strip, every second triangle has the opposite
+/// orientation, so that two of its corners are exchanged.
 fn strip(indices: &[u32]) -> Vec<[u32; 3]> {
     let corners = indices.windows(3).enumerate();
     corners.map(|(n, c)| if n % 2 == 0 { [c[0], c[1], c[2]] } else { [c[1], c[0], c[2]] }).collect()

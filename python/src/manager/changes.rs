@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeSet, VecDeque};
 
-/// The largest number of stored changes: beyond this number, recomputing everything is faster than
-/// change by change.
+/// The largest number of stored changes. After more changes, recomputing a cached result takes less
+/// time than updating it change by change.
 const KEPT: usize = 256;
 
 /// The changes of a crowd, numbered from its beginning.
@@ -37,7 +37,8 @@ impl Changes {
         Some(self.recent.range(begin..).copied().collect())
     }
 
-    /// Whether the object may have changed after the first `then` changes.
+    /// Whether the object may have changed after the first `then` changes. Also `true` if some of
+    /// these changes are no longer stored.
     pub(super) fn may_include(&self, index: u32, then: u64) -> bool {
         let count = usize::try_from(self.count - then).unwrap_or(usize::MAX);
         count > self.recent.len() || self.recent.iter().rev().take(count).any(|&one| one == index)

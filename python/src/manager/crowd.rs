@@ -1,8 +1,9 @@
 //! The objects of a collision manager in a world of proximities: the touching pairs, and the nearest pair.
 //!
-//! Results are cached: [`Crowd::touching`] is updated by events, and the nearest pair is stored with the number of
-//! the change after which it was found. The cost of a query depends on the changes since. The query itself processes
-//! a few moves; after more changes the world is updated ([`EAGER`]).
+//! Results are cached: [`Crowd::touching`] is updated from the events of the world. The nearest
+//! pair is stored with the number of changes when it was found, and the cost of a query depends on
+//! the changes since then. The query itself processes a few moves; after more changes the world is
+//! updated ([`EAGER`]).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -23,7 +24,8 @@ pub(super) type Solid = ShapeHandle<f64, 3>;
 /// The world is updated after this many changes without a query, so that a query has few changes to process.
 const EAGER: u64 = 16;
 
-/// Two objects: of one crowd, the one with the lower handle first, or one of each crowd.
+/// Two objects. Those of the same crowd are sorted by handle; otherwise the first is an object of
+/// this manager's crowd and the second of the other crowd.
 pub(super) type Pair = (Handle, Handle);
 
 /// Two objects and their distance, negative where they overlap.
@@ -55,7 +57,7 @@ pub(super) struct Crowd {
     /// The pairs that touched at the last update.
     touching: BTreeSet<Pair>,
     kept: Option<Kept>,
-    /// For each index the nearest pair that contains its object.
+    /// For the index of an object, the cached nearest pair that contains it.
     beside: BTreeMap<u32, Kept>,
     pub(super) reach: Reach,
 }
@@ -117,7 +119,8 @@ impl Crowd {
         Ok(())
     }
 
-    /// Returns the object with this index, which must have been used.
+    /// Returns the object with this index; `None` if it was removed. Panics if no object ever had
+    /// the index.
     pub(super) fn object(&self, index: u32) -> Option<&Object> {
         self.world.collision_object(self.handle(index))
     }
@@ -152,7 +155,10 @@ impl Crowd {
         self.nearest_of(position, shape, limit, &QueryFilter::new())
     }
 
-    /// Returns the nearest pair that contains the object with this index, and caches it.
+    /// Returns a pair that contains the object with this index, and caches it: a touching pair with
+    /// minus its depth as distance, otherwise a pair of the smallest distance. If several pairs have
+    /// this distance, the cached pair is kept, unless one of its objects has changed. `None` if
+    /// there is no other object.
     pub(super) fn nearest_beside(&mut self, index: u32) -> Option<Nearest> {
         let found = self.beside_changed(index).or_else(|| self.found_beside(index, f64::INFINITY));
         match found {
@@ -167,8 +173,10 @@ impl Crowd {
         found
     }
 
-    /// Returns the nearest pair that contains the object with this index, if the objects of the cached pair have not
-    /// changed. It is the cached pair, or a pair with a changed object.
+    /// Computes the result of [`Self::nearest_beside`] from the cached pair and the changes since
+    /// then: the cached pair, unless it does not touch and a pair with a changed object is now
+    /// nearer. `None` if no pair is cached, if one of its objects changed, or if the log of changes
+    /// is too short.
     fn beside_changed(&self, index: u32) -> Option<Nearest> {
         let kept = self.beside.get(&index)?;
         let changed = self.changes.since(kept.then)?;
@@ -223,7 +231,9 @@ impl Crowd {
         self.touching.first().copied()
     }
 
-    /// Returns the nearest pair: any touching pair, otherwise the first pair of the smallest distance.
+    /// Returns a touching pair with minus its depth as distance, if there is one, otherwise a pair
+    /// of the smallest distance. If several pairs have this distance, the cached pair is returned
+    /// if it is one of them. `None` if there are fewer than two objects.
     pub(super) fn nearest_pair(&mut self) -> Option<Nearest> {
         self.asked = self.changes.now();
         let found = self.overlap().or_else(|| {
@@ -235,14 +245,16 @@ impl Crowd {
         found
     }
 
-    /// Returns the first pair that touched at the last update, if it overlaps.
+    /// Returns the first pair that touched at the last update with its signed distance (minus the
+    /// depth), if it still touches or overlaps.
     fn overlap(&self) -> Option<Nearest> {
         let pair = *self.touching.first()?;
         let nearest = self.kept_depth(pair).or_else(|| self.depth_of(pair))?;
         (nearest.distance <= 0.0).then_some(nearest)
     }
 
-    /// Returns the pair with its cached depth, if it was the last nearest pair and has not changed.
+    /// Returns the cached nearest pair with its depth, if it is `pair`, touched when it was cached,
+    /// and has not changed since.
     fn kept_depth(&self, pair: Pair) -> Option<Nearest> {
         let kept = self.kept.as_ref().filter(|kept| kept.nearest.pair == pair)?;
         let has_changed =
@@ -255,8 +267,10 @@ impl Crowd {
         Some(Nearest { pair, distance: -depth(self.get(pair.0)?, self.get(pair.1)?) })
     }
 
-    /// Returns the nearest pair, if the objects of the cached pair have not changed. It is the cached pair, or a
-    /// pair with a changed object.
+    /// Returns the nearest pair, if the objects of the cached pair have not changed. This is the
+    /// cached pair, unless a pair with a changed object is now nearer. `None` if no pair at a
+    /// positive distance is cached, if one of its objects changed, or if the log of changes is too
+    /// short.
     fn nearest_changed(&self) -> Option<Nearest> {
         let kept = self.kept.as_ref().filter(|kept| kept.nearest.distance > 0.0)?;
         let changed = self.changes.since(kept.then)?;
@@ -271,8 +285,9 @@ impl Crowd {
         Some(changed.iter().fold(kept.nearest, nearer))
     }
 
-    /// Computes the nearest pair without the cache. Each object is compared with objects of higher handles within
-    /// the smallest distance so far.
+    /// Computes the nearest pair of all objects. Begins with the current distance of the cached
+    /// pair, if there is one. Then searches for each object the nearest object of a higher handle
+    /// within the smallest distance so far.
     fn nearest_of_all(&self) -> Option<Nearest> {
         let mut best = self.kept.as_ref().and_then(|kept| self.measured(kept.nearest.pair));
         for own in self.objects() {
@@ -312,7 +327,8 @@ impl Crowd {
         self.changes.may_include(index_of(handle), then)
     }
 
-    /// Whether a pair of the last update still touches.
+    /// Whether a pair that touched at the last update touches now. Tests the shapes only if one of
+    /// the objects may have changed.
     fn still_touch(&self, (one, other): Pair) -> bool {
         let (Some(object1), Some(object2)) = (self.get(one), self.get(other)) else { return false };
         let has_changed = |handle| self.has_changed(handle, self.updated);
@@ -359,7 +375,7 @@ pub(super) fn touch(one: &Object, other: &Object) -> bool {
     proximity(one.position(), shape1, other.position(), shape2, 0.0) == Proximity::Intersecting
 }
 
-/// Returns the depth of two touching objects.
+/// Returns the depth of two objects, zero if they only touch.
 pub(super) fn depth(one: &Object, other: &Object) -> f64 {
     depth_at(one.position(), &**one.shape(), other)
 }

@@ -13,13 +13,13 @@ pub(super) struct Meeting {
     pub(super) other: u64,
     /// The number of changes of each crowd when `touching` was computed.
     then: [u64; 2],
-    /// The pairs that touched then.
+    /// The pairs that touched at the changes `then`.
     pub(super) touching: BTreeSet<Pair>,
     /// The nearest pair, and the number of changes of each crowd when it was found.
     nearest: Option<(Nearest, [u64; 2])>,
 }
 
-/// Two crowds: that of this manager first.
+/// The crowd of this manager, and the crowd of the other manager.
 #[derive(Clone, Copy)]
 pub(super) struct Crowds<'a>(pub(super) &'a Crowd, pub(super) &'a Crowd);
 
@@ -57,7 +57,9 @@ impl Meeting {
         (!has_changed || touch(one, other)).then_some(pair)
     }
 
-    /// Returns the first cached touching pair with its depth, if it overlaps now.
+    /// Returns the first cached touching pair with its signed distance (minus the depth), if it
+    /// touches or overlaps now. `None` also if no touching pair is cached, or if one of the objects
+    /// was removed.
     pub(super) fn overlap(&mut self, crowds: Crowds<'_>) -> Option<Nearest> {
         let (Crowds(own, others), pair) = (crowds, *self.touching.first()?);
         let known = self.nearest.filter(|(nearest, then)| {
@@ -75,7 +77,8 @@ impl Meeting {
         Some(nearest)
     }
 
-    /// Returns the nearest pair of two crowds that do not touch.
+    /// Returns a pair of the smallest distance of two crowds that do not touch, and caches it. If
+    /// several pairs have this distance, the cached pair is kept. `None` if a crowd is empty.
     pub(super) fn nearest_pair(&mut self, crowds: Crowds<'_>) -> Option<Nearest> {
         let known = self.nearest.take();
         let apart = known.filter(|(nearest, _)| nearest.distance > 0.0);
@@ -91,8 +94,8 @@ impl Crowds<'_> {
         [self.0.changes.now(), self.1.changes.now()]
     }
 
-    /// Returns the objects of each crowd that changed after its first `then` changes; `None` if the log does not reach
-    /// back that far.
+    /// Returns the objects of each crowd that changed after its first `then` changes; `None` if a
+    /// log no longer holds all these changes.
     fn changed(self, then: [u64; 2]) -> Option<[BTreeSet<u32>; 2]> {
         Some([self.0.changes.since(then[0])?, self.1.changes.since(then[1])?])
     }
@@ -115,8 +118,9 @@ impl Crowds<'_> {
         pairs.map(|pair| if is_smaller { pair } else { (pair.1, pair.0) }).collect()
     }
 
-    /// Returns the nearest pair, if the objects of the cached pair have not changed. It is the cached pair, or a pair
-    /// with a changed object.
+    /// Returns the nearest pair, if the objects of the cached pair `best` have not changed since
+    /// `then`. This is `best`, unless a pair with a changed object is now nearer. `None` if an
+    /// object of `best` changed, or if a log no longer holds all changes.
     fn nearest_changed(self, (mut best, then): (Nearest, [u64; 2])) -> Option<Nearest> {
         let [changed1, changed2] = self.changed(then)?;
         let (one, other) = best.pair;
@@ -133,9 +137,10 @@ impl Crowds<'_> {
         Some(best)
     }
 
-    /// Computes the nearest pair without the cache. Its search distance starts with that of `known`, an earlier
-    /// nearest pair. The object of the smaller crowd that is nearest to the box around the larger crowd goes first.
-    /// Objects that are farther from this box than the smallest distance so far are skipped.
+    /// Computes the nearest pair of the two crowds. The search distance begins with the current
+    /// distance of `known`, an earlier nearest pair. The first object searched for is that of the
+    /// smaller crowd that is nearest to the box around the larger crowd. Objects that are farther
+    /// from this box than the smallest distance so far are skipped.
     fn nearest_of_all(self, known: Option<Pair>) -> Option<Nearest> {
         let Crowds(own, others) = self;
         let mut best = known.and_then(|pair| {

@@ -33,7 +33,8 @@ pub(crate) struct Manager {
     crowd: Crowd,
     /// The unique number of this manager.
     number: u64,
-    /// The cached results about the other manager that the last such query named.
+    /// The cached results about one other manager: the last one that a query compared with this
+    /// manager.
     meeting: Option<Meeting>,
 }
 
@@ -68,7 +69,7 @@ impl Manager {
         into_array::<f64, 3>(py, objects.map(|object| <f64 as Space<3>>::pose(object.position())))
     }
 
-    /// Returns `true` if any two objects touch.
+    /// Returns `true` if any two objects of this manager touch.
     fn is_touching(&mut self) -> PyResult<bool> {
         settle()?;
         Ok(self.crowd.touching_pair().is_some())
@@ -80,14 +81,14 @@ impl Manager {
         Ok(self.crowd.touching().iter().map(indices).collect())
     }
 
-    /// Returns the nearest pair.
+    /// Returns the nearest pair of this manager's objects; `None` if there are fewer than two.
     fn nearest(&mut self) -> PyResult<Option<Found>> {
         settle()?;
         Ok(self.crowd.nearest_pair().map(found))
     }
 
-    /// Returns the nearest pair that contains the object with this index, in the order of the
-    /// handles.
+    /// Returns the nearest pair that contains the object with this index, the object of the lower
+    /// handle first. `None` if there is no other object.
     fn nearest_beside(&mut self, index: u32) -> PyResult<Option<Found>> {
         settle()?;
         Ok(self.crowd.nearest_beside(index).map(found))
@@ -137,7 +138,8 @@ impl Manager {
         Ok(self.meeting.insert(meeting).touching.iter().map(indices).collect())
     }
 
-    /// Returns the nearest pair of an object and an object of another manager.
+    /// Returns the nearest pair of an object of this manager and an object of another manager;
+    /// `None` if one of them has no objects.
     fn nearest_other(&mut self, other: &Self) -> PyResult<Option<Found>> {
         settle()?;
         let crowds = Crowds(&self.crowd, &other.crowd);

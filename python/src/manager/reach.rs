@@ -20,8 +20,9 @@ pub(super) struct Reach {
     balls: Vec<Option<Ball>>,
     count: usize,
     around: Option<Aabb<f64, 3>>,
-    /// The number of moves since the box was computed; each may have enlarged it. The box is
-    /// recomputed when this number exceeds the number of objects.
+    /// The number of objects that were added or moved since the box was computed from all balls;
+    /// each may have enlarged it. The box is computed again when this number exceeds the number of
+    /// objects.
     grown: usize,
 }
 
@@ -64,12 +65,12 @@ impl Reach {
         self.around.as_ref()
     }
 
-    /// Whether the object with this index may overlap the box.
+    /// Whether the object with this index may touch the box; `false` if it was removed.
     pub(super) fn may_meet(&self, index: u32, aabb: &Aabb<f64, 3>) -> bool {
         self.balls[index as usize].is_some_and(|ball| distance_to(&ball, aabb) <= 0.0)
     }
 
-    /// Whether two objects may be less than `limit` apart.
+    /// Whether two objects may be less than `limit` apart; `false` if one was removed.
     pub(super) fn may_be_within(&self, one: u32, other: u32, limit: f64) -> bool {
         let (Some(ball1), Some(ball2)) = (self.balls[one as usize], self.balls[other as usize])
         else {
@@ -78,14 +79,16 @@ impl Reach {
         (ball1.center - ball2.center).norm() < limit + roomy(&ball1) + roomy(&ball2)
     }
 
-    /// Returns the objects within `limit` of the box, sorted by lower bounds of their distances.
+    /// Returns the objects whose lower bound of the distance from the box is at most `limit`, with
+    /// the bounds in ascending order.
     pub(super) fn within(&self, aabb: &Aabb<f64, 3>, limit: f64) -> Vec<(f64, u32)> {
         let mut found: Vec<_> = self.distances(aabb).filter(|(far, _)| *far <= limit).collect();
         found.sort_unstable_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
         found
     }
 
-    /// Returns the first object of [`Self::within`].
+    /// Returns the object with the smallest lower bound of its distance from the box; `None` if
+    /// there is no object.
     pub(super) fn first(&self, aabb: &Aabb<f64, 3>) -> Option<u32> {
         let nearer = |one: &(f64, u32), other: &(f64, u32)| one.0.total_cmp(&other.0);
         self.distances(aabb).min_by(nearer).map(|(_, index)| index)
@@ -103,7 +106,7 @@ fn distance_to(ball: &Ball, aabb: &Aabb<f64, 3>) -> f64 {
     (aabb.distance_to_point(&ball.center) - roomy(ball)).max(0.0)
 }
 
-/// Returns the radius plus the rounding error of the position.
+/// Returns the radius plus a bound of the rounding error of the centre.
 fn roomy(ball: &Ball) -> f64 {
     ball.radius + 1e-12 * (ball.radius + ball.center.coords.amax())
 }

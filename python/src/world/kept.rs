@@ -105,8 +105,8 @@ impl<N: Numeric<D>, const D: usize> KeptWorld<N, D> {
         }
     }
 
-    /// Starts a recording, after an update of the world; a world that is already recorded is
-    /// unchanged.
+    /// Starts a recording of all changes from now on. A world that is already recorded is
+    /// unchanged. On an error the world is unchanged, too.
     pub(crate) fn record(&mut self, margin: N) -> Result<(), RecordError> {
         let Self::Plain(world) = self else { return Ok(()) };
         let world = *std::mem::replace(world, Box::new(CollisionWorld::new(N::ZERO)));
@@ -120,7 +120,7 @@ impl<N: Numeric<D>, const D: usize> KeptWorld<N, D> {
         Ok(())
     }
 
-    /// Ends the recording; returns its bytes, if there is one.
+    /// Ends the recording and returns its bytes; `None` if the world is not recorded.
     pub(crate) fn stop(&mut self) -> Option<Vec<u8>> {
         let none = Self::Plain(Box::new(CollisionWorld::new(N::ZERO)));
         match std::mem::replace(self, none) {

@@ -1,7 +1,8 @@
 //! Worlds: one Python class for all scalars and dimensions, whose calls take many objects at once.
 //!
-//! A handle in Python is an integer of 64 bits: the low half is the index of the object, the high half the number of
-//! earlier objects with that index. It is never reused for another object of its world.
+//! A handle in Python is an integer of 64 bits: the low half is the index of the object, the high
+//! half the number of earlier objects with that index. A handle is not used again for another
+//! object of its world until 2^32 objects have had its index.
 
 mod kept;
 mod queries;
@@ -25,7 +26,7 @@ use crate::space::{Kind, Numeric, Task, run_in};
 use crate::supervise::{Call, Threads};
 use crate::threads::settle;
 
-/// Columns of Python arrays.
+/// The columns of a result, as arrays of Python.
 pub(crate) type Arrays<'py> = PyResult<Vec<Bound<'py, PyAny>>>;
 
 /// A world of any scalar and dimension: its changes and its queries.
@@ -53,7 +54,8 @@ pub(crate) trait AnyWorld: Send + Sync {
     fn is_recorded(&self) -> bool;
     /// Returns the bytes of a world with the same objects, and the number of uses of each index.
     fn to_bytes(&self) -> PyResult<(Vec<u8>, Vec<u32>)>;
-    /// Fills a new world.
+    /// Fills a new world without objects from the result of [`Self::to_bytes`]; `ages` has the
+    /// number of uses of each index.
     fn fill(&mut self, bytes: &[u8], ages: &[u32]) -> PyResult<()>;
     fn picture(&self, view: &PictureView) -> (&'static str, Vec<u8>);
     fn handles(&self) -> Vec<u64>;

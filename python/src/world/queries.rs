@@ -23,7 +23,7 @@ use crate::world::Arrays;
 /// The handle that stands for no object.
 const NO_OBJECT: u64 = u64::MAX;
 
-/// A query and its options; [`WorldQueries::ask`] has the names.
+/// The name of a query and its options.
 #[derive(FromPyObject)]
 pub(crate) struct Asking {
     name: String,
@@ -40,8 +40,9 @@ pub(crate) struct Asking {
 
 /// The queries that a world of any scalar and dimension supports.
 pub(crate) trait WorldQueries {
-    /// Runs a query for arrays. A query with one result for each element returns handles and the other columns.
-    /// Other queries return rows: the start of each element's results comes first.
+    /// Runs a query for arrays. If it has one result for each element, returns the handles and the
+    /// other columns. Otherwise returns compressed rows: first the offset of each element's results
+    /// (n + 1,), then the handles and the other columns.
     fn ask<'py>(
         &self,
         asking: &Asking,
@@ -71,7 +72,7 @@ impl<N: Numeric<D>, const D: usize> Found<N, D> {
     }
 }
 
-/// The columns of a result in addition to the handles.
+/// The columns of a query's result in addition to the handles.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Beside {
     Nothing,
@@ -88,7 +89,7 @@ enum Beside {
 /// The objects that a query considers.
 struct Chosen {
     groups: Option<CollisionGroups>,
-    /// Sorted.
+    /// The excluded objects, sorted for binary search.
     excluded: Vec<CollisionObjectHandle>,
 }
 
@@ -97,7 +98,8 @@ struct Chosen {
 struct Prepared<'a, N: Numeric<D>, const D: usize> {
     len: usize,
     beside: Beside,
-    /// Whether all results of each element are returned, not only the first.
+    /// Whether the result has all found objects of each element in compressed rows, not one object
+    /// for each element.
     in_rows: bool,
     find: Box<Find<'a, N, D>>,
 }
@@ -263,7 +265,8 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         Ok(Prepared { len, beside, in_rows: asking.in_rows(), find })
     }
 
-    /// Returns the objects that contain a point, with closed surfaces as solids.
+    /// Returns the objects that contain a point, where closed surfaces are solids; none if the
+    /// point is not finite.
     fn holding(&self, point: &Point<N, D>, filter: &QueryFilter<'_, N, D, ()>) -> Vec<Found<N, D>> {
         let Ok(here) = Aabb::try_new(*point, *point) else { return Vec::new() };
         let holds = |object: &&CollisionObject<N, D, ()>| {
@@ -414,8 +417,8 @@ fn entry<T: Copy>(list: &[T], element: usize) -> T {
     list[if list.len() == 1 { 0 } else { element }]
 }
 
-/// Converts results to columns: with `in_rows`, the starts and all results; otherwise one result for each
-/// element.
+/// Converts results to columns. With `in_rows`, these are the offsets of each element's results and
+/// all results; otherwise one result for each element, with [`NO_OBJECT`] if none was found.
 fn columns<N: Numeric<D>, const D: usize>(
     py: Python<'_>,
     mut found: Vec<Vec<Found<N, D>>>,

@@ -1,8 +1,9 @@
 //! Worlds as bytes: a recording of the calls that create a world with the same objects.
 //!
-//! Placeholders occupy the indices without an object while the recording is made, and are removed at the end. So all
-//! objects have the same indices, and the next object gets the same index too. The number of uses of each index is
-//! stored beside the bytes.
+//! While the recording is made, placeholders occupy the indices without an object; they are removed
+//! at the end. So all objects keep their indices, and the world read from the bytes gives the next
+//! object the index that the written world would give it. The number of earlier uses of each index
+//! is stored beside the bytes.
 
 use impinge::math::Pose;
 use impinge::narrow_phase::GeometricQueryType;
@@ -14,7 +15,7 @@ use super::typed::TypedWorld;
 use crate::space::Numeric;
 
 impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
-    /// Returns the bytes, and the number of uses of each index.
+    /// Returns the bytes, and for each index the number of objects that had it before the last one.
     pub(super) fn write(&self) -> Result<(Vec<u8>, Vec<u32>), RecordError> {
         let mut recorder = Recorder::<N, D, ()>::new(self.margin, Registry::new())?;
         let mut objects = self.world.collision_objects().peekable();
@@ -42,7 +43,8 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         Ok((recorder.finish().bytes, ages))
     }
 
-    /// Returns the indices without an object. Removing placeholders in this order restores the order of their reuse.
+    /// Returns the indices without an object, in an order in which their placeholders can be
+    /// removed: later objects then reuse the indices in the order of the written world.
     fn vacant(&self) -> impl Iterator<Item = usize> {
         self.world.vacant_indices().filter(|index| *index < self.slots.len())
     }
@@ -97,7 +99,7 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
 pub(super) enum Damage {
     Read(ReadError),
     World(RecordError),
-    /// The numbers of objects and handles differ.
+    /// The indices of the objects do not fit the list of uses.
     Handles,
 }
 

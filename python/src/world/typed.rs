@@ -26,7 +26,7 @@ use crate::threads::Crew;
 use crate::vectors::Vectors;
 use crate::world::{AnyWorld, Arrays};
 
-/// A world of the library.
+/// A world of the library, with the handles of Python.
 pub(crate) struct TypedWorld<N: Numeric<D>, const D: usize> {
     pub(crate) world: KeptWorld<N, D>,
     pub(super) margin: N,
@@ -41,7 +41,8 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         Self { world, margin, slots: Vec::new(), surfaces: BTreeMap::new() }
     }
 
-    /// Converts handles of Python to handles of the library.
+    /// Converts handles of Python to handles of the library. `ValueError` names the row of a handle
+    /// whose object does not exist.
     pub(crate) fn fresh(
         &self,
         handles: &[u64],
@@ -67,7 +68,8 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         self.world.contains(slot.1).then_some(slot.1)
     }
 
-    /// Returns the handle in Python of an object that was just added.
+    /// Assigns a handle in Python to an object that was just added, and counts the use of its
+    /// index.
     fn name(&mut self, handle: CollisionObjectHandle) -> u64 {
         let index = handle.uid();
         let age = match self.slots.get_mut(index) {
@@ -87,7 +89,8 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         u64::from(self.slots[handle.uid()].0) << 32 | handle.uid() as u64
     }
 
-    /// Sets the shapes of all objects, or of none if one is rejected.
+    /// Sets the shape of each handle. If one is rejected, the earlier objects get their previous
+    /// shapes back, and the error names its row.
     fn exchange(
         &mut self,
         handles: &[CollisionObjectHandle],

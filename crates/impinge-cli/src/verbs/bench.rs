@@ -85,8 +85,8 @@ impl Task for TimeUpdates<'_> {
         let mut progress = Progress::new(args.runs as usize * steps as usize, "measuring");
         for _ in 0..args.runs {
             let mut world = builds.time(|| loaded.world::<N, D>())?;
-            // A second world computes the positions. The updates of this world, which are recorded,
-            // are not timed.
+            // A second world, `mover`, computes the positions. Its updates also write a recording,
+            // and are not timed.
             let mut mover = loaded.moving::<N, D>(KeyFrames { every: None })?;
             loaded.step(&mut mover, 0.0)?;
             firsts.time(|| world.update());
@@ -141,8 +141,9 @@ impl Durations {
         done
     }
 
-    /// Returns the quartile with index `quarters` in milliseconds; 2 is the median. Returns 0 if
-    /// there are no durations.
+    /// Returns the quartile with index `quarters` in milliseconds: 1 is the lower quartile, 2 the
+    /// median. Durations are not interpolated; if a quartile lies between two of them, the longer
+    /// one is returned. Returns 0 if there are no durations.
     fn quartile(&mut self, quarters: usize) -> f64 {
         self.0.sort_unstable();
         let index = (self.0.len() * quarters / 4).min(self.0.len().saturating_sub(1));

@@ -1,4 +1,4 @@
-//! `impinge cast`: finds the first hit of a moving shape or object.
+//! `impinge cast`: finds the first hit, or all hits, of a moving shape or object.
 
 use impinge::math::{Pose, Vector};
 use impinge::query::ImpactOptions;

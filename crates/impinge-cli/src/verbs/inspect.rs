@@ -49,7 +49,7 @@ struct ObjectFields {
     high: Vec<Number>,
 }
 
-/// The fields of a part of a mesh file.
+/// The counts and the defects of one mesh of a file.
 #[derive(Debug, Serialize)]
 struct MeshFields {
     file: String,

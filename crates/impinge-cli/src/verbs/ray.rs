@@ -1,4 +1,4 @@
-//! `impinge ray`: finds the hits of a ray.
+//! `impinge ray`: finds the first hit, or all hits, of a ray.
 
 use impinge::math::Point;
 use impinge::query::Ray;

@@ -28,10 +28,10 @@ pub(crate) fn run(args: &ReplayArgs) -> Result<Outcome, CliError> {
     finish(&ReplayReport { subject: log.subject(), steps, detail }, args.format)
 }
 
-/// The task that plays a recording through all steps.
+/// The task that replays a recording and summarizes every step.
 struct PlayAll<'a>(&'a Log);
 
-/// The task that plays a recording to one step.
+/// The task that replays a recording up to one step, and describes the world after it.
 struct PlayTo<'a> {
     log: &'a Log,
     step: usize,

@@ -1,4 +1,5 @@
-//! `impinge validate`: checks that recordings replay to the same bits.
+//! `impinge validate`: checks by hashes that replays of recordings give the recorded results, to
+//! the bit.
 
 use core::fmt;
 
@@ -42,7 +43,7 @@ struct ValidateReport {
 struct Validated {
     file: String,
     steps: usize,
-    /// `true` if the recording replays to the same bits.
+    /// `true` if all hashes of the replay equal the recorded hashes.
     same: bool,
     difference: Option<FirstDifference>,
 }

@@ -78,7 +78,7 @@ fn the_fields_of_json_are_documented() {
     }
 }
 
-/// Returns the names of all members, at any depth.
+/// Returns the names of all members of a JSON value, at any depth; a name may occur several times.
 fn keys(value: &serde_json::Value) -> Vec<String> {
     match value {
         serde_json::Value::Object(members) => {

@@ -1,5 +1,5 @@
 //! Tests files that request much memory, name files outside their folder, or contain control
-//! characters.
+//! characters: they must be refused, and no control character may reach the terminal.
 
 use std::fs;
 use std::process::Command;
@@ -15,7 +15,8 @@ fn coincident(count: usize) -> String {
     json!({"dimension": 3, "objects": [ball]}).to_string()
 }
 
-/// Asserts that the output contains no control characters except line feeds, and is short.
+/// Asserts that the output contains no control characters except line feeds, no characters that
+/// change the direction of text or have no width, and that each stream has less than 4000 bytes.
 fn assert_printable(ran: &Ran) {
     for text in [&ran.out, &ran.err] {
         let obeyed =
@@ -74,8 +75,8 @@ fn objects_that_meet_later_have_the_limit_too() {
     assert_eq!(desk.run(&format!("{record} 1225")).code, 0);
 }
 
-/// The address space is limited to 300 000 kilobytes. The command alone takes about a tenth of
-/// this; storing all million pairs would take about twice as much.
+/// Asserts that `check` succeeds with an address space of 300 000 kilobytes. The command alone
+/// takes about a tenth of this; storing all of the million pairs would take about twice as much.
 #[cfg(unix)]
 #[test]
 fn the_memory_of_a_check_does_not_grow_with_the_pairs() {

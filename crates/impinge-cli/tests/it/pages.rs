@@ -1,4 +1,5 @@
-//! Tests of `export`, `view` and `samples`.
+//! Tests of `export`, `view` and `samples`: the pages contain whole or damaged recordings, a server
+//! follows a growing one, and bad input gives errors.
 
 use std::fs;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
@@ -23,7 +24,7 @@ fn steps(bytes: Vec<u8>) -> usize {
     last
 }
 
-/// Returns the unpacked recording of a page.
+/// Returns the recording that a page contains, unpacked.
 fn recording(page: &str) -> Vec<u8> {
     let packed = STANDARD.decode(page.lines().nth(2).expect("a line")).expect("base64");
     unpack(&packed).expect("a packed recording")
@@ -70,7 +71,8 @@ fn a_page_has_what_is_left_of_a_recording() {
     assert_eq!(ran.code, 0, "{ran:?}");
     assert!(ran.err.contains("29 steps are kept, 3 bytes left out"), "{ran:?}");
     let page = fs::read_to_string(desk.path("cut.html")).expect("a page");
-    // Packing omits the hashes of objects, so that unpacked recordings are compared.
+    // Packing omits the hashes of objects, so both recordings are compared after packing and
+    // unpacking.
     let packed = impinge_record::pack(&kept).expect("whole records");
     assert!(recording(&page) == unpack(&packed).expect("just packed"), "whole records alone");
 }

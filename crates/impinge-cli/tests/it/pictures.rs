@@ -1,4 +1,5 @@
-//! Tests of `render`.
+//! Tests the pictures of `render` by their pixels and elements: PNG and SVG, directions of view,
+//! layers, and steps of recordings.
 
 use std::fs;
 

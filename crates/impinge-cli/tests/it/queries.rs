@@ -1,4 +1,5 @@
-//! Tests of `cast` and `ray`.
+//! Compares the hits of `cast` and `ray` with results computed by hand, also for starts inside a
+//! solid and for groups.
 
 use serde_json::json;
 

@@ -1,4 +1,5 @@
-//! Tests of `record`, `replay` and `validate`.
+//! Tests of `record`, `replay` and `validate`: steps are reported, replays have the same bits, and
+//! changed, damaged or unfinished recordings are recognised.
 
 use std::fs;
 
@@ -29,7 +30,8 @@ fn balls_that_meet_after_a_quarter_of_a_second() {
     let report = desk.json("replay balls.implog", 1);
     let steps = report["steps"].as_array().expect("a list");
     assert_eq!(steps.len(), 30);
-    // At step 15 the distance is zero up to rounding.
+    // At step 15 the distance is zero up to rounding, so whether the balls touch there is not
+    // tested.
     assert!(steps[..14].iter().all(|step| step["touching"] == 0), "{report}");
     assert!(steps[15..].iter().all(|step| step["touching"] == 1), "{report}");
     let started: i64 = steps.iter().filter_map(|step| step["started"].as_i64()).sum();
@@ -138,7 +140,7 @@ fn what_follows_damage_is_left_out() {
     assert!(ran.code == 2 && ran.err.contains("there is no step 29"), "{ran:?}");
 }
 
-/// A shape of a user type, for which a recording contains a name.
+/// A shape of a user type. A recording contains only the name under which the shape is registered.
 #[derive(Debug)]
 struct Pebble(Ball<f64>);
 

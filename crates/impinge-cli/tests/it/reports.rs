@@ -27,17 +27,17 @@ fn a_sound_mesh_and_one_with_a_hole() {
     let mesh = &sound["meshes"][0];
     assert_eq!((&mesh["name"], &mesh["problems"]), (&json!("base"), &json!([])));
     assert_eq!((&mesh["solid"], &mesh["volume"]), (&json!(true), &json!(1.0)), "a unit cube");
-    // The cube lacks one face.
+    // Removes one face of the cube.
     let whole = std::fs::read_to_string(desk.path("parts.obj")).expect("a mesh");
     desk.write("open.obj", whole.replacen("f 1 3 4 2\n", "", 1));
     let open = &desk.json("inspect open.obj", 0)["meshes"][0];
     assert_eq!((&open["closed"], &open["boundary_edges"]), (&json!(false), &json!(4)), "{open}");
-    // The corners of the added face lie on one line.
+    // Adds a face whose corners lie on one line.
     desk.write("flat.obj", whole.replacen("f 2 4 8 6\n", "f 2 4 8 6\nf 1 1 2\n", 1));
     let flat = desk.json("inspect flat.obj", 1);
     let problem = flat["meshes"][0]["problems"][0].as_str().expect("a problem");
     assert!(problem.contains("degenerate") && problem.contains("line 17"), "{problem}");
-    // The corners of all faces are reversed.
+    // Reverses the order of the corners of all faces.
     let turned = whole.lines().map(|line| match line.strip_prefix("f ") {
         Some(corners) => {
             let corners: Vec<_> = corners.rsplit(' ').collect();

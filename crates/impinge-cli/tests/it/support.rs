@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A temporary folder with a copy of the scenes.
+/// A temporary folder with a copy of the folder `scenes`, in which the command runs.
 pub(crate) struct Desk(TempDir);
 
 /// A page with one line for each of its parts. The real page is part of the command only with the
@@ -107,7 +107,7 @@ fn scenes() -> PathBuf {
     root().join("scenes")
 }
 
-/// Returns the numbers of a list.
+/// Returns the numbers of a JSON array.
 pub(crate) fn numbers(value: &Value) -> Vec<f64> {
     let list = value.as_array().expect("a list");
     list.iter().map(|number| number.as_f64().expect("a number")).collect()

@@ -167,7 +167,8 @@ fn wide<const D: usize>(random: &mut Random, scalar: Scalar) -> [[f64; D]; 3] {
     }
 }
 
-/// Returns points on a random ellipsoid, all of which are vertices of their convex hull.
+/// Returns points on a random ellipsoid, rounded to the scalar. No two are nearer than 0.3 on the
+/// unit ball before it is stretched, so that all are vertices of their convex hull.
 fn around<const D: usize>(random: &mut Random, scalar: Scalar) -> Vec<[f64; D]> {
     let axes: [f64; D] = std::array::from_fn(|_| random.magnitude(0.2, 3));
     let count = if D == 2 { 3 + random.below(6) } else { 4 + random.below(9) };
@@ -292,6 +293,6 @@ pub enum Outcome<const D: usize> {
     },
 }
 
-/// A contender's queries for one sample: the distance, and the contact within the prediction, which
-/// is the second argument.
+/// A contender's queries for one sample: the distance, and the contact. The second argument is the
+/// prediction of the contact.
 pub type Ask<const D: usize> = fn(&Sample<D>, f64) -> Outcome<D>;

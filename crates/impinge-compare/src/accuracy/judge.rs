@@ -12,15 +12,16 @@ use impinge_reference::precise::{Quad, separation_along};
 use super::form::{Ask, Outcome};
 use super::sample::Known;
 
-/// The largest loss of a tie, in units of rounding. A tie is a normal far from the best one that
-/// separates equally well; where several normals are correct this is no error.
+/// The largest loss of a tie, in units of rounding. A tie is a normal far from the best one, along
+/// which the solids are separated equally up to rounding. If several normals are correct, a tie is
+/// no error.
 const AS_GOOD: f64 = 16.0;
-/// The angle to the best normal, in radians, above which a normal counts as another direction.
+/// The angle to the best normal, in radians, above which a normal can be a tie.
 const ELSEWHERE: f64 = 0.05;
 /// The exact distance or depth, in units of rounding, above which a wrong sign is counted.
 const WRONG_SIDE: f64 = 64.0;
 
-/// The errors of one contender in the samples of one row.
+/// The errors of one contender in the samples of one or more rows.
 #[derive(Clone, Debug, Default)]
 pub struct Errors {
     /// The number of samples that were run.

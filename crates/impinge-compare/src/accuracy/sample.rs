@@ -18,7 +18,8 @@ pub enum Regime {
     Touching,
     /// The solids overlap by 1e-4 to 1e-1 R.
     Shallow,
-    /// One solid is near the centre of the other, or overlaps a half-space by 0.5 R.
+    /// The centres of the solids are near each other. With a half-space, the other solid overlaps
+    /// it by 0.5 R.
     Deep,
 }
 
@@ -35,7 +36,7 @@ impl Regime {
         }
     }
 
-    /// Returns `true` if the solids overlap.
+    /// Returns `true` if the solids of this regime overlap by more than rounding.
     pub fn is_overlap(self) -> bool {
         matches!(self, Self::Shallow | Self::Deep)
     }
@@ -52,8 +53,8 @@ impl Regime {
         }
     }
 
-    /// Returns `true` if the exact distance `truth` is in the regime. `size` is the size of the
-    /// scene, `reach` is R.
+    /// Returns `true` if the exact signed distance `truth` is in the regime. `size` is the size of
+    /// the scene, `reach` is R.
     fn holds(self, truth: f64, size: f64, reach: f64, epsilon: f64) -> bool {
         match self {
             Self::Far => truth > 0.5 * reach,
@@ -96,7 +97,8 @@ pub struct Known<const D: usize> {
     pub truth: Precise<D>,
 }
 
-/// The number of draws after which a pair is considered impossible in its regime.
+/// The number of draws of solids and poses after which a regime is considered impossible for two
+/// kinds.
 const TRIES: usize = 12;
 
 /// Draws a pair of these kinds in a regime. `None` if no draw is in the regime: for instance, two
@@ -155,8 +157,8 @@ fn attempt<const D: usize>(
     regime.holds(truth, known.truth.size, reach, scalar.epsilon()).then_some(known)
 }
 
-/// Returns the kinds of the two rotations. For two of ten pairs the axes of both solids are
-/// parallel, exactly or nearly.
+/// Returns the kinds of the two rotations. In two of ten pairs the coordinate axes of the solids
+/// are parallel, exactly or nearly.
 fn turns(random: &mut Random) -> [Turn; 2] {
     match random.below(10) {
         0 => [Turn::Aligned, Turn::Aligned],

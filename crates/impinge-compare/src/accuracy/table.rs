@@ -1,5 +1,5 @@
 //! Writes the tables: a line of a CSV file for every row and contender, and a line of `accuracy.md`
-//! for every pair of kinds.
+//! for every pair of kinds with one dimension and scalar.
 
 use std::fmt::Write;
 use std::fs;

@@ -2,8 +2,9 @@
 //! one call for each pair. Both contenders are impinge, in `f64` and 3D, on one thread. Times are
 //! nanoseconds for each pair.
 //!
-//! The table counts results whose bits differ. One shape is at the origin, the second shape at many
-//! positions around it: about equally many pairs overlap, are near and are far.
+//! The table counts pairs whose two results differ in any bit. One shape is at the origin, the
+//! second shape at many positions around it: about equally many pairs overlap, are near and are
+//! far.
 
 mod question;
 
@@ -67,7 +68,7 @@ fn batches(count: usize) -> Vec<(String, Batch)> {
     batches
 }
 
-/// Returns the convex hull of a tessellated ball of radius 0.5.
+/// Returns the convex hull of the vertices of a tessellated ball of radius 0.5.
 fn round_hull(subdivisions: u32) -> ConvexHull<f64> {
     ConvexHull::from_points(&procedural::ball(&Ball::new(0.5), subdivisions).vertices)
 }
@@ -78,8 +79,8 @@ fn surface(subdivisions: u32) -> TriMesh<f64> {
     TriMesh::try_from(surface).expect("a surface of triangles")
 }
 
-/// Returns random poses whose coordinates are less than 1.25 from the origin on each axis. They are
-/// the same in every run.
+/// Returns `count` random poses, the same in every run. Each coordinate of the position is less
+/// than 1.25 in magnitude.
 fn places(count: usize) -> Vec<Isometry<f64>> {
     let mut state = 1_u64;
     let mut next = || {
@@ -92,7 +93,8 @@ fn places(count: usize) -> Vec<Isometry<f64>> {
     (0..count).map(&mut place).collect()
 }
 
-/// Times the batch call and the single calls in turn.
+/// Times the call for the whole batch and the calls for single pairs in alternating rounds, and
+/// returns a row for each.
 fn race(case: &str, batch: &Batch, question: &Question, arguments: &Arguments) -> Vec<Row> {
     let here = OnePose(Isometry::identity());
     let [shape1, shape2] = &batch.shapes;

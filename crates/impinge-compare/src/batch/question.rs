@@ -15,7 +15,7 @@ use impinge::dim3::query::{
 
 use super::Batch;
 
-/// The distance up to which closest points and contacts are computed.
+/// The maximum distance of closest points, and the prediction of contacts and manifolds.
 const LIMIT: f64 = 0.25;
 
 /// The velocity of the second shape in impact queries.

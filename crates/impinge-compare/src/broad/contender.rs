@@ -28,7 +28,8 @@ pub trait Contender<const D: usize> {
 /// The contenders of a case; the first one is impinge.
 pub type Contenders<const D: usize> = Vec<Box<dyn Contender<D>>>;
 
-/// Combines two indices to one key that does not depend on their order.
+/// Combines two indices into one key that does not depend on their order; the smaller one is in the
+/// high half.
 pub fn key(a: u32, b: u32) -> u64 {
     u64::from(a.min(b)) << 32 | u64::from(a.max(b))
 }
@@ -115,12 +116,13 @@ pub fn race<const D: usize>(
     rows.collect()
 }
 
-/// Counts the wrong results of each contender, and stores the maximum over the compared steps.
+/// Counts the wrong results of each contender, and keeps in its lane the maximum over the compared
+/// steps.
 ///
-/// Two overlapping boxes must be a pair: a pair that another contender has and this one lacks is
-/// counted. Boxes that are near may be a pair, depending on when they were enlarged last. A fat
-/// AABB extends at most two margins beyond its box. So a pair with a gap of more than four margins
-/// is stale, and is counted too, as are duplicate pairs.
+/// Two overlapping boxes must be a pair: if a contender lacks such a pair that another one has, it
+/// is counted. Boxes that are near each other may be a pair, depending on when their fat AABBs were
+/// computed. A fat AABB extends at most two margins beyond its box. So a pair whose boxes are more
+/// than four margins apart is stale and counted, as is each duplicate of a pair.
 fn compare<const D: usize>(cells: &[Cell<D>], contenders: &mut Contenders<D>, lanes: &mut [Lane]) {
     let gap = |key: &u64| cells[(key >> 32) as usize].gap(&cells[(key & 0xffff_ffff) as usize]);
     let mut overlapping = Vec::new();

@@ -3,8 +3,9 @@
 //! margin of 0.05.
 //!
 //! Results are pairs of overlapping fat AABBs. Their number depends on the rules by which a
-//! contender enlarges boxes. `compare` defines which results count as different. Contenders without
-//! events do less work than the others, since they do not report which pairs started and stopped.
+//! contender enlarges boxes, so the pairs of two correct contenders may differ. `compare` in
+//! `contender.rs` defines which pairs count as wrong. Contenders without events do less work than
+//! the others, since they do not report which pairs started and stopped.
 
 mod contender;
 mod obvhs_tree;

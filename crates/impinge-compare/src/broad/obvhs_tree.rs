@@ -1,7 +1,7 @@
-//! obvhs, used as in its example of a broad phase. Boxes are enlarged. If few boxes left their fat
-//! AABBs, the leaves of these boxes are moved within the tree; otherwise the tree is rebuilt. Then
-//! each box that left is searched for in the tree. obvhs has no events. It is 3D only: in 2D all
-//! boxes have the third coordinate zero.
+//! obvhs, used as in its example of a broad phase. A box that left its fat AABB gets a new one. If
+//! there are few such boxes, their leaves are moved within the tree; otherwise the tree is rebuilt.
+//! Then the tree is searched for the fat AABBs that overlap each new one. obvhs has no events. It
+//! is 3D only: in 2D all boxes have the third coordinate zero.
 
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;

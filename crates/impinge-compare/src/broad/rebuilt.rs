@@ -1,5 +1,6 @@
-//! The trees of rstar and bvh, rebuilt at each step and searched for every box. They return all
-//! pairs of exact boxes, not of enlarged ones, and have no events.
+//! The trees of rstar and bvh, rebuilt at each step. The tree of rstar is intersected with itself,
+//! the tree of bvh is searched for every box. Both return all pairs of exact boxes, not of enlarged
+//! ones, and have no events.
 
 use bvh::aabb::{Aabb, Bounded};
 use bvh::bounding_hierarchy::BHShape;

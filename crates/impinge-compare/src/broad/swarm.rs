@@ -170,9 +170,10 @@ fn half<const D: usize>(kind: Kind, random: &mut Random) -> [f32; D] {
 
 /// Returns the edge of the cube in which boxes overlap three others on average.
 ///
-/// Two boxes overlap if their centres are within the sum of their half extents. So the volume of
-/// the cube is a third of the mean volume of boxes with such sums as half extents, times their
-/// number. The mean is estimated from as many random pairs as there are boxes.
+/// Two boxes overlap if, along each axis, their centres are within the sum of their half extents.
+/// Let V be the mean volume, over random pairs, of a box with these sums as half extents. A box of
+/// the cube then overlaps `count * V / cube` others, which is three if the volume of the cube is
+/// `count * V / 3`. As many random pairs as there are boxes estimate V.
 fn edge<const D: usize>(halves: &[[f32; D]], random: &mut Random) -> f64 {
     let mut any = || halves[random.below(halves.len())].map(f64::from);
     let sum: f64 = (0..halves.len())

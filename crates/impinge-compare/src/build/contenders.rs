@@ -18,7 +18,7 @@ use crate::broad::{Contender, Impinge, Ncollide, Rapier, aabb, leaves, obvhs_aab
 /// The number of box queries by which trees are compared.
 const QUESTIONS: usize = 1000;
 
-/// Returns the query boxes: random boxes of the tree, enlarged by half.
+/// Returns the query boxes: boxes of the tree drawn at random, with half extents enlarged by half.
 pub fn questions(cells: &[Cell<3>]) -> Vec<Cell<3>> {
     let mut random = Random::new(9);
     let any = (0..QUESTIONS).map(|_| cells[random.below(cells.len())]);
@@ -48,8 +48,8 @@ pub fn parry_aabb(cell: &Cell<3>) -> parry3d::bounding_volume::Aabb {
     parry3d::bounding_volume::Aabb::new(cell.mins().into(), cell.maxs().into())
 }
 
-/// Returns the contenders that build trees of boxes, some of them in several variants, from the
-/// fastest to the best build. With more than 200,000 boxes `bvh` and `rstar` are omitted.
+/// Returns the contenders that build trees of boxes. Variants of one library are sorted from the
+/// fastest build to the best tree. With more than 200,000 boxes `bvh` and `rstar` are omitted.
 pub fn boxes(cells: &[Cell<3>]) -> Vec<Maker<'_>> {
     let mut makers = vec![
         Maker::new("impinge BoxTree", || ours(cells)),

@@ -46,8 +46,9 @@ fn measured<R>(count: usize, work: impl FnOnce() -> R) -> (f64, R) {
     (bytes / count as f64, result)
 }
 
-/// Runs the constructors in turn for several rounds. In the first round the results are compared
-/// with those of the first contender.
+/// Runs the constructors in turn for several rounds. In the first round the results of each
+/// contender are compared with those of the first one: results that only one of the two has count
+/// as different.
 pub fn measure(case: &str, count: usize, makers: &[Maker<'_>]) -> Vec<Row> {
     let rounds = match count {
         _ if UNIT != "ms" => 1,

@@ -1,5 +1,5 @@
-//! Contenders that build meshes. Their meshes differ: impinge and ncollide always compute the
-//! adjacency of triangles, parry optionally.
+//! Contenders that build meshes. The meshes do not store the same data: impinge and ncollide always
+//! compute the adjacency of triangles, parry optionally.
 
 use impinge::math::Point;
 use impinge::shape::{CompositeShape, TriMesh};

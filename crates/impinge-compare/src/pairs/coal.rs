@@ -1,8 +1,9 @@
 //! Queries of Coal, in `f64`, its only scalar here.
 //!
-//! All pairs of a round are computed in one call, with functors for the two shapes. A contact comes
-//! from `collide` with the prediction as security margin; for a mesh all contacts are computed. A
-//! manifold also has the polygons of `ComputeContactPatch`.
+//! All pairs of a round are computed in one call from C++, with functors (`ComputeDistance` and
+//! others) that are created once for the two shapes. A contact comes from `collide` with the
+//! prediction as security margin; for a mesh all contacts are computed. For a manifold,
+//! `ComputeContactPatch` also computes the contact polygons.
 
 use impinge_compare_c::{CoalPairs, CoalPose, CoalSolid};
 
@@ -11,8 +12,8 @@ use super::placement::Placement;
 use super::question::{Answer, Contender, PREDICTION, Question, Stand, stand};
 use super::regime::{Pair, Poses};
 
-/// Converts a solid. `None` for shapes that Coal lacks or has only as parts of meshes (triangles),
-/// and for height fields, whose frame differs.
+/// Converts a solid. `None` for segments and polylines, which Coal lacks, for triangles, which it
+/// has only as parts of meshes, and for height fields, whose frame differs.
 fn solid(form: &Form<3>) -> Option<CoalSolid> {
     Some(match form {
         Form::Ball(radius) => CoalSolid::ball(*radius),
@@ -34,8 +35,8 @@ fn pose(Placement { translation: [x, y, z], rotation: [i, j, k, w] }: &Placement
     [*x, *y, *z, *i, *j, *k, *w]
 }
 
-/// The contender Coal with the pairs of a case. The two unrelated sets come first, then the
-/// slightly moved ones.
+/// The contender Coal with the pairs of a case. The sets of placements of the second solid are
+/// numbered: first the two unrelated sets, then the slightly moved ones.
 pub struct Coal {
     pairs: CoalPairs,
     found: Vec<f32>,

@@ -38,8 +38,8 @@ pub struct Terrain {
 pub struct Solid<const D: usize> {
     pub name: &'static str,
     pub form: Form<D>,
-    /// Directions in the local frame in which the solid has a flat side: outward normals of faces,
-    /// or directions perpendicular to an axis.
+    /// Directions in the local frame along which the solid has a face or a straight side: outward
+    /// normals of faces, or directions perpendicular to an axis.
     pub flats: Vec<[f64; D]>,
     /// For a terrain, a smaller version about 1 across, which is used as the second solid of a pair
     /// of two terrains; otherwise `None`.
@@ -177,8 +177,8 @@ pub fn space() -> Vec<Solid<3>> {
     ]
 }
 
-/// Returns random points on a sphere of `radius`, at distances of more than `apart * radius`. All
-/// of them are vertices of their convex hull.
+/// Returns random points on a sphere of `radius`. Any two are more than `apart * radius` from each
+/// other. All of them are vertices of their convex hull.
 fn around_origin<const D: usize>(count: usize, radius: f64, apart: f64) -> Vec<[f64; D]> {
     let mut random = Random::new(count as u64);
     let mut points: Vec<[f64; D]> = Vec::new();

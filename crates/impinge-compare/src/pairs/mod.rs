@@ -192,7 +192,7 @@ fn poses<const D: usize>(pair: &Pair<D>, regime: Regime, judge: Judge<'_, D>) ->
 }
 
 /// Returns the time of parry's manifold of two balls on this machine, divided by its time on the
-/// machine of the targets.
+/// machine on which the targets were set; NaN if parry has no row.
 fn scale_of_this_machine() -> f64 {
     const ROUNDS: usize = 100;
     let mut scale = f64::NAN;

@@ -49,7 +49,9 @@ pub fn any_rotation<const D: usize>(random: &mut Random) -> [f64; 4] {
     random.quaternion()
 }
 
-/// Returns the shortest rotation that maps the direction `from` to `to`.
+/// Returns the shortest rotation that maps the unit vector `from` to `to`. Nearly opposite vectors
+/// (within about 0.8 degrees) count as opposite: the result is a half turn about a perpendicular
+/// axis.
 pub fn turning<const D: usize>(from: &[f64; D], to: &[f64; D]) -> [f64; 4] {
     let (from, to) = (in_space(from), in_space(to));
     let cosine = dot(&from, &to);

@@ -13,8 +13,8 @@ const LONGEST: f64 = 3e7;
 /// The minimum number of timed rounds.
 const FEWEST: usize = 2;
 
-/// Runs all contenders. Returns a row for each contender that has a result for every pair, with the
-/// number of differences from the first contender.
+/// Runs all contenders that support the query. Returns a row for each contender that supports every
+/// pair of the case, with the number of results that differ from those of the first such contender.
 pub fn race(
     case: &str,
     question: Question,

@@ -76,7 +76,8 @@ fn is_ours(row: &Row) -> bool {
 }
 
 /// Returns `true` if the row belongs to another library whose results differ from ours for at most
-/// half of the pairs. A contender that finds nothing would be fast.
+/// half of the pairs. Without this bound, a contender that finds nothing would count as a fast
+/// rival.
 fn is_rival(row: &&Row) -> bool {
     !is_ours(row) && row.contender != "target" && 2 * row.differ <= PAIRS
 }

@@ -76,8 +76,7 @@ impl Hills {
         Self { edge, vertices: vertices.collect(), triangles }
     }
 
-    /// Returns rays that start above all hills and point down, at up to 17 degrees from the
-    /// vertical.
+    /// Returns rays that start above all hills and point down, at 17 degrees from the vertical.
     fn down(&self) -> Vec<Ray<3>> {
         self.rays(3.0 * HEIGHT, |random| {
             let [x, z] = random.direction::<2>().map(|x| 0.3 * x);

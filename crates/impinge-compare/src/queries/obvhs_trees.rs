@@ -92,7 +92,8 @@ impl Obvhs<'_> {
         vec![of_wide, of_narrow]
     }
 
-    /// Calls `found` with the index of each box of a leaf that passes `test`.
+    /// Calls `found` with the index of each box of the leaf `node` that passes `test`. Returns
+    /// `true`, by which the traversal continues.
     fn leaf(&self, node: u32, test: impl Fn(&Aabb) -> bool, found: &mut dyn FnMut(u32)) -> bool {
         let node = &self.narrow.nodes[node as usize];
         let first = node.first_index as usize;

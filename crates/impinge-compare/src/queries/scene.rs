@@ -64,8 +64,8 @@ pub trait Library<const D: usize> {
 }
 
 impl<const D: usize> Scene<D> {
-    /// Creates a scene of `objects` objects. The cube is so large that they fill about the fraction
-    /// `share` of it.
+    /// Creates a scene of `objects` objects. The cube is so large that as many cubes of edge 1
+    /// would fill the fraction `share` of it.
     pub fn new(name: &'static str, objects: usize, share: f64, reach: f32) -> Self {
         let mut random = Random(0x5eed + D as u64);
         let edge = (objects as f64 / share).powf(1.0 / D as f64) * 2.0 * HALF;
@@ -75,7 +75,8 @@ impl<const D: usize> Scene<D> {
         Self { name, objects, boxes, edge, reach }
     }
 
-    /// Returns `count` queries of each cheap kind, and `count / 5` of each expensive kind.
+    /// Returns the queries of each kind: `count / 5` shape casts and overlaps of solids, which are
+    /// expensive, and `count` of each other kind.
     pub fn questions(&self, count: usize) -> Vec<(&'static str, Questions<D>)>
     where
         f32: Space<D>,

@@ -7,7 +7,8 @@ use crate::table::Row;
 
 /// A world that takes part in the comparison.
 pub trait Contender<const D: usize> {
-    /// Converts the new placements of some objects; not timed.
+    /// Converts the placements of the moved and added objects to the contender's types, and stores
+    /// the changes for the next step; not timed.
     fn prepare(&mut self, change: &Change<D>);
 
     /// Removes and adds objects, sets the new poses and updates; timed.

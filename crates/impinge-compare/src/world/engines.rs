@@ -39,8 +39,8 @@ pub fn jolt(scene: &Scene<3>, convex_radius: f32) -> Option<Box<dyn Contender<3>
     Some(Box::new(impinge_compare_c::Jolt::new(scene, PREDICTION, convex_radius)?))
 }
 
-/// Returns `true` if no object of the scene is added or removed and all have contacts; the engines
-/// run only such scenes.
+/// Returns `true` if no object of the scene is added or removed and all objects query contacts. The
+/// engines run only such scenes.
 fn is_played<const D: usize>(scene: &Scene<D>) -> bool {
     scene.objects.iter().all(|object| {
         object.alive == (0..u32::MAX) && matches!(object.query, SceneQuery::Contacts { .. })

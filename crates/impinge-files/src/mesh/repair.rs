@@ -60,7 +60,7 @@ fn weld(raw: &RawPart, report: &mut MeshReport) -> Vec<u32> {
 }
 
 /// Triangulates the faces, and returns the triangles that have an area up to rounding. Reports the
-/// dropped faces, except faces with a vertex that is not finite, which [`weld`] reports.
+/// dropped faces, except faces with a vertex that is not finite: [`weld`] reports these vertices.
 fn pieces(raw: &RawPart, welded: &[u32], report: &mut MeshReport) -> Vec<Piece> {
     let mut triangulator = Triangulator::new();
     let mut pieces = Vec::new();

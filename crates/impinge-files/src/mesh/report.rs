@@ -78,8 +78,8 @@ impl MeshReport {
         self.triangles > 0 && self.boundary_edges.count == 0
     }
 
-    /// Returns `true` if the surface bounds a volume: each edge has exactly two triangles, whose
-    /// fronts are on the same side.
+    /// Returns `true` if the surface bounds a volume: it has triangles, and each edge has exactly
+    /// two triangles, whose fronts are on the same side.
     #[must_use]
     pub const fn is_solid(&self) -> bool {
         self.is_closed() && self.non_manifold_edges.count == 0 && self.inconsistent_edges.count == 0

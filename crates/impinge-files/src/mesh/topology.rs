@@ -4,7 +4,7 @@ use impinge::math::na::Vector3;
 
 use super::report::MeshReport;
 
-/// An edge of one triangle.
+/// One of the three sides of a triangle. Sides with the same `ends` form an edge of the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Side {
     /// The indices of the two vertices, the lower index first.

@@ -254,7 +254,7 @@ impl Tree {
 }
 
 impl Follows {
-    /// Returns the relation of a joint that mimics, by `mimic`, the joint to which `self` belongs.
+    /// Given the relation of one joint, returns that of another joint, which mimics it by `mimic`.
     /// Both follow the same joint.
     fn followed_by(&self, mimic: &Mimic) -> Self {
         let multiplier = mimic.multiplier.unwrap_or(1.0);

@@ -138,7 +138,8 @@ pub(crate) fn ply_binary(is_little: bool) -> Vec<u8> {
     bytes
 }
 
-/// Returns the bytes of the positions, followed by indices of 16 bits.
+/// Returns the binary data of the glTF files: the corners as `f32`, followed by the indices of the
+/// triangles as `u16`.
 pub(crate) fn gltf_buffer() -> Vec<u8> {
     let mut bytes: Vec<u8> = CORNERS.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
     let indices = triangles().into_iter().flatten();
@@ -193,7 +194,7 @@ pub(crate) fn gltf_sparse() -> String {
 
 fn base64(bytes: &[u8]) -> String {
     let digits = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    // The lengths are multiples of 3, so that no padding is needed.
+    // All inputs have a length that is a multiple of 3, so base64 needs no padding.
     let groups = bytes.chunks_exact(3).flat_map(|group| {
         let [a, b, c] = [group[0], group[1], group[2]].map(usize::from);
         [a >> 2, (a & 3) << 4 | b >> 4, (b & 15) << 2 | c >> 6, c & 63]

@@ -1,5 +1,5 @@
-//! Tests large files. To measure the time of reading a million triangles: `cargo test --release -p
-//! impinge-files large -- --ignored --nocapture`.
+//! Tests files with a thousand groups and with a million triangles. To measure the time of reading
+//! the latter: `cargo test --release -p impinge-files large -- --ignored --nocapture`.
 
 use std::fmt::Write;
 use std::time::Instant;

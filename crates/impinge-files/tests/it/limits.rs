@@ -7,7 +7,7 @@ use impinge_files::{Limit, Limits, MeshFile, Problem, ReadOptions, Scene, load, 
 
 use crate::cube::{glb_with, gltf_with, obj};
 
-/// Returns options with these limits.
+/// Returns the default options for reading, but with these limits.
 fn limited(limits: Limits) -> ReadOptions {
     ReadOptions::new().with_limits(limits)
 }

@@ -37,7 +37,8 @@ fn the_schema_is_that_of_the_types() {
     assert_eq!(written, SceneFile::schema(), "IMPINGE_BLESS=1 writes it anew");
 }
 
-/// The tests of the page validate the same scenes by the schema.
+/// Asserts that the loader refuses the scenes in `data/refused.json`. The tests of the page assert
+/// that the schema refuses the same scenes.
 #[test]
 fn scenes_that_the_schema_refuses_are_refused() {
     let refused: Vec<serde_json::Value> =

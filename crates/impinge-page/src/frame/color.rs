@@ -71,7 +71,8 @@ impl Look {
     }
 }
 
-/// Converts a colour to a word, whose bytes in memory are red, green, blue and alpha.
+/// Converts a colour to a word, whose bytes from the lowest to the highest are red, green, blue and
+/// alpha.
 pub(crate) const fn word(color: Color) -> u32 {
     let [red, green, blue] = color.rgb;
     u32::from_le_bytes([red, green, blue, color.alpha])

@@ -114,9 +114,9 @@ impl Buffers {
     }
 }
 
-/// Returns the centre of the AABB of the points if one of its coordinates exceeds 16 times the
-/// largest extent of the AABB, otherwise the origin. Beyond that limit `f32` would lose more than 4
-/// of its 24 bits.
+/// Returns the centre of the AABB of the points if the magnitude of one coordinate of this centre
+/// exceeds 16 times the largest extent of the AABB, otherwise the origin. Beyond that limit `f32`
+/// would lose more than 4 of its 24 bits.
 fn far_center(points: &[[f64; 3]]) -> [f64; 3] {
     let ends = |axis: usize| {
         let on_axis = points.iter().map(|point| point[axis]);

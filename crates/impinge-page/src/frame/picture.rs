@@ -153,7 +153,8 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
     }
 
     /// Returns a box for the camera: the box around the bounded objects. If there are none, the box
-    /// is centred at 0 with half the extent with which half-spaces are drawn.
+    /// is centred at 0, and its edges are half as long as those of the squares (in 2D the lines) by
+    /// which half-spaces are drawn.
     pub(crate) fn bounds<T>(&self, world: &CollisionWorld<N, D, T>) -> [[f64; 3]; 2] {
         if let Some(bounds) = bounds(world) {
             return [bounds.mins, bounds.maxs];
@@ -238,9 +239,9 @@ fn touching<N: Viewed<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) ->
     touching
 }
 
-/// Draws the boxes and contacts of the selected objects whose layers are invisible; visible layers
-/// contain them already. Meanwhile the visibility of all layers is inverted, and the drawing has
-/// the styles of all layers.
+/// Draws those boxes and contacts of the selected objects whose layers are invisible; the frame
+/// contains the others already. Meanwhile the visibility of all layers is inverted, and the drawing
+/// has the styles of all layers.
 fn draw_selected<N: Viewed<D>, const D: usize, T>(
     drawing: &mut DebugDrawing<N, D>,
     world: &CollisionWorld<N, D, T>,

@@ -21,7 +21,8 @@ impl<N: Space<D>, const D: usize> fmt::Debug for QueryPen<'_, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> QueryPen<'_, N, D> {
-    /// Draws a query and its results.
+    /// Draws a query, and the hits, projections or closest points of its result. Objects that a
+    /// query finds at a point, in a box or overlapping a shape are not marked.
     pub(crate) fn draw(&mut self, asked: &Asked<N, D>) {
         // All details of a query have the variant that belongs to the kind of the query.
         let details = asked.answer.iter().map(|found| &found.detail);

@@ -23,7 +23,7 @@ fn scene<N: Viewed<D>, const D: usize>() -> Vec<u8> {
     scene.finish()
 }
 
-/// Returns the x coordinate of the moving ball at a step.
+/// Returns the x coordinate of the moving ball after update `step`, counted from 1.
 fn x_at(step: usize) -> f64 {
     f64::from(u32::try_from(step).expect("a small step")) - 6.0
 }

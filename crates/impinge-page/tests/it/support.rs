@@ -34,7 +34,7 @@ impl Asker {
     }
 }
 
-/// A recorded world of objects without rotation.
+/// The recorder of a world whose objects are added without rotation.
 pub(crate) struct Scene<N: Recordable<D>, const D: usize>(pub(crate) Recorder<N, D, Vec<u8>>);
 
 impl<N: Recordable<D>, const D: usize> Scene<N, D> {
@@ -42,7 +42,7 @@ impl<N: Recordable<D>, const D: usize> Scene<N, D> {
         Self(Recorder::new(N::lit(0.0625), registry).expect("a usable margin"))
     }
 
-    /// Adds an object with these groups and a query for contacts.
+    /// Adds an object without rotation, with these groups and a contact query without prediction.
     pub(crate) fn add_in(
         &mut self,
         groups: CollisionGroups,
@@ -81,7 +81,7 @@ pub(crate) fn all<N: Recordable<D>, const D: usize>(component: f64) -> Vector<N,
     Vector::<N, D>::repeat(N::lit(component))
 }
 
-/// Returns the floating-point numbers of a section of a payload.
+/// Returns the 32-bit floats in a section of a payload.
 pub(crate) fn floats(section: &Value, payload: &[u8]) -> Vec<f32> {
     words(section, payload).into_iter().map(f32::from_bits).collect()
 }

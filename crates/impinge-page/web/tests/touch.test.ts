@@ -1,4 +1,4 @@
-// Tests of the page on a touch screen: taps, drags and pinches, with the engine of boxes instead of the module.
+// Tests of the page on a touch screen: taps, drags and pinches, with the engine of `fake.ts` instead of the real one.
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";

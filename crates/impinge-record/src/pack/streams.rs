@@ -133,12 +133,13 @@ impl Inflated {
         value.map_err(|error| ReadError { offset: *offset, ..error })
     }
 
-    /// Returns an error with the offset of a stream.
+    /// Returns an error with the offset of the stream's compressed bytes; 0 if there is no such
+    /// stream.
     pub(super) fn error(&self, stream: usize, problem: Problem) -> ReadError {
         ReadError { offset: self.streams.get(stream).map_or(0, |stream| stream.offset), problem }
     }
 
-    /// Returns `true` if all bytes of the stream were read.
+    /// Returns `true` if all bytes of the stream were read, or if there is no such stream.
     pub(super) fn is_read(&self, stream: usize) -> bool {
         self.streams.get(stream).is_none_or(|stream| stream.at == stream.bytes.len())
     }

@@ -1,4 +1,4 @@
-//! Predicts the pose of one object.
+//! Predicts the next pose of one object from its last poses.
 
 use std::array;
 
@@ -55,8 +55,8 @@ impl Track {
         [*same, first, second, third]
     }
 
-    /// Returns three extrapolations: with the last step, with the last step and its change, and
-    /// with the mean of the last four steps.
+    /// Returns three extrapolations of the last pose: by the last step, by the last step plus its
+    /// change since the step before, and by the mean of the last four steps.
     fn extrapolated(&self, layout: &Layout) -> [Numbers; CANDIDATES - 1] {
         let [now, before, earlier, _, earliest] = &self.history;
         let mut again: Numbers = array::from_fn(|i| now[i] + (now[i] - before[i]));
@@ -86,7 +86,7 @@ impl Track {
     }
 
     /// Stores a pose and updates the costs of the candidates. A placed object that has another pose
-    /// than the last one starts a new history.
+    /// than the last one starts a new history; with the same pose nothing changes.
     pub(super) fn learn(
         &mut self,
         layout: &Layout,

@@ -61,7 +61,8 @@ fn every_flipped_byte_is_an_error() {
     }
 }
 
-/// Changed bytes with correct checksums give an error, another world, or an equal world.
+/// Asserts that a recording with a changed byte and correct checksums causes no panic: it gives an
+/// error with an offset in the bytes, a divergence, or an equal world.
 #[test]
 fn every_flipped_byte_with_right_checksums() {
     let bytes = small();
@@ -127,13 +128,14 @@ fn other_versions_scalars_and_dimensions() {
 #[test]
 fn a_length_beyond_the_end_is_refused_before_memory_is_taken() {
     let mut bytes = small();
-    // The length of the name of the writer.
+    // Overwrites the length of the writer's name in the header.
     bytes[12..16].copy_from_slice(&u32::MAX.to_le_bytes());
     let error = outcome(&bytes).expect_err("four gigabytes of name");
     assert_eq!(error, ReadError { offset: 12, problem: Problem::Truncated });
 }
 
-/// A recording with another position is reported with its first differing step and object.
+/// Asserts that a recording with a changed position is reported as a divergence, with the first
+/// step and object that differ.
 #[test]
 fn a_divergence_names_the_object() {
     let bytes = small();

@@ -9,8 +9,8 @@ use impinge_record::{Problem, Recorder, Replay, pack, unpack, validate};
 
 use crate::scene::{Stage, words};
 
-/// Returns the recording of balls that move through each other, with every call and with optional
-/// key frames.
+/// Returns the recording of balls that move through each other, with every call for physics
+/// engines. If `key_frames` is not `None`, it is the number of updates between key frames.
 pub(crate) fn written<N: Stage<D>, const D: usize>(key_frames: Option<u64>) -> Vec<u8> {
     play::<N, D>(key_frames).0
 }
@@ -103,7 +103,7 @@ fn calls_of_engines_in_3d() {
     check::<f64, 3>();
 }
 
-/// A record with the index of an unknown object is an error.
+/// Asserts that a record with the index of an unknown object is an error.
 #[test]
 fn calls_about_nobody_are_errors() {
     let bytes = written::<f32, 2>(None);

@@ -102,8 +102,8 @@ fn golden_in_3d() {
     check_engine::<f64, 3>("engine3.rec");
 }
 
-/// Records a ball that rotates, falls and is placed again, so that each candidate of packing is the
-/// best one in some steps.
+/// Records a ball that rotates, falls and is placed again, so that each of the ways in which
+/// packing predicts a pose is the best one in some steps.
 fn turning() -> Vec<u8> {
     let recorder = Recorder::<f32, 3, u32>::new(0.02, Registry::new());
     let every = NonZeroU64::new(10).expect("not zero");

@@ -98,7 +98,8 @@ fn a_flipped_byte_is_where_the_salvaged_recording_ends() {
 
 type Balls = Recorder<f64, 2, u32>;
 
-/// Records two balls of radius 1 at a distance of 1.5, and a third ball near them.
+/// Records one update of two balls of radius 1 whose centres are 1.5 apart, and of a third ball
+/// beside them, a sensor with the margin 1.
 fn balls() -> Result<Balls, impinge_record::RecordError> {
     let mut recorder = Balls::new(0.02, Registry::new())?;
     let (ball, groups) = (ShapeHandle::new(Ball::new(1.0)), CollisionGroups::new());
@@ -165,8 +166,9 @@ fn a_changed_world_is_undone_by_the_next_seek() -> Result<(), impinge_record::Re
     Ok(())
 }
 
-/// Deforms a long polyline with balls on it at each step. In the recorded world the search tree of
-/// the polyline is refitted; in the replay it is built anew.
+/// Asserts that the replay of a long polyline, which is deformed at each step under balls, has the
+/// recorded bits. In the recorded world the search tree of the polyline is refitted; in the replay
+/// it is built anew.
 #[test]
 fn deformed_shapes_have_the_same_bits() -> Result<(), impinge_record::RecordError> {
     let mut recorder = balls()?;

@@ -61,8 +61,8 @@ fn a_recording_without_its_end() {
     assert_eq!(cut.problem, Problem::Truncated);
 }
 
-/// Packs poses with bits that no computation returns: NaN with a payload, infinities, subnormal
-/// numbers.
+/// Asserts that packing and unpacking keep poses with bits that no computation returns: NaN with a
+/// payload, infinities, subnormal numbers.
 #[test]
 fn any_bits_of_positions() {
     let mut recorder = Recorder::<f32, 3, u32>::new(0.02, Registry::new()).expect("usable");

@@ -28,8 +28,8 @@ fn filled<N: Stage<D>, const D: usize>() -> Scene<N, D> {
     scene
 }
 
-/// Seeks steps forwards and backwards, near and far. `before` is the number of updates before the
-/// first text.
+/// Seeks steps forwards and backwards, near and far. Asserts that the replay has the recorded text
+/// after each and reports no divergence. `before` is the number of updates before the first text.
 fn check<N: Stage<D>, const D: usize>(played: &Played, before: usize) {
     let registry = N::registry();
     assert_eq!(validate::<N, D, u32>(&played.bytes, &registry), Ok(None), "the same bits");

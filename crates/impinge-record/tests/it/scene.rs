@@ -119,7 +119,7 @@ pub(crate) fn shapes<N: Stage<D>, const D: usize>() -> Vec<ShapeHandle<N, D>> {
     all
 }
 
-/// The recorder of a scene, its objects, and the shapes for them.
+/// A recorder with the handles of its present objects, and the shapes from which objects are made.
 pub(crate) struct Scene<N: Stage<D>, const D: usize> {
     pub(crate) recorder: Recorder<N, D, u32>,
     handles: Vec<CollisionObjectHandle>,
@@ -146,7 +146,7 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         self
     }
 
-    /// Adds one object of each shape, in a heap.
+    /// Adds one object of each shape, in rows of four in which neighbours overlap.
     pub(crate) fn fill(&mut self) -> Result<(), RecordError> {
         for (shape, id) in self.shapes.clone().into_iter().zip(0_u32..) {
             let at = N::placed(f64::from(id % 4) * 1.25, f64::from(id / 4));
@@ -160,7 +160,8 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         Ok(())
     }
 
-    /// Makes the calls of a step, which differ from step to step, and updates.
+    /// Moves a third of the objects, makes the other calls of step `step`, of which there are eight
+    /// sets in turn, and updates.
     pub(crate) fn step(&mut self, step: u32) -> Result<(), RecordError> {
         let moved =
             self.handles.iter().zip(0_u32..).filter(|(_, id)| (id + step).is_multiple_of(3));
@@ -182,7 +183,7 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         Ok(())
     }
 
-    /// Removes two objects and adds one.
+    /// Removes two objects and adds a ball.
     fn replace(&mut self) -> Result<(), RecordError> {
         let gone: Vec<_> = self.handles.drain(1..3).collect();
         self.recorder.remove(&gone)?;

@@ -50,10 +50,12 @@ pub fn ray_cast<const D: usize>(
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cast {
     /// The first time at which the signed distance is at most zero; zero if it is at most zero at
-    /// the start, `None` if it stays positive up to `max_time`.
+    /// the start, `None` if it stays positive up to `max_time`. A near pass counts as zero, within
+    /// the tolerance of [`linear_cast`].
     pub time_of_impact: Option<f64>,
-    /// The least signed distance on the path. If it is near zero, the solids only graze, and
-    /// rounding may decide between hit and miss.
+    /// The least signed distance on the path; for solids that touch or overlap at the start, the
+    /// distance there. If it is near zero, the solids only graze, and rounding may decide between
+    /// hit and miss.
     pub least_distance: f64,
 }
 
@@ -100,7 +102,8 @@ struct Descent {
     /// The first argument at which the function is at most zero; `None` if there is none. See
     /// [`Self::of`] for functions that only touch zero.
     first: Option<f64>,
-    /// The minimum value of the function.
+    /// The minimum value of the function. If the function is at most zero at the argument zero, or
+    /// if the interval is empty, its value there.
     least: f64,
 }
 

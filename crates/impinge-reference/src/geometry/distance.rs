@@ -317,8 +317,8 @@ mod tests {
         );
     }
 
-    /// The search over the sphere and the enumeration of features share no code: their results must
-    /// agree.
+    /// Asserts that the search over the sphere agrees with the enumeration of features, with which
+    /// it shares no code, for random hulls.
     #[test]
     fn search_agrees_with_enumeration() {
         let mut random = Random::new(7);
@@ -340,7 +340,8 @@ mod tests {
         assert!((15..=45).contains(&hits), "hits {hits}");
     }
 
-    /// Covers needles, plates, flat boxes, nearly parallel edges, and contact up to rounding.
+    /// Asserts that the search over the sphere agrees with the enumeration of features for needles,
+    /// plates, flat boxes, nearly parallel edges, and contact up to rounding.
     #[test]
     fn search_agrees_on_degenerate_boxes() {
         let mut random = Random::new(13);

@@ -41,8 +41,9 @@ impl<const D: usize> PointMeter<D> {
     }
 
     /// Returns the signed distance of a local point, negative inside, and a unit direction.
-    /// Outside, the direction leads from the solid to the point; inside, along the shortest way
-    /// out. On an edge or vertex, or if several ways out are equally short, it is one of several.
+    /// Outside, it leads from the solid to the point; inside, along the shortest way out. If the
+    /// point is on an edge or vertex, or several ways out are equally short, one of the possible
+    /// directions is returned.
     #[must_use]
     pub fn measure(&self, point: &[f64; D]) -> (f64, [f64; D]) {
         let (distance, normal) = match &self.core {

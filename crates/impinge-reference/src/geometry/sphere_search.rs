@@ -139,7 +139,8 @@ impl Search<'_> {
     }
 }
 
-/// Returns the distance from the origin of the plane through three unit vectors.
+/// Returns the distance from the origin of the plane through three unit vectors; 1 if they do not
+/// span a plane.
 fn flatness([a, b, c]: &[Vector; 3]) -> f64 {
     unit(&perpendicular(&[sub(b, a), sub(c, a)])).map_or(1.0, |normal| dot(&normal, a).abs())
 }
@@ -233,8 +234,8 @@ mod tests {
 
     #[test]
     fn the_game_by_hand() {
-        // Mixing the two columns equally makes the first two rows equal; the third column is never
-        // used.
+        // Equal weights of the first two columns make the first two rows equal; the third column
+        // gets no weight.
         let (value, weights) = game_value(&[[1.0, -1.0, 9.0], [-1.0, 1.0, 9.0], [-5.0, -5.0, 9.0]]);
         assert_eq!((value, weights), (0.0, [0.5, 0.5, 0.0]));
         let (value, _) = game_value(&[[3.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 3.0]]);

@@ -1,13 +1,14 @@
 //! Refines an approximate normal to all digits by Newton's method.
 //!
-//! Let `s` be the extent along n of a part of the first solid, and `t` the least height of a part
-//! of the second. At the best normal some parts are active: their extents are equal and extreme. A
-//! combination of their support points, `x = Σ w b − Σ u a` with weights that are not negative and
-//! sum to one for each solid, is then a multiple of n. This x is the projection of the origin onto
-//! the supporting plane of the difference. There are as many equations as unknowns: n, the weights
-//! and the multiple. Newton's method solves them with second derivatives in closed form. The active
-//! parts are chosen by their heights along the start normal, and each choice is rated by its final
-//! height.
+//! The separation along a normal n is the least height of the parts of the second solid, minus the
+//! largest extent of the parts of the first. At the best normal some parts of each solid are
+//! active: they attain this least height or largest extent together. Let a and b be the support
+//! points of the active parts of the first and the second solid. A combination `x = Σ w b − Σ u a`,
+//! with weights that are not negative and sum to one for each solid, is then a multiple of n. This
+//! x is the projection of the origin onto the supporting plane of the difference. There are as many
+//! equations as unknowns: n, the weights and the multiple. Newton's method solves them with second
+//! derivatives in closed form. The active parts are chosen by their heights along the start normal,
+//! and each choice is rated by its final height.
 
 use super::linear::solve;
 use super::number::Quad;

@@ -11,7 +11,8 @@ pub(super) struct Bracket<const D: usize> {
     pub(super) normal: [f64; D],
 }
 
-/// The input of a search: `lowest` maps a unit vector to the lowest point of the difference.
+/// The input of a search. `lowest` maps a unit vector to the point of the Minkowski difference with
+/// the least height along this vector.
 pub(super) struct Task<'a, const D: usize> {
     pub(super) lowest: &'a dyn Fn(&[f64; D]) -> [f64; D],
     /// The size of the pair, a length.

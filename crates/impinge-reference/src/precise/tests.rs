@@ -155,7 +155,8 @@ fn ellipsoids_apart_are_proven() {
     ellipsoids_across::<2>(&mut random, |random, at| Pose::from_complex(at, random.unit_vector()));
 }
 
-/// Measures balls as points with a radius and as ellipsoids, which use different code.
+/// Asserts that a ball has the same distance from a box if it is a point with a radius and if it is
+/// an ellipsoid, which use different code.
 #[test]
 fn two_ways_to_say_ball() {
     let mut random = Random::new(7);

@@ -121,7 +121,7 @@ impl<const D: usize> Shape<D> for Union<D> {
 mod tests {
     use super::*;
 
-    /// Returns two unit boxes side by side with a gap of two.
+    /// Returns two squares of edge 2 side by side, with a gap of 2 between them.
     fn pair_of_boxes() -> Union<2> {
         let at = |x: f64| (Pose::at([x, 0.0]), Solid::cuboid([1.0, 1.0]));
         Union { parts: vec![at(-2.0), at(2.0)] }

@@ -153,8 +153,8 @@ fn queries_see_changes_at_once() {
     assert_eq!(world.interferences_with_point(&[5.25, 0.0], all), [b]);
 }
 
-/// In random histories, `Started` and `Stopped` alternate for each pair, and each proximity event
-/// begins with the status at which the last one ended.
+/// Asserts that in random histories `Started` and `Stopped` alternate for each pair, and that each
+/// proximity event begins with the status at which the pair's previous one ended.
 #[test]
 fn events_of_random_histories_are_coherent() {
     let mut random = Random::new(5);

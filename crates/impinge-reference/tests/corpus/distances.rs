@@ -1,4 +1,4 @@
-//! Signed distances, rays and points.
+//! Compares signed distances, ray casts and point queries of the reference with the corpus.
 
 use crate::read::{ReadPose, cases, number, numbers, read, solid};
 use impinge_reference::geometry::vector::{norm, sub};

@@ -6,7 +6,7 @@ use impinge_reference::world::{ContactEvent, Groups, Handle, NaiveWorld, QueryTy
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// A world, and the handles of the names in the script.
+/// A naive world, and the handle of each name in the script.
 struct Stage<const D: usize> {
     world: NaiveWorld<D>,
     handles: BTreeMap<String, Handle>,
@@ -128,7 +128,8 @@ fn shape<const D: usize>(step: &Value) -> Solid<D> {
     solid(&step["shape"]).expect("a known shape").0
 }
 
-/// Reads groups: the filter of the corpus becomes the whitelist.
+/// Reads the collision groups of a step: the mask `filter` becomes the whitelist. A missing mask
+/// keeps its default.
 fn groups(step: &Value) -> Groups {
     let mask = |key: &str| step[key].as_u64().map(|mask| u32::try_from(mask).expect("a mask"));
     let all = Groups::new();

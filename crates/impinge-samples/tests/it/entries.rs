@@ -52,7 +52,8 @@ where
     assert_eq!(drawn(running).broken, 0, "{} draws what is finite", entry.name);
 }
 
-/// Returns `true` if the property that the entry claims is visible now.
+/// Returns `true` if the world of a sample now has the property that its entry claims: a contact,
+/// an intersection event or a drawn line.
 fn is_shown<const D: usize>(entry: &Entry, running: &Running<D>) -> bool
 where
     f32: Stage<D>,

@@ -25,7 +25,7 @@ pub fn few_asteroids_moving<const D: usize>(count: usize) -> Scene<D> {
     Scene { name: "1 % of asteroids moving", ..scene }
 }
 
-/// The edge of the cube of space per asteroid: six times a medium radius.
+/// The edge of a cube with the volume per asteroid: about 6.4 times the mean radius.
 const SPACING: f64 = 6.0;
 
 fn floating<const D: usize>(edge: f64, random: &mut Random) -> SceneObject<D> {
@@ -57,7 +57,7 @@ pub(super) fn rock<const D: usize>(
     points.collect()
 }
 
-/// Returns the `n`-th direction along an axis, of either sign.
+/// Returns the `n`-th of the unit vectors along the axes, in the order +x, −x, +y and so on.
 fn tip<const D: usize>(n: usize) -> [f64; D] {
     let mut tip = [0.0; D];
     tip[n / 2] = if n.is_multiple_of(2) { 1.0 } else { -1.0 };

@@ -20,7 +20,7 @@ pub fn sparse_drift<const D: usize>(count: usize) -> Scene<D> {
 ///
 /// Two axis-aligned boxes overlap if their centres differ along each axis by at most the sum of
 /// their half extents. This sum is 1 on average without rotation, and grows with the number of axes
-/// of rotation. The constant was found by counting, not derived.
+/// of rotation. The constant 0.28 was found by counting overlaps, not derived.
 fn space_per_box<const D: usize>() -> f64 {
     let width = 2.0 + 0.28 * D as f64;
     (0..D).fold(1.0 / 3.0, |space, _| space * width)
@@ -80,8 +80,8 @@ pub fn spawn_and_despawn<const D: usize>(count: usize) -> Scene<D> {
     let churn = count.div_ceil(100);
     let mut objects = Vec::new();
     for death in 1..life + steps {
-        // Boxes that are removed before step 100 are alive at step 0. Each later generation lives
-        // one step longer.
+        // The boxes that are removed at steps 1 to 100 are alive from step 0. Each later box lives
+        // for 100 steps.
         let alive = death.saturating_sub(life)..death;
         let born = || SceneObject { alive: alive.clone(), ..drifting::<D>(edge, random) };
         objects.extend(std::iter::repeat_with(born).take(churn));

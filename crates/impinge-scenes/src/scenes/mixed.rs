@@ -5,9 +5,9 @@ use super::pile::{axis, edge};
 use crate::random::Random;
 use crate::{Motion, Scene, SceneObject, SceneQuery, SceneShape, Wave, rounded};
 
-/// A plane and `count` solids of size 1, equally many of each kind of shape that exists in `D`
-/// dimensions, all moving and rotating. Every seventh has a proximity query, the others query
-/// contacts.
+/// A plane and `count` shapes of about size 1, equally many of each kind: balls, boxes, capsules,
+/// segments, triangles and convex solids, in 3D also cylinders and cones. All but the plane move
+/// and rotate. Every seventh has a proximity query, the others query contacts.
 #[must_use]
 pub fn mixed_shapes<const D: usize>(count: usize) -> Scene<D> {
     let random = &mut Random::new(5);
@@ -59,7 +59,7 @@ fn shape_of_kind<const D: usize>(kind: usize, random: &mut Random) -> SceneShape
     }
 }
 
-/// Returns a random point at a distance from the origin.
+/// Returns a random point at the given distance from the origin.
 fn corner<const D: usize>(distance: f64, random: &mut Random) -> [f64; D] {
     random.direction::<D>().map(|x| rounded(x * distance))
 }

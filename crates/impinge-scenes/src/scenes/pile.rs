@@ -5,8 +5,8 @@ use crate::random::{Random, root};
 use crate::{Motion, Scene, SceneObject, SceneQuery, SceneShape, Wave, rounded};
 
 /// Boxes of half extents 0.55 on a grid of spacing 1, which shake and rotate slightly at every
-/// step. Each overlaps all neighbours, diagonal ones included: 8 in 2D, 26 in 3D. 10 000 boxes in
-/// 3D make about 117 000 touching pairs.
+/// step. Each overlaps all its neighbours, diagonal ones included: 8 in 2D and 26 in 3D, fewer at
+/// the border. 10 000 boxes in 3D make about 117 000 touching pairs.
 ///
 /// The shaking is at most 0.02 along each axis, and 2·atan(0.01) in angle, so that no pair ever
 /// separates: a corner moves by 0.02 + 0.02 · √3 · 0.55 < 0.04 along an axis, and boxes overlap by
@@ -69,7 +69,7 @@ fn shaking<const D: usize>(at: [f64; D], random: &mut Random) -> SceneObject<D> 
     SceneObject::new(shape, NEAR_CONTACTS, motion)
 }
 
-/// Returns a random speed between `low` and `high`, of either sign.
+/// Returns a random speed of either sign, whose magnitude is between `low` and `high`.
 pub(super) fn signed_speed(random: &mut Random, low: f64, high: f64) -> f64 {
     let speed = random.between(low, high);
     if random.below(2) == 0 { speed } else { -speed }

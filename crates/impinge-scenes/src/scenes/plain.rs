@@ -60,8 +60,9 @@ struct Slider {
 }
 
 impl Slider {
-    /// Returns the width of the field per solid: the sum of the diagonal of the solid, the distance
-    /// over which it slides, and two cells.
+    /// Returns the width of the field per solid, with which no two solids meet: three times `half`,
+    /// which is more than the diagonal of the solid seen from above, the distance over which it
+    /// slides, and two cells.
     fn lot(&self) -> f64 {
         2.0 * (1.5 * self.half + WAY + CELL)
     }

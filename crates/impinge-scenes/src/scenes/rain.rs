@@ -6,9 +6,10 @@ use super::{MARGIN, NEAR_CONTACTS};
 use crate::random::Random;
 use crate::{Motion, Scene, SceneObject, Wave};
 
-/// The height above the terrain from which solids fall.
+/// The distance between the lowest and the highest position of a solid.
 const HEIGHT: f64 = 12.0;
-/// The depth to which a solid penetrates the terrain before it rises again.
+/// The depth to which a solid penetrates level terrain, if it is not rotated, before it rises
+/// again.
 const DIP: f64 = 0.1;
 
 /// `count` balls, boxes, capsules and convex solids of size 1, equally many of each. They fall from
@@ -30,7 +31,7 @@ pub fn rain<const D: usize>(count: usize) -> Scene<D> {
 fn falling<const D: usize>(kind: usize, ground: &Ground<D>, random: &mut Random) -> SceneObject<D> {
     let shape = solid(kind, random);
     let at = ground.somewhere(random);
-    // The height of the centre above the terrain at which the solid, without rotation, touches it.
+    // The height of the centre of the solid, without rotation, above level ground that it touches.
     let resting = shape.aabb(&crate::Placement::at(at)).map_or(0.0, |(low, _)| at[1] - low[1]);
     let lowest = at[1] + resting - DIP;
     let place = std::array::from_fn(|i| {

@@ -34,8 +34,8 @@ fn trembling<const D: usize>(motion: &Motion<D>, reach: f64, random: &mut Random
     Motion { place, axis, tangent }
 }
 
-/// Returns a wave whose speed is about its width per step. Its values are a folded Weyl sequence:
-/// evenly distributed between the bounds, and different for each object.
+/// Returns a wave whose speed per step is 0.4 to 1.6 times its width. Its values are a folded Weyl
+/// sequence: evenly distributed between the bounds, and different for each object.
 fn hopping(at: f64, reach: f64, random: &mut Random) -> Wave {
     let (low, high) = (at - reach, at + reach);
     Wave::new((low, high), at, reach * random.between(0.8, 3.2))

@@ -67,8 +67,8 @@ fn stone<const D: usize>(radius: f64, random: &mut Random) -> Vec<[f64; D]> {
     points
 }
 
-/// Returns an object whose axis-aligned box stands on the terrain when the object is in the middle
-/// of its path.
+/// Returns an object whose axis-aligned box stands on the terrain when the object has its rotation
+/// of step 0 and is in the middle of its path.
 fn standing<const D: usize>(
     shape: SceneShape<D>,
     ground: &Ground<D>,
@@ -102,7 +102,7 @@ impl<const D: usize> Ground<D> {
         let counts = if D < 3 {
             [1, 10 * count.max(1) + 1]
         } else {
-            // 50 cells of two triangles per object. `root` rounds down by less than a cell.
+            // 50 cells of two triangles per object, rounded up to a square of cells.
             let side = root::<2>(50.0 * count.max(1) as f64).ceil();
             let vertices = (1_usize..).find(|n| *n as f64 > side).unwrap_or(2);
             [vertices; 2]

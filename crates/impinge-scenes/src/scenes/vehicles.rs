@@ -84,8 +84,8 @@ fn vehicle<const D: usize>(kind: usize, random: &mut Random) -> SceneShape<D> {
     }
 }
 
-/// Returns the corners of a box of these half extents, of which the upper ones are moved inwards by
-/// a tenth to a third.
+/// Returns the corners of a box of these half extents. The horizontal coordinates of the upper
+/// corners are reduced by a tenth to a third, so that the top is narrower than the underside.
 pub(super) fn body<const D: usize>(half: [f64; 3], random: &mut Random) -> Vec<[f64; D]> {
     let corners = (0..1_usize << D).map(|corner| {
         let is_upper = |axis: usize| corner >> axis & 1 == 1;

@@ -19,8 +19,7 @@ pub(crate) fn spun(at: [f64; 3], tangent: f64) -> Placement<3> {
     turned(at, [0.0, 1.0, 0.0], tangent)
 }
 
-/// Returns the tangent of half of `n` times the angle, given the tangent of half the angle
-/// (addition theorem).
+/// Returns `tan(n a / 2)` for `tangent = tan(a / 2)`, by the addition theorem of the tangent.
 pub(crate) fn times(tangent: f64, n: usize) -> f64 {
     (0..n).fold(0.0, |sum, _| (sum + tangent) / (1.0 - sum * tangent))
 }
@@ -105,8 +104,8 @@ pub(crate) fn dodecahedron() -> SceneShape<3> {
 }
 
 /// Returns a hull with a flat top and a flat bottom at the heights ±0.4, each of `sides` random
-/// corners. The other corners are random points of a sphere of radius 0.6; those with a height
-/// above 0.35 are moved towards the middle.
+/// corners. The other corners are random points of a sphere of radius 0.6; if a height exceeds 0.35
+/// in magnitude, it is multiplied by 0.35.
 pub(crate) fn flat_hull(random: &mut Random, sides: usize) -> SceneShape<3> {
     let mut points = Vec::new();
     for height in [-0.4, 0.4] {

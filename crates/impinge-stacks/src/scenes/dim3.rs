@@ -136,7 +136,8 @@ fn table() -> Stack<3> {
     stack.item(table).with(cube(), spun([0.2, 1.7, 0.1], TURN_03))
 }
 
-/// A long box on a table, whose centre of mass is a twentieth of the box's length behind the edge.
+/// A long box on a table. The centre of mass of the box is behind the table's edge, by a twentieth
+/// of the length of the box.
 fn over_an_edge() -> Stack<3> {
     let stack = Stack::new("box over an edge", Kind::Rest);
     let stack = stack.fixed(SceneShape::Cuboid { half_extents: [1.0, 0.5, 1.0] }, [0.0, 0.5, 0.0]);

@@ -17,7 +17,7 @@ fn classes(document: &Document<'_>) -> Vec<String> {
     groups.filter_map(|group| group.attribute("class").map(str::to_owned)).collect()
 }
 
-/// Returns all coordinates of an element's path.
+/// Returns all coordinates of an SVG path element, x and y in turn.
 fn numbers(path: &Node<'_, '_>) -> Vec<f64> {
     let data = path.attribute("d").unwrap_or_default();
     let words = data.split(['M', 'L', 'Z', ' ']).filter(|word| !word.is_empty());

@@ -279,12 +279,12 @@ pub struct HitColumns<'a, N: Real, const D: usize> {
     /// The time `t` of the hit, at the point `origin + t * direction` of the ray; infinite without
     /// a hit.
     pub time: &'a mut [N],
-    /// The outward unit normal of the shape at the hit, in the world frame; zero if the shape is
+    /// The outward unit normal of the shape at the hit, in the world frame; zero if shapes count as
     /// solid and the ray starts inside, NaN without a hit.
     pub normal: &'a mut [[N; D]],
     /// The index of the composite's part that is hit; 0 for a convex solid.
     pub part: &'a mut [u32],
-    /// The feature that contains the hit, on the part that is hit.
+    /// The feature of the hit part that contains the point of the hit.
     pub feature: &'a mut [FeatureId],
 }
 

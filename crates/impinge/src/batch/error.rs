@@ -1,4 +1,4 @@
-//! Errors of a batch.
+//! Errors of batches: invalid input, and cancellation.
 
 use core::fmt;
 

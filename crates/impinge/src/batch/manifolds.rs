@@ -91,7 +91,8 @@ fn kinds_of<N: Real, const D: usize>(solids: &[Solid<N, D>; 2]) -> [ShapeKind; 2
 
 /// A pair whose bounds leave open whether it is within the prediction, and its contacts.
 struct PairManifolds<'a, N: Real, const D: usize> {
-    /// Both solids with their poses, in canonical order.
+    /// Both solids with their poses, in the canonical order of
+    /// [`canonical`](crate::collide::canonical).
     placed: [Placed<'a, N, D>; 2],
     /// Whether the canonical order is the reverse of the caller's order.
     is_swapped: bool,

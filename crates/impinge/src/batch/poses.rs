@@ -1,4 +1,4 @@
-//! The poses of a batch.
+//! The poses of the elements of a batch, and the traits by which a program provides them.
 
 use core::ops::Range;
 

@@ -1,4 +1,4 @@
-//! Contact points of many pairs, as rows.
+//! The contact points of many pairs in columns, with the range of each pair.
 
 use core::ops::Range;
 
@@ -37,7 +37,7 @@ use crate::shape::FeatureId;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ManifoldRows<N: Real, const D: usize> {
-    /// The first slot of each pair, followed by the number of points.
+    /// The offset of the first slot of each pair, followed by the total number of points.
     pub starts: Vec<usize>,
     /// For each point, the index of its manifold among the manifolds of its pair.
     pub manifold: Vec<u32>,

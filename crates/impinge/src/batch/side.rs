@@ -125,7 +125,7 @@ impl<'a, N: Real, const D: usize> Side<'a, N, D> {
         self.len == 0
     }
 
-    /// Returns the first element for a single query, without building a [`PreparedSide`].
+    /// Returns element 0, for a side of a single element, without building a [`PreparedSide`].
     #[inline]
     pub(super) fn alone(&self) -> Element<'a, 'a, N, D> {
         Element { poses: self.poses, only: None, shape: self.shapes.at(0).geometry(), pose: 0 }
@@ -242,7 +242,7 @@ impl<'a, N: Space<D>, const D: usize> PreparedSide<'a, N, D> {
     }
 }
 
-/// The placed elements of a side, by index.
+/// Placed elements of a side, in the order in which they were added.
 pub(super) struct PlacedSide<'a, N: Real, const D: usize> {
     /// A shape for each element, or one for all.
     shapes: Vec<Geometry<'a, N, D>>,

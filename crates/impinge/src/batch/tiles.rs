@@ -346,9 +346,9 @@ fn halves<N: Real, const D: usize>(bounds: &Aabb<N, D>, cut: &TileCut<N>) -> [Aa
     [Aabb::new(*bounds.mins(), below), Aabb::new(above, *bounds.maxs())]
 }
 
-/// Cost of a cut, compared lexicographically: first the greater number of objects per tile of the
-/// two sides, times a factor common to all cuts; then the number of objects below plus the number
-/// above, which counts an object on both sides twice.
+/// Cost of a cut, compared lexicographically: first the number of objects per tile on the side
+/// where it is greater, times a factor common to all cuts; then the number of objects below plus
+/// the number above, which counts an object on both sides twice.
 type CutLoad = (u64, usize);
 
 /// Returns the cut with the least cost. If [`Faces::even_cuts`] yields no candidate on any axis,
@@ -393,8 +393,9 @@ impl<N: Real> Faces<N> {
     }
 
     /// Returns up to four candidate positions: the lower bound of the region, the first lower face
-    /// inside the region, and the two lower faces next to the balanced position. A cut at the lower
-    /// bound makes the region below it empty, which is best if all boxes overlap.
+    /// inside the region, and the two lower faces next to the position at which both sides have
+    /// equally many objects per tile. A cut at the lower bound makes the region below it empty,
+    /// which is best if all boxes overlap.
     fn even_cuts(&self, [low, high]: [N; 2], tiles: u32) -> impl Iterator<Item = N> {
         let begin = self.lows.partition_point(|&face| face <= low);
         let inside = &self.lows[begin..];

@@ -1,4 +1,5 @@
-//! All near pairs of two sets of placed shapes.
+//! All pairs of two sets of placed shapes, or of one set with itself, that are at most a distance
+//! apart.
 //!
 //! A tree is built over the boxes of one set. For each element of the other set, the tree is
 //! searched with the element's box, grown by the distance. For each pair whose boxes overlap,

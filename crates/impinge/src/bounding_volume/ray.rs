@@ -1,4 +1,4 @@
-//! Rays: the arguments of ray casts.
+//! Rays, along which ray casts search for the first hit.
 
 use crate::math::{Point, Pose, Real, Vector};
 

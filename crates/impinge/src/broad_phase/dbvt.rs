@@ -48,20 +48,20 @@ impl<N: Space<D>, const D: usize> TreeVolume<N> for Aabb<N, D> {
 /// The default broad phase: two dynamic trees over bounding volumes loosened by a margin, one of
 /// moving and one of still objects.
 ///
-/// An object changes a tree only when its exact volume leaves its loosened volume, or when it comes
-/// to rest. So objects that move slowly or jitter cost almost nothing. The first update of a new
-/// object loosens its volume too. Two objects are a pair if their loosened volumes overlap. The
-/// searches `interferences_with_*`, `visit_ray`, `visit_nearest` and `visit_cast` test exact
-/// volumes; `visit_*_roughly` test loosened volumes only.
+/// An object changes a tree only at its first update, when its exact volume leaves its loosened
+/// volume, and when it comes to rest. So objects that move slowly or jitter cost almost nothing.
+/// Two objects are a pair if their loosened volumes overlap. The searches `interferences_with_*`,
+/// `visit_ray`, `visit_nearest` and `visit_cast` test exact volumes; `visit_*_roughly` test
+/// loosened volumes only.
 ///
 /// Loosened volumes are stored as `f32`, rounded outwards, even for `f64`, so no pair is missed. An
 /// object is treated as unbounded if a face of its loosened volume is beyond the range of `f32`.
 /// Each unbounded object is tested against every object that changes, so there should be few of
 /// them.
 ///
-/// An update costs O(changed · log n) with temporal coherence. A still object without pairs takes
-/// about 60 bytes in addition to its exact volume, its loosened volume and its data. [`PairFinder`]
-/// describes the layout.
+/// An update costs O(changed · log n) if objects move little between two updates. A still object
+/// without pairs takes about 60 bytes in addition to its exact volume, its loosened volume and its
+/// data. [`PairFinder`] describes the layout.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::Aabb;

@@ -1,5 +1,5 @@
-//! Stores the exact boxes of moved objects, and finds the objects whose exact box leaves the
-//! loosened box.
+//! The first step of an update: stores the exact boxes of moved objects, and finds the objects
+//! whose exact box leaves the loosened box.
 
 use super::finder::{Container, Waiting};
 use crate::bounding_volume::Aabb;

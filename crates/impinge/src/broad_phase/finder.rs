@@ -1,5 +1,5 @@
-//! The broad phase without users' data. It receives ids and boxes, and reports pairs that start or
-//! stop.
+//! The broad phase without users' data. It receives ids and boxes, and reports the pairs of ids
+//! that start or stop.
 
 use core::fmt;
 
@@ -75,7 +75,8 @@ pub struct PairFinder<N: Real, const D: usize> {
     pub(super) waiting_at: Vec<u32>,
     /// Objects that have a mark, each once.
     pub(super) changes: Vec<u32>,
-    /// Objects whose pairs must be filtered again.
+    /// Objects whose pairs the next update filters again; ids may repeat, and may belong to removed
+    /// objects.
     pub(super) to_refilter: Vec<u32>,
     pub(super) refilters_all: bool,
     pub(super) moving: Tree<D>,

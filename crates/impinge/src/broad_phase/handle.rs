@@ -1,15 +1,16 @@
-//! Handles of objects. They remain distinct after their objects are removed.
+//! Handles of objects in a broad phase. A handle stays distinct from all later handles after its
+//! object is removed.
 
 use crate::generation::Generation;
 use crate::memory::{Look, clone_fields};
 
 /// The handle of an object in a broad phase.
 ///
-/// A broad phase issues no handle twice: the handle of a removed object differs from those of all
-/// later objects. A [`DBVTBroadPhase`](super::DBVTBroadPhase) refuses a handle of another broad
-/// phase like a stale one, unless one broad phase is a clone of the other. (Broad phases are
-/// distinguished by a tag of 16 bits, which is reused after 65535 other handle tables.) Handles are
-/// ordered by [`Self::uid`], then by age.
+/// A broad phase issues no handle twice, unless its world is rewound: the handle of a removed
+/// object differs from those of all later objects. A [`DBVTBroadPhase`](super::DBVTBroadPhase)
+/// refuses a handle of another broad phase like a stale one, unless one broad phase is a clone of
+/// the other. (Broad phases are distinguished by a tag of 16 bits, which is reused after 65535
+/// other handle tables.) Handles are ordered by [`Self::uid`], then by age.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::Aabb;

@@ -5,7 +5,7 @@ use super::finder::Container;
 use crate::bvh::NONE;
 use crate::math::Real;
 
-/// Number of updates without a change after which an object is at rest.
+/// Number of updates without a change of its loosened box after which an object is at rest.
 const REST_UPDATES: u32 = 32;
 /// An update scans at most `1 / SCAN_DIVISOR` of the slots of the tree of moving objects, plus one
 /// slot, and at most [`MAX_SCANNED`] slots. But it scans at least one slot for every
@@ -39,7 +39,7 @@ pub(super) struct RestPass {
 }
 
 impl RestPass {
-    /// The state before the first pass.
+    /// The value before the first pass: there are no slots to scan.
     pub(super) const NONE: Self =
         Self { end: 0, resting: 0, quiet_updates: 0, moves_resting: true };
 }
@@ -73,8 +73,9 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     /// the pass goes from the last slot to the first, so that the tree can shrink.
     ///
     /// If nearly all objects are in the tree of moving objects, as after a bulk insertion, a pass
-    /// begins only after [`REST_UPDATES`] quiet updates, and every other pass only counts. If such
-    /// a pass finds at least three quarters of the objects at rest, the trees are swapped.
+    /// begins only after [`REST_UPDATES`] quiet updates, and every second pass only counts the
+    /// objects at rest. If such a pass finds at least three quarters of the objects at rest, the
+    /// trees are swapped.
     fn list_resting(&mut self, changed: usize, resting: &mut Vec<u32>) {
         let slots = self.moving.slots_in_order();
         let max_resting = MAX_RESTING.max(2 * changed);

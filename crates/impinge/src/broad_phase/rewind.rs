@@ -10,7 +10,7 @@ use crate::bounding_volume::Aabb;
 use crate::bvh::{Bounds, NONE};
 use crate::math::{Real, Space};
 
-/// A change of the set of objects, which can be undone.
+/// A change of the set of objects, with the data that undoing it needs.
 #[derive(Clone, Debug)]
 pub(super) enum ProxyNote<T> {
     Created(ProxyHandle),
@@ -27,7 +27,8 @@ pub(super) struct BoxNote<N: Real, const D: usize> {
     home: Container,
 }
 
-/// The changes that waited for the next update when a mark was set.
+/// The changes that waited for the next update when a mark was set: boxes, and objects to be
+/// filtered again.
 #[derive(Clone, Debug)]
 pub(super) struct FinderHead<N: Real, const D: usize> {
     waiting: Vec<Waiting<N, D>>,
@@ -76,7 +77,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.pairs.mark(number);
     }
 
-    /// Records the state of an object before it changes, once for each mark.
+    /// Records boxes and container of an object before its first change since the latest mark; does
+    /// nothing if there are no marks.
     pub(super) fn note(&mut self, id: u32) {
         let index = id as usize;
         if self.journal.is_first(index) {
@@ -106,7 +108,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.journal = journal;
     }
 
-    /// Makes the boxes in the trees those of the last update.
+    /// Makes the present boxes in both trees the old boxes of the next update.
     pub(super) fn settle_trees(&mut self) {
         for tree in [&mut self.moving, &mut self.still] {
             tree.refit();
@@ -125,8 +127,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.refilters_all = head.is_all_again;
     }
 
-    /// Restores the boxes of an object. If it was bounded then and is now, it stays in its present
-    /// tree.
+    /// Restores the boxes and the container of an object. An object that was bounded at the mark
+    /// and is bounded now stays in its present tree.
     fn bring_back(&mut self, &BoxNote { id, exact, loose, home }: &BoxNote<N, D>) {
         let index = id as usize;
         (self.exact[index], self.loose[index]) = (exact, loose);

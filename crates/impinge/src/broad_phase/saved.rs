@@ -81,7 +81,7 @@ fn aabb<N: Real, const D: usize>(numbers: &Numbers<N>) -> Result<Aabb<N, D>, Dam
 }
 
 impl Handles {
-    /// Returns the generations by index, and the free indices.
+    /// Returns the counts of the generations by index, and the free indices.
     fn record(&self) -> (Vec<u16>, Vec<u32>) {
         let count = |generation: &Generation| generation.count();
         (self.generations.iter().map(count).collect(), self.free.clone())

@@ -53,7 +53,7 @@ impl<const D: usize> Block<D> {
     }
 
     /// Returns, by lane, the least dot product of `along`, a vector of any length, with a point of
-    /// the box.
+    /// the box. Infinite or NaN for a lane without a box.
     #[inline]
     pub(crate) fn lowest_along(&self, along: &[f32; D]) -> [f32; LANES] {
         let mut lowest = [0.0; LANES];
@@ -66,7 +66,7 @@ impl<const D: usize> Block<D> {
         lowest
     }
 
-    /// Writes the box of a lane.
+    /// Replaces the box in lane `lane` by `bounds`.
     #[inline]
     pub(crate) fn set_lane(&mut self, lane: usize, bounds: &Bounds<D>) {
         for axis in 0..D {

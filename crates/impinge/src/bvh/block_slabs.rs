@@ -43,7 +43,7 @@ pub(super) struct SlabBox<'a, const D: usize> {
 }
 
 impl<const D: usize> BlockSlab<D> {
-    /// Returns the normal of the planes in the scalar type.
+    /// Returns the normal of the planes, converted to the scalar type `N`.
     pub(super) fn across<N: Real>(&self) -> Vector<N, D> {
         Vector::from_fn(|axis, _| N::lit(self.across[axis].into()))
     }
@@ -75,8 +75,9 @@ impl<const D: usize> SlabBox<'_, D> {
     pub(super) fn extent<N: Real>(&self, along: &Vector<N, D>) -> N {
         let whole = self.bounds.extent(along);
         let Some(slab) = self.slab else { return whole };
-        // Any multiple of the slab's normal gives a bound. This multiple leaves to the box only the
-        // component of `along` in the plane of the slab.
+        // `along` is the sum of a multiple of the slab's normal, bounded by the slab, and a
+        // remainder, bounded by the box. The bound holds for any multiple. With this one, the
+        // projection of `along` on the normal, the remainder is parallel to the planes.
         let across = slab.across::<N>();
         let share = along.dot(&across);
         let height = N::lit(if share < N::ZERO { slab.low } else { slab.high }.into());

@@ -119,9 +119,9 @@ impl<const D: usize> Bounds<D> {
         Self { lo: self.lo.mapped(above), hi: self.hi.mapped(below) }
     }
 
-    /// Returns half the surface (in 2D half the perimeter): the cost of a node in searches, up to a
-    /// factor (Goldsmith and Salmon 1987). Unlike the volume, the surface is not zero for flat
-    /// boxes.
+    /// Returns half the surface area (in 2D half the perimeter). The expected cost of a node in
+    /// searches is proportional to it (Goldsmith and Salmon 1987). Unlike the volume, the area is
+    /// not zero for flat boxes.
     ///
     /// The result is an `f64`, which no box with finite faces overflows; 0 for an empty box.
     #[must_use]

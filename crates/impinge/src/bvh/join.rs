@@ -1,11 +1,13 @@
-//! The join: finds pairs that began or ended since the last [`Tree::commit_boxes`].
+//! The join: finds the pairs of objects whose boxes began or ceased to overlap since the last
+//! [`Tree::commit_boxes`].
 //!
-//! Two algorithms with the same result, chosen by the number of changes:
+//! Two algorithms find the same pairs. The number of changed objects decides between them:
 //! * many changes: a join of a tree with itself, or of two trees, layer by layer. The tasks of a
 //!   layer are pairs of blocks in a flat list; each becomes tasks of the layer below, and pairs of
 //!   unchanged blocks are dropped on the way. There is no recursion, and masks replace most
 //!   unpredictable branches;
-//! * few changes: the changed boxes descend the tree together, layer by layer (see `query.rs`).
+//! * few changes: each changed box queries the tree. All queries run together, layer by layer (see
+//!   `query.rs`).
 //!
 //! Lists are cut into chunks of constant size whose outputs are concatenated in order, so that any
 //! number of threads yields the same list.
@@ -33,7 +35,7 @@ pub(super) struct JoinSides<'a, const D: usize> {
     pub(super) first: &'a Tree<D>,
     pub(super) second: &'a Tree<D>,
     /// Whether `first` and `second` are the same tree. Each pair of blocks or slots is then visited
-    /// once.
+    /// in one order only.
     pub(super) is_self: bool,
 }
 
@@ -93,7 +95,7 @@ impl<const D: usize> Scratch<D> {
     }
 }
 
-/// Scratch lists: one for work on a single thread, and one for each chunk of parallel work.
+/// Scratch lists: one set for work on a single thread, and one set for each chunk of parallel work.
 #[derive(Debug, Default)]
 struct Desks<const D: usize> {
     scratch: Scratch<D>,

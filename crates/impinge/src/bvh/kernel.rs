@@ -1,7 +1,7 @@
 //! The elementary operations on blocks, scalar and with SIMD vectors.
 //!
 //! [`Scalar`] defines the results; [`WideBlock`] computes the same bits with SIMD vectors of the
-//! machine. The join uses comparisons, minima and maxima alone, so equality is exact.
+//! machine. The operations of the join are comparisons, minima and maxima, which do not round.
 //! `with_kernel!` selects the kernel once for a batch, and compiles its body for every instruction
 //! set.
 
@@ -39,7 +39,8 @@ impl Lanes {
         Self(Level::Arrays)
     }
 
-    /// Returns all instruction sets of this machine that are compiled, for tests.
+    /// Returns the instruction sets that this machine has and for which kernels are compiled. Tests
+    /// compare the results of all.
     #[must_use]
     pub fn available() -> Vec<Self> {
         let is_compiled = |level: &Level| ON_ARRAYS || !matches!(level, Level::Arrays);
@@ -426,7 +427,7 @@ fn packs_lanes(level: fearless_simd::Level) -> bool {
     }
 }
 
-/// Returns a mask of at most 32 lanes as `u32`.
+/// Returns the lower 32 bits of a mask; a mask of sixteen lanes has no others.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "sixteen lanes make sixteen bits")]
 pub(super) const fn low_half(mask: u64) -> u32 {

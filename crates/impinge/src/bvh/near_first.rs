@@ -94,9 +94,10 @@ impl Open {
 }
 
 impl Lanes {
-    /// Calls `found` with the objects that the moving box may touch by `limit`, and their keys: in
-    /// groups of at most [`GROUP`], roughly by ascending key. `found` returns the new limit, which
-    /// must not increase. Limits are in the units of the slabs. A negative limit ends the search.
+    /// Calls `found` with the objects that the moving box may touch at or before time `limit`, and
+    /// their keys: in groups of at most [`GROUP`], roughly by ascending key. `found` returns the
+    /// new limit, which must not increase. Limits are in the units of the slabs. A negative limit
+    /// ends the search.
     pub(crate) fn visit_along<const D: usize>(
         self,
         trees: &[&Tree<D>],
@@ -246,7 +247,8 @@ impl<const D: usize> Tree<D> {
         core::hint::black_box(self.ids[block * LANES]);
     }
 
-    /// Clears the lanes that have no child block. Lanes of layer 0 stay.
+    /// Returns `mask` without the lanes that have no child block. A lane of layer 0 has a slot and
+    /// no child block; for this layer the mask is returned unchanged.
     #[inline(always)]
     fn lanes_in_use(&self, layer: usize, first: u32, mask: u32) -> u32 {
         let Some(below) = layer.checked_sub(1) else { return mask };

@@ -28,7 +28,7 @@ impl<const D: usize> Item<D> {
     }
 }
 
-/// Returns an integer with the order of (coordinate, id).
+/// Returns an integer that sorts by the coordinate, then by the id. -0 sorts before 0.
 #[inline]
 pub(super) fn key(coordinate: f32, id: u32) -> u64 {
     let bits = coordinate.to_bits();

@@ -86,8 +86,8 @@ impl Frontier {
             }
             match entry {
                 Entry::Object { id } => {
-                    // The key in the queue equals this key exactly, since [`Keys::object`] computed
-                    // both.
+                    // For an object of a tree, the key in the queue equals this key exactly, since
+                    // [`Keys::object`] computed both.
                     let Some(key) = (keys.object)(id) else { continue };
                     limit = found(id, key);
                 }

@@ -166,8 +166,9 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
         self.push_all(&entry, open, &gaps, limit);
     }
 
-    /// Refines the bound of a block and returns it if it comes first. `None` if the bound exceeds
-    /// `limit`, or if another entry comes first; in the latter case the block is queued again.
+    /// Raises the bound of an entry to `bound` and returns the entry if none in the queue is before
+    /// it. `None` if the bound exceeds `limit`, or if an entry in the queue is before it; in the
+    /// second case the entry is queued again.
     fn first(&mut self, entry: RankedNode, bound: N, limit: N) -> Option<RankedNode> {
         let (entry, is_beyond) = (entry.refined(bound), bound > limit);
         let is_first = self.queue.peek().is_none_or(|Reverse(other)| entry <= *other);

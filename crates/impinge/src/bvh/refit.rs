@@ -7,9 +7,10 @@ use super::kernel::{Kernel, with_kernel};
 use super::tree::{Layer, small};
 use super::{Block, Bounds, LANES, Lanes, Tree};
 
-/// Greatest ratio by which the old boxes may enlarge the surface of a leaf block. A larger ratio
-/// means that an object was teleported: swept bounds around its old and its new box would overlap
-/// everything between them.
+/// Largest ratio of the surface area of a leaf block's bounds with the old boxes to the area
+/// without them, up to which the swept bounds include the old boxes. A larger ratio means that an
+/// object was teleported: bounds around its old and its new box would overlap everything between
+/// them.
 const FAR_MOVED: f64 = 2.0;
 /// Number of leaf blocks up to which a single thread refits.
 #[cfg(feature = "parallel")]
@@ -22,8 +23,8 @@ impl<const D: usize> Tree<D> {
         self.refit_from(&[]);
     }
 
-    /// Refits the tree as [`Self::refit`] does, but first reads the boxes of changed objects from
-    /// `by_id`, which is indexed by id. `by_id` is empty if the tree already has the boxes.
+    /// Refits the tree as [`Self::refit`] does, with the new boxes of changed objects from `by_id`,
+    /// which is indexed by id. `by_id` is empty if the tree already has the boxes.
     ///
     /// Ids have no spatial order. Reading the boxes in slot order gives independent loads, which
     /// overlap; writing the boxes to their slots in the order of ids would not overlap.

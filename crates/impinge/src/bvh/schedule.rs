@@ -13,7 +13,8 @@ use super::renewal::Renewal;
 use super::{LANES, Tree};
 use crate::memory::clone_fields;
 
-/// Growth of the leaf surface per object at which a renewal starts.
+/// A renewal starts when the leaf surface per object exceeds this multiple of its value after the
+/// last renewal.
 const WORN: f64 = 1.2;
 /// Calls of `wants_order` between two measurements of the leaf surface.
 const LOOK_EVERY: u32 = 4;
@@ -22,8 +23,9 @@ const SORTED_AT_ONCE: usize = 1024;
 /// Least budget of one step for sorting the snapshot, in items times levels of the sort, so that
 /// small trees are renewed in few steps.
 const MIN_BUDGET: usize = 2048;
-/// If more than one object in `LATE` was inserted or moved far while the snapshot was being sorted,
-/// the snapshot is discarded and all objects are sorted at once.
+/// If the list of objects that were inserted or moved far while the snapshot was being sorted is
+/// longer than 1 / `LATE` of the objects, the snapshot is discarded and all objects are sorted at
+/// once.
 const LATE: usize = 4;
 /// Number of objects that may be inserted or removed in a tree of any size before the order is
 /// renewed.
@@ -230,9 +232,10 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Counts the call, and returns `true` if the order should be renewed. Measures the surface in
-    /// one of [`LOOK_EVERY`] calls, because the sum over all blocks would dominate an otherwise
-    /// idle step.
+    /// Counts the call, and returns `true` if the order should be renewed. Measures the surface at
+    /// the first call after a renewal and then in one of [`LOOK_EVERY`] calls, and only if boxes
+    /// changed since the last measurement: the sum over all blocks would dominate an otherwise idle
+    /// step.
     fn wants_order(&mut self) -> bool {
         self.schedule.calls = self.schedule.calls.wrapping_add(1);
         let is_due = self.schedule.base.is_none() || self.schedule.calls.is_multiple_of(LOOK_EVERY);
@@ -249,8 +252,9 @@ impl<const D: usize> Tree<D> {
         surface > WORN * base
     }
 
-    /// Returns `true` if too many objects were inserted since the last renewal, or removed objects
-    /// left too many free slots.
+    /// Returns `true` if more than a sixteenth of the objects, plus [`SLACK`], occupy slots added
+    /// since the last renewal, or if the free slots before `end` exceed a quarter of the objects,
+    /// plus [`SLACK`].
     fn is_spoilt(&self) -> bool {
         let (came, holes) = (self.end - self.schedule.ordered.min(self.end), self.end - self.live);
         came > self.live / 16 + SLACK || holes > self.live / 4 + SLACK
@@ -319,7 +323,8 @@ impl<const D: usize> Schedule<D> {
     }
 
     /// Records a new run that ends at `end`, and returns its first slot. The run has the new
-    /// objects and the earlier runs that are short, as long as it has at most `most` slots.
+    /// objects. While the last earlier run is at most twice as long as the new run, and both
+    /// together have at most `most` slots, it becomes a part of the new run.
     fn next_run(&mut self, end: usize, most: usize) -> usize {
         let mut start = self.fresh / LANES * LANES;
         self.runs.retain(|&run| run < start);

@@ -2,7 +2,8 @@
 
 use super::{Bounds, LANES, NONE, Tree};
 
-/// Greatest growth of a leaf block's surface by an added or moved object, relative to the surface.
+/// An added or moved object may enlarge the surface area of a leaf block by at most this fraction
+/// of the area.
 const MAX_GROWTH: f64 = 0.3;
 
 impl<const D: usize> Tree<D> {

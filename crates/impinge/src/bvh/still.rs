@@ -66,10 +66,11 @@ impl<const D: usize> Tree<D> {
         tree
     }
 
-    /// Sets the box of an object, and inserts the object if it is new. No pairs begin. The path
-    /// from its block to the top is refitted, so searches are valid at once.
+    /// Sets the box of an object, and inserts the object if it is new. Reports no pairs. Refits and
+    /// commits the tree, so searches are valid at once.
     ///
-    /// An object that would enlarge its block much moves to another slot.
+    /// An object moves to another slot if its new box would enlarge its leaf block by more than
+    /// [`Self::hardly_grows_by`] allows.
     pub(crate) fn put(&mut self, id: u32, bounds: &Bounds<D>) {
         let slot = self.slot(id);
         if slot.is_some_and(|slot| self.hardly_grows_by(slot / LANES, bounds)) {
@@ -85,8 +86,8 @@ impl<const D: usize> Tree<D> {
     }
 }
 
-/// Sorts items whose first slot is the first of a whole subtree. The recursion ends, since both
-/// parts are smaller.
+/// Reorders the items for consecutive slots that begin with the first slot of a subtree. The
+/// recursion ends, since both parts are smaller.
 fn arrange<const D: usize>(items: &mut [StillItem<D>]) {
     // The boxes in one child: the least power of 16 such that at most 16 children hold all items.
     let mut child = LANES;
@@ -173,8 +174,8 @@ impl<const D: usize> Bins<D> {
         bins
     }
 
-    /// Calls `visit` with the number of children on the left and the cost of each cut. For a cut
-    /// within a bin, the bin is counted on both sides.
+    /// Calls `visit` for each cut between two children, with the number of children on the left and
+    /// the estimated cost. If a cut falls within a bin, the boxes of the bin enlarge both sides.
     #[expect(clippy::cast_precision_loss, reason = "counts that weigh a heuristic")]
     fn each_cut(
         &self,

@@ -21,7 +21,7 @@ use super::{LANES, NONE, Slabs, Tree};
 /// Greatest number of rays processed together.
 pub(crate) const RAYS: usize = 64;
 
-/// Receives the triangles that rays may cross.
+/// The caller's exact test of the triangles that rays may cross.
 pub(crate) trait RayVisitor {
     /// Prefetches an object that [`Self::visit`] may read soon.
     fn touch(&self, id: u32);
@@ -83,7 +83,8 @@ impl List {
 /// that is visited or missed.
 type LaneKeys = [u32; LANES];
 
-/// The rays of one search. The lists hold the next action of each ray; a ray is in at most one
+/// The rays of one search. The rays in one list have the same next action: to open a block, to test
+/// the triangles of a leaf block, or to return to an open block. A ray that has finished is in no
 /// list.
 struct Stream<'a> {
     walks: &'a mut [Walk],
@@ -208,9 +209,9 @@ impl Tree<3> {
 }
 
 impl Stream<'_> {
-    /// Moves each ray to the next child of its lowest open block, if that child is within the ray's
-    /// limit. Otherwise closes the block, and the ray looks for another open block in the next
-    /// round.
+    /// Moves each ray in `to_return` to the nearest unvisited child of its lowest open block, if
+    /// that child is within the ray's limit. Otherwise closes the block, and the ray looks for
+    /// another open block in the next round.
     #[inline(always)]
     fn go_back<K: Kernel>(&mut self, kernel: K) {
         let rays = core::mem::replace(&mut self.to_return, List::EMPTY);

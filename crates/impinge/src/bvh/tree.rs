@@ -457,7 +457,8 @@ impl<const D: usize> Tree<D> {
         self.layers[0].bounds.iter().map(Bounds::half_surface).sum()
     }
 
-    /// Returns the ids by slot, which is a spatial order; [`NONE`] for a free slot.
+    /// Returns the ids in the order of the slots, which is a spatial order; [`NONE`] for a free
+    /// slot.
     pub(crate) fn slots_in_order(&self) -> &[u32] {
         &self.ids[..self.end]
     }

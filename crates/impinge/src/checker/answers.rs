@@ -300,8 +300,8 @@ mod tests {
         ShapeHandle::new(TriMesh::new(corners, faces))
     }
 
-    /// Returns a checker with surfaces of given sizes and positions, of which the last slides along
-    /// the diagonal.
+    /// Returns a checker of one [`surface`] for each size and position. The last surface slides
+    /// along the diagonal; the others are at rest.
     fn slider(surfaces: &[(f64, [f64; 3])], pairs: &[[u32; 2]]) -> Checker<f64, 3> {
         let diagonal = Unit::new_normalize(Vector::<f64, 3>::repeat(1.0));
         let frame = |joint| Frame { parent: None, origin: Pose::identity(), joint };

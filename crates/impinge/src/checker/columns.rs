@@ -1,4 +1,4 @@
-//! Output columns of the distance query.
+//! Output columns of the query for the nearest pair of each configuration.
 
 use crate::batch::BatchError;
 use crate::chunks::Cut;

@@ -1,4 +1,4 @@
-//! Errors of the checker's input.
+//! Errors of the frames, bodies, pairs and obstacles from which a checker is built.
 
 use core::fmt;
 

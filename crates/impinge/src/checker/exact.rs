@@ -1,4 +1,5 @@
-//! The exact queries, which decide the pairs that the filter leaves undecided.
+//! The exact distance queries, in the user's scalar, which decide the pairs that the `f32` filter
+//! leaves undecided.
 
 use core::ops::Range;
 

@@ -1,5 +1,5 @@
-//! Convex hulls of bodies made of triangles or segments. If the hulls of two bodies are apart, the
-//! bodies are apart.
+//! Convex hulls of bodies made of triangles or segments. Two bodies are at least as far apart as
+//! their hulls.
 //!
 //! The separation of two hulls takes one query, while two meshes take a traversal of their trees.
 //! The hulls of a robot's meshes rarely touch where the meshes do not, so nearly all remaining
@@ -62,8 +62,8 @@ impl<N: Space<D>, const D: usize> BodyHulls<N, D> {
         slack.is_finite_number() && distance_within(&one, &other, limit + slack).is_none()
     }
 
-    /// Returns the hull of a body at the body's pose; `None` if the solid is not a composite, is an
-    /// obstacle, or has no hull (yet).
+    /// Returns the hull of a body at the body's pose; `None` if the solid is not a composite or is
+    /// an obstacle, if the body has no hull, and if its hull has not been computed yet.
     fn of<'a>(&'a self, body: &Placed<'_, N, D>, number: Option<u32>) -> Option<Placed<'a, N, D>> {
         let parts = body.shape.as_composite()?;
         let hull = self.0[number? as usize].get(parts)?;

@@ -22,8 +22,9 @@
 //! Balls are tested in SIMD lanes against balls, boxes, capsules, segments, cylinders and
 //! half-spaces. Other bodies are covered by balls, and other obstacles by their boxes; each pair
 //! whose covers are not apart takes one exact query. Bodies of triangles or segments also have
-//! convex hulls, and their parts are searched only if the hulls touch. [`Checker::are_free`] defers
-//! a pair whose earlier searches mostly found no contact until all other pairs are tested.
+//! convex hulls, and their parts are searched only if the hulls are within the clearance.
+//! [`Checker::are_free`] defers a pair whose earlier searches mostly found no contact until all
+//! other pairs are tested.
 //!
 //! Lanes across configurations follow W. Thomason, Z. Kingston and L. E. Kavraki, "Motions in
 //! Microseconds via Vectorized Sampling-Based Planning" (2024).

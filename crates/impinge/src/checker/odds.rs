@@ -1,4 +1,5 @@
-//! Statistics of part searches by pair.
+//! Statistics of part searches by pair: how often the exact query of a pair with a composite found
+//! the pair within the clearance.
 
 use std::collections::BTreeMap;
 

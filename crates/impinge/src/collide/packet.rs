@@ -7,8 +7,8 @@
 //! ```
 //!
 //! `mesh/part_cache.rs` keeps lists of packets, called tiles. `mesh/cull.rs`,
-//! `separation/triangles`, `separation/chain` and `manifold/face_lanes` read packets 8 lanes at a
-//! time.
+//! `separation/triangles`, `separation/chain`, `manifold/face_lanes`, `parts/pair_lanes.rs` and
+//! `parts/slab_lanes.rs` read packets 8 lanes at a time.
 
 use crate::math::{Point, Real};
 

@@ -10,8 +10,8 @@ pub(super) fn rounding_error<N: Real>() -> N {
     N::lit(8.0) * N::EPSILON
 }
 
-/// Returns the gap between the lower and the upper bound of the distance at which a normal is good
-/// enough to be refined by Newton's method, in units of the pair: 2⁻²⁰ in `f32`, 2⁻⁴⁰ in `f64`.
+/// Returns the largest difference of the upper and the lower bound of the distance, in units of the
+/// pair, at which Newton's method may refine a normal: 2⁻²⁰ in `f32`, 2⁻⁴⁰ in `f64`.
 ///
 /// Only curved cores leave such a gap: searches of flat-faced cores end after finitely many steps,
 /// with a gap of rounding error.

@@ -57,7 +57,7 @@ impl<N: Real> PolygonEdge<N> {
     }
 }
 
-/// Computes [`super::Simplicial::deepest`].
+/// Returns the result of [`super::Simplicial::deepest`].
 pub(super) fn deepest<N: Real>(
     difference: &dyn Difference<N, 2>,
     simplex: &Simplex<N, 2>,

@@ -44,7 +44,7 @@ const FINE: f64 = 1.0 / 65536.0;
 /// maximum is used without another run of Newton's method.
 const SAME_PLACE: f64 = 1.0 - 1.0 / 2048.0;
 
-/// Computes [`super::Simplicial::deepest`].
+/// Returns the result of [`super::Simplicial::deepest`].
 pub(super) fn deepest<N: Real>(
     difference: &dyn Difference<N, 3>,
     simplex: &Simplex<N, 3>,
@@ -288,8 +288,9 @@ struct Summit<N: Real> {
 }
 
 impl<N: Real> Summit<N> {
-    /// Returns whether this maximum may be used for `face`, which is close to it; `gap` is the
-    /// distance from the face to its support point.
+    /// Returns whether this maximum may be used for `face` without another run of Newton's method,
+    /// since their normals nearly agree and `gap`, the distance from the face to its support point,
+    /// is small.
     fn stands_for(&self, face: &EpaFace<N>, gap: N) -> bool {
         gap <= N::lit(FINE) && -self.top.normal.dot(&face.outward) >= N::lit(SAME_PLACE)
     }
@@ -310,9 +311,10 @@ impl<N: Real> Summit<N> {
     }
 }
 
-/// Continues by local searches from the best normals of the faces, if the hull can grow no more: at
-/// the cap, or after rounding made it non-convex. For a small solid deep in a large round one, many
-/// normals far apart are nearly as good as the best, so several are tried.
+/// Improves `best` by local searches from the best normals of the faces, after the growth of the
+/// hull ended without an answer: at the cap, or because rounding made the hull non-convex. For a
+/// small solid deep in a large round one, many normals far apart are nearly as good as the best, so
+/// several are tried.
 fn climb_on<N: Real>(
     difference: &dyn Difference<N, 3>,
     hull: &Hull<N>,

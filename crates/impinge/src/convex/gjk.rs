@@ -90,9 +90,9 @@ where
     }
 }
 
-/// Computes [`solve`]. If `rounding`, the sum of both radii, is `Some`, the search ends at a
-/// certain overlap of the inflated cores (see [`overlaps`]). An [`Answer::Signed`] equals the
-/// result of [`solve`] bit for bit.
+/// Returns the result of [`solve`]. If `rounding`, the sum of both radii, is `Some`, the search
+/// ends at a certain overlap of the inflated cores (see [`overlaps`]). An [`Answer::Signed`] equals
+/// the result of [`solve`] bit for bit. `None` if [`solve`] returns `None`.
 pub(super) fn answer<N, S, const D: usize>(
     difference: &S,
     start: &Vector<N, D>,
@@ -175,8 +175,8 @@ pub(super) fn nearest_normal<N: Simplicial<D>, const D: usize>(
     search.best.normal
 }
 
-/// Computes [`nearest_normal`] to the precision of the arithmetic, with the simplex around the
-/// nearest point.
+/// Returns the result of [`nearest_normal`] to the precision of the arithmetic, and the simplex
+/// whose hull contains the nearest point.
 pub(super) fn nearest_simplex<N: Simplicial<D>, const D: usize>(
     difference: &impl Difference<N, D>,
     start: &Vector<N, D>,
@@ -275,7 +275,8 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
 
     /// Returns the separation from the simplex, refined first if the bounds do not agree. They do
     /// not agree near touching, where the direction of the nearest point is mostly rounding error,
-    /// and if one solid is much larger than the other.
+    /// and if one solid is much larger than the other. If the refined bounds still differ, runs
+    /// EPA, too, and returns the result with the larger distance.
     fn finish(&mut self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
         if self.met() {
             return self.final_separation(difference);
@@ -299,8 +300,9 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         if deep.distance > apart.distance { deep } else { apart }
     }
 
-    /// Returns the separation if the difference contains the origin, or nearly does: directly if a
-    /// normal is known whose supporting plane contains the origin.
+    /// Returns the separation if the difference contains the origin, or nearly does: from the
+    /// simplex if the height of `best` is zero or more, up to rounding, since the solids then only
+    /// touch; else by EPA.
     fn finish_overlap(&self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
         if self.best.height >= -rounding_error::<N>() {
             return self.final_separation(difference);
@@ -339,7 +341,8 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
     }
 }
 
-/// Returns a unit vector that is not an axis of symmetry of solids aligned with the axes.
+/// Returns a unit vector whose components all differ, so that it lies in no plane of symmetry of a
+/// box that is aligned with the axes.
 fn skew_axis<N: Real, const D: usize>() -> Vector<N, D> {
     let mut next = N::ONE;
     let skew = Vector::<N, D>::from_fn(|_, _| {
@@ -361,7 +364,8 @@ fn rough_gap<N: Real>() -> N {
     N::TWO * tolerance::<N>().sqrt()
 }
 
-/// Returns the gap at which the search stops: 2⁻²⁰ in `f32`, 2⁻⁴⁶ in `f64`.
+/// Returns the gap between the bounds of the distance at which the search stops: 2⁻²⁰ in `f32`,
+/// 2⁻⁴⁶ in `f64`.
 fn gap<N: Real>() -> N {
     max(rounding_error(), N::lit(1.0 / 70_368_744_177_664.0))
 }

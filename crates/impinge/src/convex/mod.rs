@@ -97,8 +97,8 @@ where
     of_pair(&pair, &pair.start(), [a.rounding(), b.rounding()], limit)
 }
 
-/// Computes [`separation`] for solids whose cores have neither edges nor rims, except that one may
-/// be a segment. Finding the best normal of an overlap then takes fewer steps.
+/// Returns the result of [`separation`] for solids whose cores have neither edges nor rims, except
+/// that one may be a segment. Finding the best normal of an overlap then takes fewer steps.
 pub(crate) fn smooth_separation<N, A, B, const D: usize>(
     a: &A,
     b: &B,
@@ -114,9 +114,9 @@ where
     of_pair(&pair, &pair.start(), [a.rounding(), b.rounding()], limit)
 }
 
-/// Computes [`separation`] for solids whose cores are hulls of points, without the steps for curved
-/// cores. The search starts along the unit vector `start`; `None` stands for the line of the
-/// centres.
+/// Returns the result of [`separation`] for solids whose cores are hulls of points, without the
+/// steps for curved cores. The search starts along the unit vector `start`; `None` stands for the
+/// line of the centres.
 pub(crate) fn flat_separation<N, A, B, const D: usize>(
     a: &A,
     b: &B,
@@ -134,8 +134,9 @@ where
     of_pair(&pair, &start, [a.rounding(), b.rounding()], limit)
 }
 
-/// Computes [`separation`] for solids with a known set of possible normals of an overlap. The best
-/// of these is found without growing a polytope; results are equal up to rounding.
+/// Returns the result of [`separation`] for solids with a known set of possible normals of an
+/// overlap. The best of these is found without growing a polytope; results are equal up to
+/// rounding.
 pub(crate) fn separation_by<N, A, B, const D: usize>(
     a: &A,
     b: &B,

@@ -23,11 +23,11 @@ const SAMPLES: usize = 16;
 const PITCH: f64 = core::f64::consts::TAU / 16.0;
 /// Cap on the number of maxima that are searched.
 const TOPS: usize = 3;
-/// Largest difference between the component of a normal along the axis and that of the side's
-/// normals at which the ring is searched.
+/// A ring is searched only if the component of the known normal along the axis differs from the
+/// component of the side's normals by at most this value.
 const NEAR: f64 = 1.0 / 16.0;
-/// Largest difference between the heights of opposite normals of a ring at which the ring is
-/// searched, in units of the pair.
+/// A ring is searched only if the height of the normal opposite to the known normal is lower than
+/// the known height by at most this value, in units of the pair.
 const MAX_UNEVENNESS: f64 = 1.0 / 8.0;
 /// Fraction of an interval that is left after a step of the golden section.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
@@ -88,7 +88,8 @@ impl<N: Real> NormalRing<N> {
         self.axis * self.rise + (self.from * cosine + self.aside * sine) * away
     }
 
-    /// Returns the ring with angles measured from its normal at `angle`.
+    /// Returns the ring with angles measured from its normal at `angle`; `None` for a ring whose
+    /// normals are all the axis.
     fn rotated(&self, angle: N) -> Option<Self> {
         Self::near(self.axis, self.rise, &self.at(angle))
     }
@@ -97,8 +98,9 @@ impl<N: Real> NormalRing<N> {
         SupportCandidate::along(difference, self.at(angle)).height
     }
 
-    /// Returns whether the height of the opposite normal is close to `height`, the height at angle
-    /// zero. If the heights differ more, they vary enough to find the best normal without the ring.
+    /// Returns whether the height of the normal at angle π is at most [`MAX_UNEVENNESS`] below
+    /// `height`, the height of the known normal. If it is lower, the heights of the ring vary
+    /// enough to find the best normal without a search of the ring.
     fn is_even(&self, difference: &dyn Difference<N, 3>, height: N) -> bool {
         height - self.height(difference, N::lit(core::f64::consts::PI)) <= N::lit(MAX_UNEVENNESS)
     }
@@ -147,7 +149,7 @@ impl<N: Real> NormalRing<N> {
     }
 
     /// Returns the ring with angles measured from its highest normal within `PITCH` of angle zero,
-    /// found by golden section.
+    /// found by golden section; `None` if [`Self::rotated`] returns `None`.
     fn risen(&self, difference: &dyn Difference<N, 3>) -> Option<Self> {
         let (mut low, mut high) = (-N::lit(PITCH), N::lit(PITCH));
         let inner = |low: N, high: N| {

@@ -35,8 +35,8 @@ impl<N: Real> Simplicial<2> for N {
     }
 }
 
-/// Computes [`nearest_on_segment`]. A nearest point between the ends is computed as a multiple of
-/// the edge's normal, so that in 2D its direction is accurate to rounding.
+/// Returns the result of [`nearest_on_segment`]. A nearest point between the ends is computed as a
+/// multiple of the edge's normal, so that in 2D its direction is accurate to rounding.
 fn nearest_on_side<N: Real>(points: &[Vector<N, 2>], [i, j]: [usize; 2]) -> NearestOfSimplex<N, 2> {
     let nearest = nearest_on_segment(points, [i, j]);
     if nearest.weights[i] == N::ZERO || nearest.weights[j] == N::ZERO {

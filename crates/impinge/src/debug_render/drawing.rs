@@ -18,9 +18,9 @@ type ObjectColor = dyn Fn(CollisionObjectHandle) -> Option<Color> + Send + Sync;
 /// The mesh of each shape is built when the shape is first drawn. It is shared by all handles of
 /// the shape, and [`Self::world`] removes it after all other handles have been dropped. Positions
 /// are world coordinates. Objects are drawn in the order of their handles, so equal worlds give
-/// equal pictures. Objects that are not finite, such as the box of a half-space, are not drawn.
-/// This type does not begin or end the frames of a back end, since a frame may contain several
-/// drawings.
+/// equal pictures. Boxes, rays and hits with a coordinate that is not finite, such as the box of a
+/// half-space, are not drawn. This type does not begin or end the frames of a back end, since a
+/// frame may contain several drawings.
 ///
 /// ```
 /// use impinge::debug_render::{Color, DebugDrawing, DebugOptions, DebugRender, Drawn};

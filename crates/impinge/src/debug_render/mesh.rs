@@ -68,8 +68,8 @@ impl<N: Space<D>, const D: usize> ShapeMesh<N, D> {
     /// The vertices of round shapes lie on the surface, up to rounding. The mesh of a composite
     /// consists of the meshes of its parts at their poses; vertices and lines that parts share
     /// occur once. A custom convex shape is sampled by its support points in the directions of a
-    /// ball's vertices. A half-space is drawn as a square (in 2D a line) of
-    /// [`MeshOptions::half_space_extent`] with short marks on its solid side.
+    /// ball's vertices. A half-space is drawn as a square with short marks on its solid side; half
+    /// a side of the square is [`MeshOptions::half_space_extent`] long. In 2D the square is a line.
     ///
     /// The cost is O(n log n) for n vertices, so cache the result, as
     /// [`DebugDrawing`](super::DebugDrawing) does.

@@ -1,4 +1,4 @@
-//! Options of a drawing.
+//! Options of a drawing: which kinds of objects are drawn, in which colours and sizes.
 
 use super::{Color, MeshOptions};
 use crate::math::Real;
@@ -54,11 +54,11 @@ pub struct DebugOptions<N: Real> {
     pub tree_node: Option<Style<N>>,
     /// Contact points, on both shapes.
     pub contact_point: Option<Style<N>>,
-    /// For each contact three objects: a line from the point on the first shape to the point on the
-    /// second, whose length is the depth; the depth as text; and the normal as an arrow whose
-    /// length is the style's size.
+    /// For each contact, the depth and the normal. The depth is drawn as a line from the point on
+    /// the first shape to the point on the second, and as text; the normal as an arrow whose length
+    /// is the style's size.
     pub contact_normal: Option<Style<N>>,
-    /// The area between the points of a manifold that has three or more.
+    /// The area between the points of a manifold that has at least three points.
     pub manifold: Option<Style<N>>,
     /// Lines between the objects of pairs with proximity, and between closest points.
     pub proximity: Option<Style<N>>,

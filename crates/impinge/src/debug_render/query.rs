@@ -1,4 +1,4 @@
-//! Drawing of queries: contacts, closest points, rays, moving shapes.
+//! Drawing of queries and their results: contacts, closest points, boxes, rays, moving shapes.
 
 use super::drawing::{are_finite, draw_box};
 use super::{DebugDrawing, DebugRender, Drawn};
@@ -92,8 +92,10 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         }
     }
 
-    /// Draws the area of a manifold as triangles from its centre to its points, in order of their
-    /// angle around the normal. Does nothing for less than three contacts.
+    /// Draws the area of a manifold as triangles. Each triangle has the mean of the points and two
+    /// neighbouring points as its corners; a point is midway between the two points of a contact,
+    /// and the points are sorted by their angle around the first normal. Does nothing for less than
+    /// three contacts.
     fn area(&self, contacts: &[Contact<N, D>], renderer: &mut dyn DebugRender<N, D>) {
         let (Some(style), [first, _, _, ..]) = (self.options.manifold, contacts) else { return };
         let between =
@@ -158,7 +160,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
 
     /// Draws a moving shape at the start, at the hit and at the end of its path, an arrow along the
     /// path, and the impact with its normal. If the path is infinite, its end is not drawn, and the
-    /// arrow ends at the hit.
+    /// arrow ends at the hit; without a hit there is then no arrow.
     pub fn cast(
         &mut self,
         sweep: &SweptShape<'_, N, D>,

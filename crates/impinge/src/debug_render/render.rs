@@ -1,4 +1,4 @@
-//! The trait that back ends implement.
+//! The trait that back ends of debug drawing implement.
 
 use super::{Color, ShapeMesh};
 use crate::math::{Point, Space, Vector, unit};

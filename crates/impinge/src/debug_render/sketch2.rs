@@ -1,4 +1,4 @@
-//! Outlines of 2D solids, and the triangles that fill them.
+//! Adds the outlines of 2D solids, and the triangles that fill them, to a mesh under construction.
 
 use super::sketch::Sketch;
 use crate::math::{Point, Real, Vector, cross2, perp, unit};

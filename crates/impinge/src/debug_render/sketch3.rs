@@ -1,4 +1,4 @@
-//! Triangles and lines of 3D solids.
+//! Adds the triangles and lines of 3D solids to a mesh under construction.
 
 use super::rounded3::inflated;
 use super::sketch::Sketch;

@@ -46,7 +46,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         }
     }
 
-    /// Draws the boxes of each object, the tight one first.
+    /// Draws the boxes of each object: first its tight box, then its loosened box.
     fn boxes<T>(&self, world: &CollisionWorld<N, D, T>, renderer: &mut dyn DebugRender<N, D>) {
         let (tight, loosened) = (&self.options.tight_box, &self.options.loosened_box);
         for object in world.collision_objects() {

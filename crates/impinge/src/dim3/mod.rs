@@ -140,7 +140,7 @@ pub mod narrow_phase {
     pub type DefaultContactDispatcher = crate::narrow_phase::DefaultContactDispatcher<3>;
     /// The dispatcher that selects the library's proximity algorithm for every pair of shapes.
     pub type DefaultProximityDispatcher = crate::narrow_phase::DefaultProximityDispatcher<3>;
-    /// The contact algorithm of the library, for a pair of built-in shapes.
+    /// The contact algorithm of the library, for a single pair of any shapes.
     pub type PairManifoldGenerator<N> = crate::narrow_phase::PairManifoldGenerator<N, 3>;
     /// A boxed contact algorithm.
     pub type ContactAlgorithm<N> = crate::narrow_phase::ContactAlgorithm<N, 3>;
@@ -158,7 +158,7 @@ pub mod narrow_phase {
     pub type ObjectTable<N> = crate::narrow_phase::ObjectTable<N, 3>;
 }
 
-/// Events: the contacts and proximities that began or ended in an update.
+/// Events: the contacts that began or ended in an update, and the proximities that changed.
 pub mod events {
     pub use crate::narrow_phase::{ContactEvent, Events, ProximityEvent};
     pub use crate::query::Proximity;
@@ -232,7 +232,7 @@ pub mod query {
     pub type NeighborhoodGeometry<N> = crate::query::NeighborhoodGeometry<N, 3>;
     /// A contact with its kinematic and its id.
     pub type TrackedContact<N> = crate::query::TrackedContact<N, 3>;
-    /// A contact without its kinematic.
+    /// A contact with its parts, its features and its id, but without its kinematic.
     pub type ContactPoint<N> = crate::query::ContactPoint<N, 3>;
     /// A manifold read in place: contacts, ids, features, parts and kinematics.
     pub type ManifoldView<'a, N> = crate::query::ManifoldView<'a, N, 3>;
@@ -328,7 +328,7 @@ pub mod procedural {
 pub mod partitioning {
     pub use crate::partitioning::BoxTreeError;
 
-    /// A tree over boxes that do not move.
+    /// A tree over boxes that are static, or that all move at once.
     pub type BoxTree<N> = crate::partitioning::BoxTree<N, 3>;
 }
 

@@ -2,7 +2,7 @@
 //! may themselves be [`Halves`].
 //!
 //! `fearless_simd` also has such vectors, as arrays of registers that each operation unpacks and
-//! packs. Their machine code is equal, but takes twice as long to compile.
+//! packs. Kernels with those vectors have the same machine code, but take twice as long to compile.
 
 use core::ops::{
     Add, AddAssign, BitAnd, BitAndAssign, BitOr, BitOrAssign, BitXor, Div, Mul, Neg, Not, Sub,

@@ -81,7 +81,7 @@ pub(crate) fn lit<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, value: f64)
     V::all(simd, N::lit(value))
 }
 
-/// Returns the greatest number of 8 lanes.
+/// Returns the greatest of the numbers in the 8 lanes.
 #[inline(always)]
 pub(crate) fn highest_lane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(numbers: V) -> N {
     let mut lanes = [N::ZERO; 8];

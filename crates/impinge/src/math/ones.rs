@@ -1,7 +1,8 @@
 //! Iteration over the set bits of a word.
 
 /// An iterator over the positions of the set bits of a word, in ascending order. It ends before the
-/// first position that is `BELOW` or more.
+/// first position that is `BELOW` or more, so that the positions can index arrays of the length
+/// `BELOW`.
 #[derive(Clone)]
 pub(crate) struct Ones<const BELOW: usize>(pub(crate) u32);
 

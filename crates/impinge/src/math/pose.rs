@@ -39,7 +39,7 @@ fn minus<N: Real, const D: usize>(a: &Vector<N, D>, b: &Vector<N, D>) -> Vector<
     vector(filled(|axis| a[axis] - b[axis]))
 }
 
-/// Applies `times` to each column of a matrix.
+/// Returns the matrix whose columns are the results of `times` for the columns of `matrix`.
 #[inline]
 fn of_columns<N: Real, const D: usize>(
     matrix: &Matrix<N, D>,

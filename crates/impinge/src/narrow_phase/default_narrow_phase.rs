@@ -23,12 +23,14 @@ use crate::memory::{Recent, clone_fields};
 use crate::pairs::PairTable;
 use crate::shape::Shape;
 
-/// Contacts and proximities of the pairs of a world, kept from update to update.
+/// The narrow phase of a new world: computes the contacts and proximities of its pairs, and keeps
+/// them from update to update.
 ///
-/// Pairs of the library's own algorithms are stored in dense arrays, one for each pair of shape
-/// kinds. They are updated in batches, without a virtual call or an allocation for each pair. Pairs
-/// of a custom dispatcher are updated one by one. A pair is skipped if neither of its objects
-/// changed.
+/// Pairs of the library's own algorithms are stored in dense arrays: one for each query and each
+/// pair of shape kinds, and one for the contacts of all pairs with composites. They are updated in
+/// batches, without a virtual call or an allocation for each pair. Pairs of a custom dispatcher are
+/// updated one by one. A pair is skipped if neither of its objects changed and the pair is not
+/// marked as dirty, as new pairs are.
 ///
 /// ```
 /// use impinge::dim3::narrow_phase::DefaultNarrowPhase;
@@ -251,8 +253,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }
     }
 
-    /// Returns the group and the maximum number of points of a manifold if the library's own
-    /// algorithm serves the pair. `None` for a pair of a custom algorithm.
+    /// Returns the group of a pair and the maximum number of points of its manifold (0 for a
+    /// proximity) if the library's own algorithm serves the pair; else `None`.
     pub(super) fn built_in_group(
         &self,
         table: &ObjectTable<N, D>,
@@ -271,9 +273,10 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }
     }
 
-    /// Keeps the state of a pair if it had a built-in algorithm and still has one, for the same
-    /// kind of query. Then updates the request, and moves the state to the group of the new shape
-    /// kinds. Otherwise changes nothing and returns `false`.
+    /// Keeps the state of a pair if its old and its new algorithm are built in and serve the same
+    /// kind of query and, for contacts, either both serve convex solids or both serve composites.
+    /// Then updates the request, and moves the state to the group of the new shape kinds. Otherwise
+    /// changes nothing and returns `false`.
     fn adjust(&mut self, table: &ObjectTable<N, D>, key: PairKey, index: usize) -> bool {
         let Some((new_group, max_points)) = self.built_in_group(table, key) else { return false };
         let Location { group, row } = self.locations[index];
@@ -406,8 +409,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         carried
     }
 
-    /// Updates the location of the pair that moved to row `row` when another pair was removed
-    /// from its group.
+    /// Updates the location of the pair that moved to row `row` when another pair was removed from
+    /// its group; does nothing if no pair moved.
     fn note_move(&mut self, moved: Option<PairKey>, row: u32) {
         let Some([first, second]) = moved else { return };
         let index = self.pairs.index_of(first, second).expect("every state belongs to a pair");

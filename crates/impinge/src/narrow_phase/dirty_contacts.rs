@@ -27,8 +27,8 @@ pub(crate) struct DirtyContacts<'r, 't, N: Space<D>, const D: usize> {
     pub(super) changes: &'t mut PairChanges,
 }
 
-/// Updates pairs of the narrow phase in 2D by [`update_pairs2`]; `false` if their kinds have no
-/// kernel.
+/// Updates pairs of the narrow phase in 2D by [`update_pairs2`]; returns `false` if there is no
+/// kernel for their kinds.
 pub(crate) fn update_lanes2<N: Space<2>>(
     solids: [&Solid<N, 2>; 2],
     dirty: &mut DirtyContacts<'_, '_, N, 2>,
@@ -36,8 +36,8 @@ pub(crate) fn update_lanes2<N: Space<2>>(
     update_pairs2(solids, dirty)
 }
 
-/// Updates pairs of the narrow phase in 3D by [`update_pairs3`]; `false` if their kinds have no
-/// kernel.
+/// Updates pairs of the narrow phase in 3D by [`update_pairs3`]; returns `false` if there is no
+/// kernel for their kinds.
 pub(crate) fn update_lanes3<N: Space<3>>(
     solids: [&Solid<N, 3>; 2],
     dirty: &mut DirtyContacts<'_, '_, N, 3>,

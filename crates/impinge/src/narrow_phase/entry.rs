@@ -70,7 +70,7 @@ pub(crate) struct ContactEntry<N: Real, S> {
 
 clone_fields!([N: Real, S: Clone] ContactEntry<N, S> { number, state, request });
 
-/// Public manifolds of a pair, built on first access after an update.
+/// The manifolds of a pair in their public form, built on first access after an update.
 #[derive(Debug)]
 pub(crate) struct ContactView<M> {
     manifolds: OnceLock<M>,

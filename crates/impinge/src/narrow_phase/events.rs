@@ -80,8 +80,8 @@ pub struct ProximityEvent {
     pub new_status: Proximity,
 }
 
-/// Events of an update, or of several if the world keeps events. Removals and updates of single
-/// pairs queue events for the next update.
+/// Events of an update, or of several updates if the world keeps events. Removals and updates of
+/// single pairs queue events for the next update.
 ///
 /// Order within the batch of an update: first the queued events, then all others. Each part is
 /// sorted by handles. Events of the same pair are in the order in which they occurred.

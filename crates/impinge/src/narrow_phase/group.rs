@@ -53,7 +53,8 @@ pub(crate) struct Group<S: Parts, V = (), R = ()> {
     pub(super) states: Vec<S>,
     /// A view for each state; created on first access.
     pub(super) views: OnceLock<Vec<V>>,
-    /// A reference for each state; `None` without contact reuse.
+    /// For each state, the reference pose and distances of contact reuse; `None` without contact
+    /// reuse.
     pub(super) references: Option<Vec<R>>,
     pub(super) journal: Journal<GroupNote<S>, (), KeptPair<S, R>>,
     /// Points of the pairs in [`GroupNote::Written`] notes.
@@ -291,7 +292,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
 }
 
 impl RowSet {
-    /// Removes the rows for which `stays` returns `false`.
+    /// Removes from the set the rows for which `stays` returns `false`.
     pub(super) fn retain(&mut self, mut stays: impl FnMut(usize) -> bool) {
         for index in self.indices() {
             let (word, bit) = flag(index);

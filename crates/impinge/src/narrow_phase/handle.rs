@@ -2,8 +2,8 @@
 
 use crate::generation::Generation;
 
-/// The handle of a collision object. Within a world, a handle never refers to a different object
-/// than the one for which it was issued.
+/// The handle of a collision object. Within a world that is not rewound, a handle never refers to a
+/// different object than the one for which it was issued.
 ///
 /// A world refuses a handle of another world like a stale handle, even if both worlds were filled
 /// in the same way. Only a clone and its original both accept the handles issued before the clone.

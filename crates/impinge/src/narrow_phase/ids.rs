@@ -1,10 +1,10 @@
 //! Allocation of contact ids.
 //!
 //! No id is issued twice in a world, even if its narrow phase is replaced: the new narrow phase
-//! continues the counter.
+//! continues the counter. Only a rewind resets the counter, to its value at the mark.
 
-/// A counter that issues an identifier for each pair. No other pair of the same world has or had
-/// the same identifier.
+/// A counter that issues an identifier for each pair. Between rewinds, no two pairs of a world ever
+/// have the same identifier.
 ///
 /// A contact id consists of the identifier of its pair and a number within the pair. So pairs that
 /// are updated in parallel need no coordination.

@@ -6,20 +6,20 @@ use crate::shape::ShapeKind;
 /// Number of ordered pairs of shape kinds.
 const KIND_PAIRS: usize = ShapeKind::COUNT * ShapeKind::COUNT;
 
-/// Index of the group of kinds that have had no pair.
+/// Entry of a number that has no group, because no pair has had these kinds.
 const NONE: u8 = u8::MAX;
 
 /// Groups by the number of their kinds ([`kind_pair`](super::pair_groups::kind_pair)), without gaps and in
 /// ascending order of these numbers.
 ///
-/// A group is made for its first pair and then kept. Most worlds have pairs of few kinds, so that
-/// clones, marks and updates do not visit hundreds of empty groups.
+/// A group is made for its first pair and then kept. Most worlds have pairs of few kinds, so
+/// clones, marks and updates visit a few groups instead of hundreds of empty groups.
 #[derive(Debug)]
 pub(crate) struct KindGroups<G> {
     make: fn() -> G,
-    /// By number: the index in `groups`, or [`NONE`].
+    /// By number: the index of the group in `groups`, or [`NONE`].
     places: [u8; KIND_PAIRS],
-    /// The numbers of `groups`.
+    /// The number of each group, by index in `groups`.
     numbers: Vec<u8>,
     groups: Vec<G>,
 }
@@ -44,7 +44,7 @@ impl<G> KindGroups<G> {
         &mut self.groups[usize::from(self.places[usize::from(number)])]
     }
 
-    /// Returns the group of any number; makes it if there is none.
+    /// Returns the group with this number; creates it if it does not exist yet.
     pub(crate) fn made(&mut self, number: u8) -> &mut G {
         if self.places[usize::from(number)] == NONE {
             let at = self.numbers.partition_point(|&other| other < number);

@@ -72,14 +72,16 @@ pub struct ObjectTable<N: Space<D>, const D: usize> {
     /// Rows without an object; the last one in the list is used next.
     free: Vec<u32>,
     /// Handle indices of the objects whose rows were written in the current update, in order of
-    /// writing. An object that has lost its row since may still be listed, and may be listed twice.
+    /// writing. An object stays in the list when its row is released, and is listed again if it
+    /// gets another row.
     changed: Vec<u32>,
     /// Number of rows acquired since the last [`Self::compact`].
     acquired: usize,
     /// Pairs computed since the last update, sorted by key, with the poses at which they were
     /// computed.
     pub(super) substeps: Vec<PairSolids<N, D>>,
-    /// By handle index, up to the last object with a skin: the skin, as of the last update.
+    /// By handle index, up to the largest index of an object with a skin: the skin, as of the last
+    /// update.
     pub(super) skins: Vec<N>,
     journal: Journal<RowNote<N, D>, Vec<PairSolids<N, D>>, Option<ObjectRow<N, D>>>,
 }
@@ -93,8 +95,8 @@ clone_fields!([N: Space<D>, const D: usize] ObjectTable<N, D> {
 enum RowNote<N: Space<D>, const D: usize> {
     /// The handle index of an object, and its isometry before a move.
     Moved(u32, N::Isometry),
-    /// The handle index of an object, and its skin before a change. The row is kept; `None` if the
-    /// object had none.
+    /// The handle index of an object, and its skin before a change of row or skin. The journal also
+    /// has the old row; `None` if the object had no row.
     Whole(u32, N),
 }
 
@@ -361,7 +363,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.journal.mark(number, self.substeps.clone());
     }
 
-    /// Drops the marks with smaller numbers.
+    /// Drops the marks whose numbers are less than `number`.
     pub(crate) fn forget_before(&mut self, number: u64) {
         self.journal.forget_before(number);
     }
@@ -386,7 +388,8 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.journal = journal;
     }
 
-    /// Records the row and skin of an object before they change, once for each mark.
+    /// Records row and skin of an object before their first change since the latest mark; does
+    /// nothing if there are no marks.
     fn note(&mut self, index: u32) {
         if self.journal.is_first_whole(index as usize) {
             let row = self.has_row(index).then(|| ObjectRow {

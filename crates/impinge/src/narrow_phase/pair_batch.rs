@@ -101,9 +101,9 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }
     }
 
-    /// Writes the pair `new` at the index and row of the pair `old`. `None`, without a change,
-    /// unless both belong to the same group of built-in contacts of convex solids, and `new` does
-    /// not exist yet.
+    /// Writes the pair `new` at the index and row of the pair `old`, and pushes the final event of
+    /// `old` if that was touching. `None`, without a change, if `old` does not exist, if `new`
+    /// exists, or if they do not belong to the same group of built-in contacts of convex solids.
     fn replace(
         &mut self,
         table: &ObjectTable<N, D>,

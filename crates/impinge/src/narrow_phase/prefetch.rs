@@ -64,8 +64,8 @@ fn prefetch<N: Space<D>, const D: usize>(
     core::hint::black_box(loaded);
 }
 
-/// Reads a cache line of a convex solid's data. The returned value is meaningless, and only keeps
-/// the load alive.
+/// Reads a cache line of a convex solid's data; two lines for a polytope, none for a composite and
+/// for kinds that rarely occur. The returned value is meaningless, and only keeps the loads alive.
 #[inline]
 fn solid<N: Real, const D: usize>(shape: Geometry<'_, N, D>) -> N {
     match shape.0 {

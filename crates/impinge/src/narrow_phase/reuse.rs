@@ -53,7 +53,7 @@ pub(super) fn usable_tolerance<N: Real>(tolerance: N) -> Result<N, ReuseError> {
     Ok(tolerance)
 }
 
-/// Relative pose and distances of a pair when its contacts were last computed.
+/// The relative pose and the contact distances of a pair at the last computation of its contacts.
 #[derive(Clone, Debug)]
 pub(crate) struct Reference<N: Real, const D: usize> {
     /// Pose of the solid in whose frame contacts are stored, relative to the other solid.
@@ -84,8 +84,9 @@ impl<N: Real, const D: usize> Default for Reference<N, D> {
 
 impl<N: Space<D>, const D: usize> Reference<N, D> {
     /// Updates the distances of the contacts of a pair and returns `true`, if the pair has moved by
-    /// less than the limit and a contact is still within the prediction or within its old distance.
-    /// Otherwise returns `false`. `pose21` returns the present relative pose.
+    /// less than the limit, and has no contacts or at least one contact within the prediction or
+    /// within its old distance. Otherwise returns `false`. `pose21` returns the present relative
+    /// pose.
     ///
     /// The limit is the smaller of `tolerance` and `prediction`, so that no contact of overlapping
     /// solids is missed.
@@ -232,7 +233,7 @@ impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
     }
 }
 
-/// Returns the object in whose frame contacts are stored first, then the other object.
+/// Returns both objects of a pair, first the object in whose frame contacts are stored.
 const fn kept_order([first, second]: PairKey, is_swapped: bool) -> [u32; 2] {
     if is_swapped { [second, first] } else { [first, second] }
 }

@@ -1,7 +1,8 @@
 //! Rewinding the narrow phase to a mark.
 //!
-//! Pairs return to their former indices in their groups, because contacts are read in that order.
-//! The order of the pair table affects no result, so its pairs are simply inserted and removed.
+//! Each pair returns to the row of its group that it had at the mark, because contacts are read in
+//! the order of the rows. The order of the pair table affects no result, so its pairs are simply
+//! inserted and removed.
 
 use super::default_narrow_phase::NOWHERE;
 use super::entry::{ContactEntry, CustomContactEntry, CustomProximityEntry, ProximityEntry};
@@ -15,7 +16,7 @@ use crate::collide::{PairIds, RawManifold, RawPoint};
 use crate::journal::Journal;
 use crate::math::{Pose, Real, Space, Vector};
 
-/// All data of a pair in a group.
+/// All data of one row of a group: a pair with its flags, its state and its reference.
 #[derive(Clone, Debug)]
 pub(crate) struct GroupRow<S, R> {
     key: PairKey,
@@ -26,8 +27,9 @@ pub(crate) struct GroupRow<S, R> {
     reference: Option<R>,
 }
 
-/// A state that is recorded as a head and points, so that the note of a pair without contacts takes
-/// less memory than the note of a pair with four.
+/// The state of a pair, which is recorded in two parts: a head of constant size, and the points in
+/// a list of their own. So the note of a pair without contacts takes less memory than the note of a
+/// pair with four.
 pub(crate) trait Parts: Clone {
     type Head;
     type Point: Copy;
@@ -38,7 +40,8 @@ pub(crate) trait Parts: Clone {
     /// Returns the points.
     fn points(&self) -> &[Self::Point];
 
-    /// Restores the data. The points arrive in reverse order.
+    /// Restores the state from its head and its points; `reversed` yields the points in reverse
+    /// order.
     fn put_together(&mut self, head: Self::Head, reversed: impl Iterator<Item = Self::Point>);
 }
 
@@ -108,18 +111,21 @@ whole! {
 
 /// A change of a group, which can be undone.
 pub(crate) enum GroupNote<S: Parts> {
-    /// A pair was added at the end.
+    /// A pair was added in a new last row.
     Pushed,
-    /// A pair was removed, and the last one moved to its index. Its row is kept.
+    /// The row of a removed pair, to which the last pair of the group moved. The journal also has
+    /// all data of the removed pair, as [`KeptPair::Row`].
     Removed(u32),
-    /// A pair before a change other than an update, or before it was replaced. Its row is kept.
+    /// The row of a pair before a change other than an update, or before its replacement by another
+    /// pair. The journal also has all data of the old pair, as [`KeptPair::Row`].
     Replaced(u32),
-    /// A pair before an update computed it. Its points are in [`Group::point_journal`]; its
-    /// reference is kept, if the group has references.
+    /// A pair before an update computed it: its row, the number of its points, its dirty flag and
+    /// its touching flag. Its points are in [`Group::point_journal`]. If the group has references,
+    /// the journal also has the pair's reference, as [`KeptPair::Reference`].
     Written { place: u32, num_points: u32, due: bool, is_touching: bool, head: S::Head },
 }
 
-/// Data of a note of a group.
+/// The data of a [`GroupNote`] that owns memory.
 pub(crate) enum KeptPair<S, R> {
     Row(Box<GroupRow<S, R>>),
     Reference(R),
@@ -146,8 +152,8 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         })
     }
 
-    /// Records the pairs at the given indices before an update computes them, if there are marks.
-    /// A pair is recorded once for each mark.
+    /// Records the pairs in the given rows before an update computes them, each pair only once
+    /// between two marks. Does nothing if there are no marks.
     fn note(&mut self, places: impl Iterator<Item = u32>) {
         if self.journal.is_on() {
             places.for_each(|place| self.note_one(place));
@@ -171,7 +177,8 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         }
     }
 
-    /// Records a pair before a change other than an update, if there are marks.
+    /// Records all data of the pair in a row before a change other than an update. Does nothing if
+    /// there are no marks.
     pub(super) fn note_whole(&mut self, place: u32) {
         if self.journal.is_on() {
             self.journal.note_kept(GroupNote::Replaced(place), KeptPair::Row(self.row(place)));
@@ -179,7 +186,8 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         }
     }
 
-    /// Records a pair before its removal, if there are marks.
+    /// Records all data of the pair in a row before its removal. Does nothing if there are no
+    /// marks.
     pub(super) fn note_removed(&mut self, place: u32) {
         if self.journal.is_on() {
             self.journal.note_kept(GroupNote::Removed(place), KeptPair::Row(self.row(place)));
@@ -226,8 +234,8 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         }
     }
 
-    /// Undoes all changes since a mark. Calls `changed` with each index whose pair may have
-    /// changed.
+    /// Undoes all changes of the group since a mark. Calls `changed` with each row in which another
+    /// pair may stand now.
     fn rewind(&mut self, number: u64, mut changed: impl FnMut(u32)) {
         let mut journal = core::mem::take(&mut self.journal);
         if !journal.has(number) {
@@ -296,7 +304,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
     }
 }
 
-/// Runs `action` for each group, with its location.
+/// Runs `action` for each group, with its [`GroupId`].
 macro_rules! each_group {
     ($lanes:expr, |$lane:pat_param, $group:ident| $action:expr) => {{
         let PairGroups { contacts, composites, proximity, custom_contacts, custom_proximity } =
@@ -325,7 +333,8 @@ macro_rules! each_group {
 }
 
 impl<N: Space<D>, const D: usize> PairGroups<N, D> {
-    /// Records some pairs of one group before they are computed.
+    /// Records the pairs at the locations `picked`, which are all in one group, before they are
+    /// computed.
     pub(super) fn note(&mut self, picked: &[Location]) {
         let places = picked.iter().map(|at| at.row);
         match picked[0].group {
@@ -344,7 +353,8 @@ impl<N: Space<D>, const D: usize> PairGroups<N, D> {
     }
 }
 
-/// State of the narrow phase that a mark copies as a whole.
+/// State of the narrow phase that a mark copies as a whole: the id counter and the keys of the
+/// dirty pairs.
 #[derive(Clone, Debug)]
 pub(crate) struct NarrowHead {
     ids: IdAllocator,
@@ -352,7 +362,7 @@ pub(crate) struct NarrowHead {
 }
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
-    /// Sets a mark; see [`Journal`](crate::journal::Journal).
+    /// Sets a mark for a later [`Self::rewind`]; see [`Journal`](crate::journal::Journal).
     pub(crate) fn mark(&mut self, number: u64) {
         let head = NarrowHead { ids: self.ids.clone(), due: self.dirty_pairs.clone() };
         self.journal.mark(number, head);
@@ -360,7 +370,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         each_group!(&mut self.groups, |_, group| group.mark(number));
     }
 
-    /// Drops the marks with smaller numbers.
+    /// Drops the marks whose numbers are less than `number`.
     pub(crate) fn forget_before(&mut self, number: u64) {
         self.journal.forget_before(number);
         self.pairs.forget_before(number);

@@ -160,7 +160,7 @@ impl<S: Parts, V, R> Group<S, V, R> {
 }
 
 impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
-    /// Adds a saved pair and returns its row.
+    /// Adds a saved pair, which is dirty only if `is_due` is `true`, and returns its row.
     fn push_restored(
         &mut self,
         (key, state): (PairKey, S),

@@ -1,6 +1,9 @@
 //! The state of a pair with a built-in algorithm, and its update.
 //!
-//! A world computes the same bits for a pair as a generator that serves this pair alone.
+//! A world computes the same bits for a pair as a generator that serves this pair alone. The
+//! *canonical order* of two solids is that of [`canonical`]: by kind, pose and numbers, so it does
+//! not depend on the order in which the solids are passed. The pair's *own order* is that of its
+//! key.
 
 use super::group::PairKey;
 use crate::collide::far::ReachBounds;
@@ -161,7 +164,8 @@ impl<N: Real, const D: usize> OrderedContacts<RawManifold<N, D>> {
 }
 
 impl<C> OrderedContacts<C> {
-    /// Sets the canonical order; calls `flip` on the contacts if it has changed.
+    /// Stores whether the canonical order is the reverse of the pair's own order; calls `flip` on
+    /// the contacts if that has changed.
     #[inline(always)]
     fn set_order(&mut self, swapped: bool, flip: impl FnOnce(&mut C)) {
         if swapped != self.swapped {
@@ -276,7 +280,7 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         self.solids.as_ref()
     }
 
-    /// Returns the manifold, in canonical order, for changes.
+    /// Returns the manifold, in the frame of the first solid in canonical order, for changes.
     #[inline]
     pub(super) const fn raw_mut(&mut self) -> &mut RawManifold<N, D> {
         &mut self.kept.contacts

@@ -62,7 +62,8 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.replace_pose(key[0], first);
     }
 
-    /// Returns the two solids of a pair at the poses at which it is read.
+    /// Returns the two solids of a pair at the poses at which its contacts are read: those of its
+    /// substep if there is one, else those of the last update.
     pub(super) fn placed_pair(&self, key: PairKey) -> [Placed<'_, N, D>; 2] {
         match self.substep_solids(key) {
             None => posed(self, key).placed(),

@@ -7,7 +7,8 @@ use crate::math::{Real, Space};
 use crate::query::{ContactManifold, Proximity};
 use crate::shape::Shape;
 
-/// The distance and the angles up to which contacts are predicted.
+/// The distance up to which contacts are requested, and the rotations of both solids that are
+/// predicted.
 ///
 /// ```
 /// use impinge::dim3::query::ContactPrediction;
@@ -58,7 +59,7 @@ impl<N: Real> ContactPrediction<N> {
     }
 }
 
-/// Contacts of a pair of solids, kept from update to update.
+/// An algorithm for the contacts of a pair of solids. It keeps the contacts from update to update.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -151,7 +152,8 @@ pub trait ContactDispatcher<N: Space<D>, const D: usize>: Send + Sync {
     }
 }
 
-/// Proximity of a pair of solids, kept from update to update.
+/// An algorithm for the proximity of a pair of solids. It keeps the proximity until the next
+/// update.
 ///
 /// ```
 /// use impinge::dim2::events::Proximity;

@@ -21,7 +21,7 @@ use crate::math::Space;
 /// objects instead of by a scan of all pairs.
 const SPARSE: usize = 8;
 
-/// Indices of pairs within a chunk.
+/// Indices of pairs in the rows of a chunk, or in all rows of a group for picked pairs.
 type RowIndices = SmallVec<[usize; CHUNK]>;
 
 /// The changes of statuses in an update, each with its pair.
@@ -73,8 +73,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.changes = changes;
     }
 
-    /// Returns `true` if few pairs must be computed: the pairs of changed objects, and `more` other
-    /// pairs.
+    /// Returns `true` if fewer than one in [`SPARSE`] pairs must be computed: the pairs of changed
+    /// objects, and `more` other pairs. A pair of two changed objects counts twice.
     fn is_sparse(&self, table: &ObjectTable<N, D>, more: usize) -> bool {
         let mut affected = more;
         table.changed().iter().all(|&object| {
@@ -229,7 +229,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     }
 }
 
-/// Sets whether a pair touches, and lists the change if there is one.
+/// Sets the touching flag of the pair in a row, and appends to `changes` if that changed the flag.
 #[inline]
 pub(super) fn note_touching<S, V, R>(
     rows: &mut Rows<'_, S, V, R>,
@@ -263,8 +263,8 @@ fn update_convex<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns `true` if a solid is a ball. Pairs with a ball do not reuse contacts, because their
-/// closed forms are as fast.
+/// Returns `true` if one of the solids is a ball; `false` for pairs without copies of their solids.
+/// Pairs with a ball do not reuse contacts, because their closed forms are as fast.
 fn has_ball<N: Space<D>, const D: usize>(solids: Option<&[Solid<N, D>; 2]>) -> bool {
     solids.is_some_and(|solids| solids.iter().any(|solid| matches!(solid, Solid::Ball(_))))
 }
@@ -359,8 +359,8 @@ fn update_status<N: Space<D>, const D: usize>(
     changes.extend(change.map(|change| (key, change)));
 }
 
-/// Calls `update` for each chunk of a group; with the feature `parallel`, on several threads. In
-/// either case changes are listed in the order of the group.
+/// Calls `update` for each chunk of a group; with the feature `parallel`, on several threads if the
+/// group has at least two full chunks. In both cases `changes` has the order of the group's rows.
 fn update_group<
     S: Parts + Send + Sync,
     V: Default + Send + Sync,

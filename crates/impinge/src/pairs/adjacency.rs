@@ -333,8 +333,8 @@ impl Adjacency {
         (head.start, head.class())
     }
 
-    /// Takes a run of `2^class` lines: a released one, or new lines at the end of the pool. Returns
-    /// its first line.
+    /// Takes a run of `2^class` lines: a released run if there is one, else new lines at the end of
+    /// the pool. Returns the index of the run's first line.
     fn take_run(&mut self, class: u32) -> u32 {
         let class = class as usize;
         if self.free.len() <= class {

@@ -1,5 +1,5 @@
 //! A set of unordered pairs of small indices. Iteration takes linear time; a change or a look-up
-//! takes constant time.
+//! takes amortised constant time.
 //!
 //! Memory layout:
 //! * the pairs are a dense array of `(smaller, larger)`. A removal moves the last pair into the

@@ -17,7 +17,7 @@ pub(crate) struct PairTable {
 
 clone_fields!([] PairTable { pairs, adjacency, journal });
 
-/// A change of the set, which can be undone.
+/// A change of the set, by which a rewind undoes it.
 #[derive(Clone, Copy, Debug)]
 enum PairNote {
     Inserted(u32, u32),
@@ -175,7 +175,8 @@ impl PairTable {
         Some(index)
     }
 
-    /// Moves the last pair to `index`, whose former pair has no links any more.
+    /// Removes the pair at `index`, whose links have been removed, from the dense array: the last
+    /// pair moves to `index`.
     fn close_gap(&mut self, index: usize) -> Removed {
         self.pairs.swap_remove(index);
         let was_last = index == self.pairs.len();

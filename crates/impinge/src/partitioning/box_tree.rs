@@ -363,7 +363,7 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         Ok(())
     }
 
-    /// See [`Self::try_from_boxes`].
+    /// Implements [`Self::try_from_boxes`].
     pub(crate) fn build(boxes: Vec<Aabb<N, D>>) -> Result<Self, BoxTreeError> {
         let count = count(boxes.len())?;
         check(&boxes)?;
@@ -372,7 +372,7 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         Ok(Self { bounds: around(&boxes), boxes, tree, unbounded, lanes })
     }
 
-    /// See [`Self::try_refit`].
+    /// Implements [`Self::try_refit`].
     pub(crate) fn refit_to(&mut self, boxes: &[Aabb<N, D>]) -> Result<(), BoxTreeError> {
         let (given, needed) = (boxes.len(), self.boxes.len());
         if given != needed {
@@ -415,7 +415,7 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         self.unbounded.iter().fold(extent, |extent, &id| max(extent_of(id), extent))
     }
 
-    /// Answers `question`: calls `found` with the id of each result, in no particular order.
+    /// Calls `found` with the id of each box that matches `question`, in no particular order.
     pub(crate) fn answer(&self, question: &Question<'_, N, D>, found: &mut dyn FnMut(u32)) {
         match question {
             Question::Overlapping(aabb) => self.search().each_overlapping(aabb, found),

@@ -1,4 +1,5 @@
-//! Functions on the boxes of a user: validation, count, union, and a packed tree.
+//! Functions on the boxes of a user: validation, checked count, union, and the construction of a
+//! packed tree.
 
 use super::BoxTreeError;
 use crate::bounding_volume::{Aabb, BoundingVolume};

@@ -7,8 +7,9 @@ use crate::math::{Real, Vector};
 /// The minimum number of subdivisions of a full turn: one or two corners enclose no area.
 pub const MIN_SUBDIVISIONS: u32 = 3;
 
-/// The maximum number of subdivisions of a full turn. The gap to a ball of radius 1 is then 4e-8,
-/// below the resolution of `f32`, and the vertices of every surface fit 32-bit indices.
+/// The maximum number of subdivisions of a full turn. The surface of a ball of radius 1 then
+/// deviates from the true surface by at most 4e-8, which is below the resolution of `f32`, and the
+/// vertices of every surface fit 32-bit indices.
 pub const MAX_SUBDIVISIONS: u32 = 1 << 14;
 
 /// Clamps a requested number of subdivisions to the supported range.

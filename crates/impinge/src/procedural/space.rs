@@ -72,8 +72,8 @@ pub fn ellipsoid<N: Real>(ellipsoid: &Ellipsoid<N, 3>, subdivisions: u32) -> Tri
     let is_flat = half_axes.iter().any(|&half| half == N::ZERO);
     let least = half_axes.iter().fold(N::INFINITY, |least, &half| min(half, least));
     for normal in surface.normals.iter_mut().flatten() {
-        // If a half axis is zero, the normal is along the zero axes; else its components are
-        // divided by the half axes.
+        // If a half axis is zero, the normal keeps only its components along the axes with half
+        // axis zero; else its components are divided by the half axes.
         let steep = normal.zip_map(half_axes, |x, half| match (is_flat, half == N::ZERO) {
             (true, false) => N::ZERO,
             (true, true) => x,
@@ -138,8 +138,8 @@ pub fn tetrahedron<N: Real>(tetrahedron: &Tetrahedron<N>) -> TriangleSurface<N> 
     surface
 }
 
-/// Returns `n = subdivisions` rectangles around, and `n` triangles in each cap that meet at its
-/// centre.
+/// Returns the side as `n = subdivisions` rectangles of two triangles each, and each cap as `n`
+/// triangles that meet at its centre.
 ///
 /// There are `2 + 2 n` vertices and `4 n` triangles; the first vertex is the centre of the cap on
 /// the positive side of y, the last vertex the centre of the opposite cap. The gap is at most
@@ -159,7 +159,8 @@ pub fn cylinder<N: Real>(cylinder: &Cylinder<N>, subdivisions: u32) -> TriangleS
     revolve(&RevolutionFrame::around(up()), parts_of_turn(subdivisions), &profile)
 }
 
-/// Returns `n = subdivisions` triangles up to the apex and `n` in the base that meet at its centre.
+/// Returns the side as `n = subdivisions` triangles that meet at the apex, and the base as `n`
+/// triangles that meet at its centre.
 ///
 /// There are `2 + n` vertices and `2 n` triangles; the first vertex is the apex, the last vertex
 /// the centre of the base. The gap is at most `radius · (1 − cos(π / n))`.

@@ -41,7 +41,8 @@ pub struct TriangleSurface<N: Real> {
     /// The vertices of each triangle, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// For each triangle, the outward unit normals of the true surface at its vertices, for smooth
-    /// shading. At the apex of a cone it is the normal in the middle of the triangle.
+    /// shading. The normal at the apex of a cone is the normal along the middle line of the
+    /// triangle.
     pub normals: Vec<[Vector<N, 3>; 3]>,
 }
 

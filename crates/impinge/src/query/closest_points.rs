@@ -25,7 +25,8 @@ pub enum ClosestPoints<N: Real, const D: usize> {
     /// A point on the first solid and a point on the second, in the world frame. Their distance is
     /// the distance of the solids.
     WithinMargin(Point<N, D>, Point<N, D>),
-    /// The solids are farther apart than `max_distance`.
+    /// The solids are farther apart than `max_distance`, a pose is not finite, or a composite has
+    /// no parts.
     Disjoint,
 }
 

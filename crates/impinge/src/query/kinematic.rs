@@ -122,13 +122,13 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         KinematicSides::new(pair, normal).kinematic(point)
     }
 
-    /// Returns the feature of the first solid that touches.
+    /// Returns the touching feature of the first solid.
     #[must_use]
     pub fn feature1(&self) -> FeatureId {
         self.feature1
     }
 
-    /// Returns the feature of the second solid that touches.
+    /// Returns the touching feature of the second solid.
     #[must_use]
     pub fn feature2(&self) -> FeatureId {
         self.feature2
@@ -203,7 +203,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     }
 
     /// Returns the kinematic in the frames of two shapes that have the solids as parts. `pose1` and
-    /// `pose2` are the poses of the solids there; `turns` says whether rotations change each shape.
+    /// `pose2` are the poses of the solids there; `turns`: whether a rotation changes each shape.
     pub(super) fn in_frames(&self, [pose1, pose2]: [&Pose<N, D>; 2], turns: [bool; 2]) -> Self {
         Self {
             turns,

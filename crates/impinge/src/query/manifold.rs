@@ -116,9 +116,9 @@ pub struct TrackedContact<N: Real, const D: usize> {
     pub kinematic: ContactKinematic<N, D>,
     /// The id, which is kept while the contact exists.
     pub id: ContactId,
-    /// The index of the first shape's part that touches; 0 if the shape is not a composite.
+    /// The index of the touching part of the first shape; 0 if the shape is not a composite.
     pub part1: u32,
-    /// The index of the second shape's part that touches; 0 if the shape is not a composite.
+    /// The index of the touching part of the second shape; 0 if the shape is not a composite.
     pub part2: u32,
 }
 

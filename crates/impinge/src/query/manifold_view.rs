@@ -44,13 +44,13 @@ pub struct ContactPoint<N: Real, const D: usize> {
     pub contact: Contact<N, D>,
     /// The id, which is kept while the contact exists.
     pub id: ContactId,
-    /// The feature of the first solid that touches.
+    /// The touching feature of the first solid.
     pub feature1: FeatureId,
-    /// The feature of the second solid that touches.
+    /// The touching feature of the second solid.
     pub feature2: FeatureId,
-    /// The index of the first shape's part that touches; 0 if the shape is not a composite.
+    /// The index of the touching part of the first shape; 0 if the shape is not a composite.
     pub part1: u32,
-    /// The index of the second shape's part that touches; 0 if the shape is not a composite.
+    /// The index of the touching part of the second shape; 0 if the shape is not a composite.
     pub part2: u32,
 }
 

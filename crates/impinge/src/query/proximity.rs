@@ -26,7 +26,8 @@ pub enum Proximity {
     Intersecting,
     /// The solids are apart, by at most the margin.
     WithinMargin,
-    /// The solids are farther apart than the margin.
+    /// The solids are farther apart than the margin, a pose is not finite, or a composite has no
+    /// parts.
     Disjoint,
 }
 
@@ -42,8 +43,9 @@ impl Proximity {
 ///
 /// Touching solids intersect, and a distance equal to `margin` is within it. A negative or NaN
 /// `margin` is treated as zero. Two half-spaces with an unbounded overlap intersect. The result is
-/// [`Proximity::Disjoint`] if a pose is not finite. The proximity of composites is the proximity of
-/// their nearest parts; the search ends at the first two parts that touch.
+/// [`Proximity::Disjoint`] if a pose is not finite, and for a composite without parts. The
+/// proximity of composites is the proximity of their nearest parts; the search ends at the first
+/// two parts that touch.
 pub fn proximity<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,

@@ -168,7 +168,8 @@ pub(crate) fn in_world<N: Space<D>, const D: usize>(
 /// A separation in the frame of the first shape, with its parts and their features.
 type Found<N, const D: usize> = (Separation<N, D>, [u32; 2], [FeatureId; 2]);
 
-/// Returns the result for two convex solids.
+/// Returns the separation of two convex solids and, if requested, the features; `None` if the
+/// solids are farther apart than `limit` or the pose is not finite.
 #[inline]
 fn of_convex<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -183,7 +184,9 @@ fn of_convex<N: Space<D>, const D: usize>(
     Some((found, [0; 2], features))
 }
 
-/// Returns the result for two shapes, at least one of which is a composite.
+/// Returns the separation of the nearest or deepest parts of two shapes, at least one of which is a
+/// composite. `None` if the shapes are farther apart than `limit`, a composite has no parts, or the
+/// pose is not finite.
 fn of_composites<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     limit: N,

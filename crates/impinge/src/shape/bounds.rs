@@ -48,7 +48,8 @@ pub fn bounding_sphere<N: Real, R: AbstractRotation<N, D>, const D: usize>(
 }
 
 impl<N: Real, const D: usize> Polytope<N, D> {
-    /// Returns the smallest box around the solid placed at `pose`, rounded outwards.
+    /// Returns the smallest box around the solid placed at `pose`, rounded outwards; all of space
+    /// if a rotated vertex is NaN.
     pub(super) fn aabb_at(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         // If the rotation gives NaN, there are no extents and the box is unbounded.
         let extents = extents(Level::new(), &self.blocks, &pose.rotation);
@@ -58,7 +59,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 
     /// Returns a sphere around the centre of the box; its radius exceeds the distance of the
-    /// farthest vertex by a bound of the rounding error.
+    /// farthest vertex by a bound of the rounding error. All of space if the radius overflows.
     pub(super) fn bounding_sphere(&self) -> BoundingSphere<N, D> {
         let center = self.aabb_at(&Pose::identity()).center();
         let distance = |vertex: &Point<N, D>| length_of(&(vertex - center));
@@ -68,8 +69,8 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 }
 
-/// Runs [`extents_in_lanes`] with the vector instructions of `level`; the result does not depend on
-/// `level`.
+/// Returns the result of [`extents_in_lanes`], computed with the vector instructions of `level`.
+/// The result does not depend on `level`.
 fn extents<N: Real, const D: usize>(
     level: Level,
     blocks: &[[[N; LANES]; D]],

@@ -2,9 +2,10 @@
 //!
 //! A convex solid is a *core* inflated by a *rounding* radius: a ball is an inflated point, a
 //! capsule an inflated segment. Algorithms run on cores and subtract the radii from the distance at
-//! the end, which is exact up to rounding and nearly free. [`Shape`] is what a world stores;
-//! [`SupportMap`] is the trait by which queries accept a user's convex solid; [`ConvexPolyhedron`]
-//! gives access to the features of solids with flat faces; [`CompositeShape`] is a union of solids.
+//! the end, which is exact up to rounding and nearly free. A world stores solids by the trait
+//! [`Shape`]; [`SupportMap`] is the trait by which queries accept a user's convex solid;
+//! [`ConvexPolyhedron`] gives access to the features of solids with flat faces; [`CompositeShape`]
+//! is a union of solids.
 
 mod bounds;
 mod compact;
@@ -90,7 +91,7 @@ use crate::math::{Pose, Real, Vector};
 /// A solid in its own frame.
 ///
 /// Implement this trait to put your own type into a world. The two required methods return the
-/// shape's box and how queries treat it ([`Shape::geometry`]).
+/// shape's box, and the geometry on which queries dispatch ([`Shape::geometry`]).
 ///
 /// ```
 /// use impinge::dim2::math::Point;
@@ -109,9 +110,9 @@ use crate::math::{Pose, Real, Vector};
             or `CompositeShape`"
 )]
 pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
-    /// Returns how queries treat the solid: [`Geometry::support_map`] for a convex solid of your
-    /// own, [`Geometry::composite`] for a union of solids, or the geometry of a built-in shape that
-    /// represents the solid.
+    /// Returns the geometry on which queries dispatch: [`Geometry::support_map`] for a convex solid
+    /// of your own, [`Geometry::composite`] for a union of solids, or the geometry of a built-in
+    /// shape that represents the solid.
     fn geometry(&self) -> Geometry<'_, N, D>;
 
     /// Returns an axis-aligned box that contains the solid, in the frame of the solid. The box is

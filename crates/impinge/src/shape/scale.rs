@@ -86,7 +86,7 @@ impl From<MeshError> for ScaleError {
 pub(super) struct Scale<'a, N: Real, const D: usize>(&'a Vector<N, D>);
 
 impl<'a, N: Real, const D: usize> Scale<'a, N, D> {
-    /// Checks that each factor is finite and not zero.
+    /// Returns the factors as a scale; an error if one is zero or not finite.
     pub(super) fn try_new(factors: &'a Vector<N, D>) -> Result<Self, ScaleError> {
         let is_bad = |x: &N| *x == N::ZERO || !x.is_finite_number();
         match factors.iter().position(is_bad) {

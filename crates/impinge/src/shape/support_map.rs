@@ -199,6 +199,7 @@ pub trait ConvexPolyhedron<N: Real, const D: usize>: SupportMap<N, D> {
     /// resolves to a little below a right angle.
     fn support_feature_toward(&self, direction: &Vector<N, D>, angle: N, out: &mut Feature<N, D>);
 
-    /// Returns the id of the feature that [`Self::support_feature_toward`] finds for a tiny angle.
+    /// Returns the id of the feature that [`Self::support_feature_toward`] writes for an angle of
+    /// zero, which is clamped to the smallest angle that rounded arithmetic resolves.
     fn support_feature_id_toward(&self, direction: &Vector<N, D>) -> FeatureId;
 }

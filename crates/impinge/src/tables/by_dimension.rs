@@ -60,7 +60,8 @@ pub trait ByDimension<N: Real, const D: usize>:
     /// `slabs`; negative for overlaps.
     fn part_gaps(slabs: &AxisSlabs<N, D>, tiles: &PartPacket<N, D>, limit: N) -> [N; LANES];
 
-    /// Classifies up to 8 pairs of parts: farther apart than `limit`, within it, or undecided.
+    /// Classifies up to 8 pairs of parts: certainly farther apart than `limit`, certainly within
+    /// it, or undecided.
     fn part_pairs(pairs: &PartPairs<N, D>, limit: N) -> PairMasks;
 
     /// Updates the contacts of a convex solid and a chain of segments (2D), or of a ball and a
@@ -155,8 +156,9 @@ pub trait ByDimension<N: Real, const D: usize>:
     /// in 2D, for a thin triangle, and where `tolerance` leaves the region uncertain.
     fn over(triangle: &Triangle<N, D>, center: &Point<N, D>, tolerance: N) -> Option<FeatureId>;
 
-    /// Returns the interval of times in which the line of a ray is inside a solid. `None` if the
-    /// line misses the solid, and possibly if only times before zero hit it.
+    /// Returns the interval of times in which the line of a ray is inside a solid, as far as the
+    /// first hit of the ray needs it. `None` if the line misses the solid, and for a composite;
+    /// possibly also if the line is inside the solid only at times before zero.
     fn ray_span(solid: Kind<'_, N, D>, ray: &Ray<N, D>) -> Option<Span<N, D>>;
 
     /// Returns the first hit of a ray on a mesh; `None` if there is none by the maximum time.

@@ -57,8 +57,8 @@ compiled! {
         limit: N,
     ) -> Option<N> = separation::distance_in_world;
 
-    /// Computes the nearest points of two placed shapes; `None` beyond `limit`. Computes the
-    /// features of these points if `with_features` is true.
+    /// Computes the nearest points of two placed shapes, or the deepest points if they overlap;
+    /// `None` beyond `limit`. Computes the features of these points if `with_features` is true.
     fn witness_in_world(
         one: &Placed<'_, N, D>,
         other: &Placed<'_, N, D>,
@@ -221,8 +221,8 @@ compiled! {
         margin: N,
     ) -> Proximity = query::proximity_at;
 
-    /// Computes the nearest points of two shapes, with their parts and features; `None` beyond
-    /// `max_distance`.
+    /// Computes the nearest points of two shapes, or the deepest points if they overlap, with their
+    /// parts and features; `None` beyond `max_distance`.
     fn witness(
         isometry1: IsometryRef<'_, N, D>,
         shape1: &dyn Shape<N, D>,

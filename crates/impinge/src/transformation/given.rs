@@ -66,7 +66,8 @@ impl<N: Real> ConvexHull<N> {
             height >= lowest
         };
         match faces.iter().position(|face| !is_on_hull(face)) {
-            // A face whose centre is on the boundary of a convex set lies entirely on the boundary.
+            // If the mean of some points of a convex set is on the boundary of the set, all of
+            // these points are on one supporting plane, and so on the boundary.
             Some(face) => Err(ShapeError::FaceNotOnHull { face }),
             None => Ok(hull),
         }

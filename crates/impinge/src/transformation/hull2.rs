@@ -10,10 +10,10 @@ use crate::shape::ShapeError;
 /// at the corner with the smallest x, and of several such corners at the corner with the smallest
 /// y.
 ///
-/// Uses the first of coinciding points; points on a side are left out. A corner within
-/// `4 · N::EPSILON · max |x|` of the line between its neighbours is treated as a point on a side.
-/// So every given point is inside the polygon or within twice that distance of the polygon. The
-/// time is O(n log n).
+/// Uses the first of coinciding points; points on a side are left out. A corner within `4 ·
+/// N::EPSILON · max |coordinate|` of the line between its neighbours is treated as a point on a
+/// side. So every given point is inside the polygon or within twice that distance of the polygon.
+/// The time is O(n log n).
 ///
 /// # Errors
 /// If there are fewer than three points, a coordinate is not finite, or the points span no area

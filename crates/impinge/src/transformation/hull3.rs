@@ -99,7 +99,8 @@ fn hull_of<N: Real>(points: &[Point<N, 3>]) -> Result<HullFaces, ShapeError> {
     Ok(HullFaces { point_indices, faces })
 }
 
-/// The triangles of the hull of some points.
+/// The hull of some points as a closed surface of triangles, before triangles are merged into
+/// faces.
 struct Grown {
     /// For each vertex, the index of its point, in ascending order.
     point_indices: Vec<usize>,

@@ -207,7 +207,8 @@ fn is_straight(ring: &[u32], vertex: u32, scaled: &Scaled<3>) -> bool {
 /// Merges triangles within the tolerance of one plane into faces.
 ///
 /// Each side of a face is, reversed, a side of the triangle beyond, and so of the face that
-/// contains that triangle. Only `straighten` can break this; then each triangle becomes a face.
+/// contains that triangle. Only [`FaceRings::straighten`] can break this; if it fails, each
+/// triangle becomes a face of its own.
 pub(super) fn faces(facets: &[Facet], scaled: &Scaled<3>) -> FaceRings {
     let mut faces = Merger::new(facets, scaled).merged();
     if !faces.straighten(scaled) {

@@ -133,8 +133,8 @@ mod tests {
         }
     }
 
-    /// Volumes, area vectors and the signs of 2D areas agree with exact expansions, for random
-    /// points and for points in the plane of the triangle up to rounding.
+    /// Tests that volumes, area vectors and the signs of 2D areas agree with those of [`exact`],
+    /// for random points and for points that are, up to rounding, in the plane of the triangle.
     #[test]
     fn volumes_are_those_of_expansions() {
         let mut next = numbers();

@@ -139,9 +139,9 @@ pub(super) fn first_three<const D: usize>(scaled: &Scaled<D>) -> Result<[usize; 
     Ok([first, second, last(&scaled.points, &squares, tied)])
 }
 
-/// Returns the points of [`first_three`] and the point farthest from their plane. Of points on its
-/// side within one rounding unit of the largest distance, the last in order of coordinates is
-/// taken.
+/// Returns the points of [`first_three`] and the point farthest from their plane. Of the points on
+/// the side of the farthest point and within one rounding unit of the largest distance, the last in
+/// order of coordinates is taken.
 ///
 /// # Errors
 /// [`ShapeError::Degenerate`] if the points coincide or lie on a line or in a plane, within

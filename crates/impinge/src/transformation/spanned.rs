@@ -88,9 +88,9 @@ fn segment<N: Real, const D: usize>(
     Ok(ShapeHandle::new(Segment::try_new(points[low], points[high])?))
 }
 
-/// Returns the polygon of coplanar points; `None` if they lie on a line. Its corners are computed
-/// in the coordinate plane that is most nearly parallel to the polygon, so that no coordinate is
-/// rounded.
+/// Returns the convex hull of coplanar points, as a triangle or a mesh; `None` if they lie on a
+/// line. Its corners are computed in the coordinate plane that is most nearly parallel to the
+/// polygon, so that no coordinate is rounded.
 fn flat_polygon<N: Space<3>>(
     scaled: &Scaled<3>,
     points: &[Point<N, 3>],

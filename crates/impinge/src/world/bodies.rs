@@ -1,4 +1,5 @@
-//! The record of an object: everything that a world stores about it, except the user's data.
+//! The record of an object: its state as the user last set it, except the user's data, the skin and
+//! the predicted pose.
 
 use super::changes::ChangeList;
 use super::error::usable_pose;
@@ -26,9 +27,9 @@ const CHANGE_INDEX: u32 = PREDICTED - 1;
 /// Maximum number of entries in the list of changes, and therefore of objects.
 pub(super) const MAX_CHANGES: u32 = CHANGE_INDEX;
 
-/// An object as the user last set it, without the user's data. The broad phase and the object table
-/// of the narrow phase have copies of its data as of the last update. Takes 96 bytes for `f32` in
-/// 3D.
+/// An object as the user last set it, without the user's data, skin and predicted pose. The broad
+/// phase and the object table of the narrow phase have copies of its data as of the last update.
+/// Takes 96 bytes for `f32` in 3D.
 ///
 /// Fields that queries read are adjacent, from `isometry` to `groups`:
 ///
@@ -40,7 +41,8 @@ pub(super) const MAX_CHANGES: u32 = CHANGE_INDEX;
 pub(crate) struct WorldBody<N: Space<D>, const D: usize> {
     pub(crate) shape: ShapeHandle<N, D>,
     pub(crate) isometry: N::Isometry,
-    /// A copy of the radius of a ball or the half extents of a box; a marker for any other shape.
+    /// A copy of the radius of a ball or the half extents of a box, so that queries need not load
+    /// the shape; a marker for any other shape.
     solid: Compact<N, D>,
     pub(crate) proxy: ProxyHandle,
     /// [`SELF_PAIR`], [`FIXED`] and [`PREDICTED`] in the high bits, the index in the list of
@@ -55,8 +57,9 @@ clone_fields!([N: Space<D>, const D: usize] WorldBody<N, D> {
     shape, isometry, solid, proxy, state, handle, groups, query,
 });
 
-/// The fields of a body that change when it moves, and when an update processes the move. While the
-/// world has marks ([`WorldMark`](super::WorldMark)), the old values are recorded before each move.
+/// The fields of a body that change when it moves, and again when an update processes the move.
+/// While the world has marks ([`WorldMark`](super::WorldMark)), the old values are recorded before
+/// each move.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BodyMotion<N: Space<D>, const D: usize> {
     isometry: N::Isometry,
@@ -91,7 +94,8 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         (change_index != CHANGE_INDEX).then_some(change_index)
     }
 
-    /// Stores the object's index in the list of changes, and returns it.
+    /// Stores the object's index in the list of changes, and returns it. Panics if the index is not
+    /// less than [`MAX_CHANGES`].
     #[inline]
     pub(super) fn set_change_index(&mut self, change_index: usize) -> u32 {
         let small =
@@ -163,13 +167,15 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         self.state & PREDICTED != 0
     }
 
-    /// Marks the object as fixed, while a saved world is restored.
+    /// Marks the object as fixed without filtering its pairs again; for the restoration of a saved
+    /// world.
     #[cfg(feature = "serde")]
     pub(super) const fn restore_fixed(&mut self) {
         self.state |= FIXED;
     }
 
-    /// Marks the object as having a predicted pose, while a saved world is restored.
+    /// Marks the object as having a predicted pose, without a change of its volume; for the
+    /// restoration of a saved world.
     #[cfg(feature = "serde")]
     pub(super) const fn restore_predicted(&mut self) {
         self.state |= PREDICTED;

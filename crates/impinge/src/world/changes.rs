@@ -52,11 +52,11 @@ pub(crate) struct BodyEntry<N: Real, const D: usize> {
 #[derive(Debug)]
 pub(crate) struct ChangeList<N: Space<D>, const D: usize> {
     entries: Vec<BodyEntry<N, D>>,
-    /// By handle index, up to the last object with a prediction: the predicted pose. Meaningless
-    /// for objects without one.
+    /// By handle index, up to the largest index of an object with a prediction: the predicted pose.
+    /// Meaningless for objects without a prediction.
     predictions: Vec<N::Isometry>,
-    /// By handle index, up to the last object with a skin: the skin, which is the distance outside
-    /// the surface at which contacts are measured.
+    /// By handle index, up to the largest index of an object with a skin: the skin, which is the
+    /// distance outside the surface at which contacts are measured.
     skins: Vec<N>,
     /// Tree in which queries find the dirty objects. Empty until the first query after a change
     /// builds it.
@@ -231,8 +231,8 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         if tree.has_all() { id } else { self.entries[id as usize].index }
     }
 
-    /// Collects the handle indices of the changed objects that still exist, sorted. The list reuses
-    /// the memory of the last one; pass it to [`Self::clear`] afterwards.
+    /// Collects the handle indices of the changed objects that still exist, sorted. The list has
+    /// the memory of the list that was last passed to [`Self::clear`]; pass this list to it, too.
     pub(crate) fn take_order(&mut self) -> Vec<u32> {
         let mut order = core::mem::take(&mut self.order);
         order.extend(self.waiting());
@@ -368,7 +368,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         &self.entries
     }
 
-    /// Replaces the entries by `entries`, for a rewind.
+    /// Replaces the entries by `entries` and drops the tree of dirty objects, for a rewind.
     pub(super) fn go_back(&mut self, entries: &[BodyEntry<N, D>]) {
         self.entries.clear();
         self.entries.extend_from_slice(entries);
@@ -409,7 +409,8 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         }
     }
 
-    /// Checks that the entry at the body's index in the list belongs to the body's object.
+    /// Checks that the entry at the body's index in the list belongs to the body's object; no check
+    /// if the body is not in the list.
     pub(crate) fn validate(&self, body: &WorldBody<N, D>) -> Result<(), String> {
         match body.change_index().map(|change_index| self.entries.get(change_index as usize)) {
             Some(entry) if entry.map(|entry| entry.index) != Some(body.index()) => {

@@ -56,9 +56,11 @@ pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
     pub(super) objects: CollisionObjects<N, D, T>,
     pub(super) broad_phase: Box<WorldBroadPhase<N, D>>,
     pub(super) narrow_phase: Box<dyn WorldsNarrowPhase<N, D, T>>,
-    /// The broad phase that replaces the present one at the next update; `None` if there is none.
+    /// The broad phase that replaces the present one at the next update; `None` if the present one
+    /// stays.
     pub(super) next_broad_phase: Option<Box<WorldBroadPhase<N, D>>>,
-    /// The narrow phase that replaces the present one at the next update; `None` if there is none.
+    /// The narrow phase that replaces the present one at the next update; `None` if the present one
+    /// stays.
     pub(super) next_narrow_phase: Option<Box<dyn WorldsNarrowPhase<N, D, T>>>,
     pub(super) filters: Filters<N, D, T>,
     /// The events of the last update.
@@ -66,7 +68,7 @@ pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
     /// Events of removals and [`Self::update_pair`] since the last update, which the next update
     /// delivers.
     pub(super) queued: Events,
-    /// Whether the next update keeps the events of the last one.
+    /// Whether the next update keeps the events of the last update, and appends its own.
     pub(super) keeps_events: bool,
     /// Removed objects whose handles are in events.
     pub(super) removed: RemovedObjects<N, D, T>,

@@ -1,4 +1,4 @@
-//! Changing the shape of an object in place.
+//! Changing the shape of an object: a copy of the shape is changed and replaces the shape.
 
 use super::error::or_panic;
 use super::{CollisionWorld, WorldError};

@@ -1,4 +1,5 @@
-//! Reasons why two objects have a pair or none: refusing filters and loosened boxes.
+//! Reasons why two objects have no pair: pair filters that refuse it, and loosened boxes that do
+//! not overlap.
 
 use super::CollisionWorld;
 use super::step::in_order;
@@ -13,7 +14,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns the names, sorted, of the pair filters that refuse two objects. Empty for an object
     /// and itself, and for a stale handle. Ignores groups and boxes.
     ///
-    /// Calls all filters.
+    /// Calls each pair filter of the world once.
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;

@@ -4,8 +4,8 @@
 //! each change costs the path from a leaf block to the root. Changes degrade the order: after
 //! `max(32, n / 4)` changes, a tree of `n` boxes is dropped, and the next query builds a new one.
 //! So a change costs amortised O(log n), whether queries come after each change or after many. A
-//! search costs about as much as a search of the broad phase, plus one block for every 16 boxes
-//! that were added since the tree was built.
+//! search costs about as much as a search of the broad phase, plus the test of one block of 16
+//! boxes for every 16 boxes that were added since the tree was built.
 //!
 //! Searching two trees costs more than searching one tree of all boxes. If at least a quarter of
 //! the objects are dirty, this tree also has the boxes of all other objects (`has_all`), and
@@ -210,8 +210,8 @@ mod tests {
     fn searches_among_many_changes_look_at_few_blocks() {
         let [[few_new, few], [many_new, many]] =
             [512, 8192].map(|count| opened_on_average(count, &mut 9));
-        // Boxes that were added since the tree was built fill blocks in order of insertion, which a
-        // search cannot skip. On average they are an eighth of all boxes.
+        // Boxes that were added since the tree was built fill blocks in order of insertion, and a
+        // search cannot skip these blocks. On average an eighth of all boxes are in them.
         let unsorted = |count: f64| count / 8.0 / 16.0;
         for (count, opened) in [(512.0, few_new), (8192.0, many_new)] {
             assert!(opened < 8.0 + unsorted(count), "{opened} blocks of {count} boxes");

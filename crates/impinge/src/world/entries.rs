@@ -102,7 +102,7 @@ compiled! {
         farthest: N,
     ) -> Option<(PointProjection<N, D>, N)> = WorldBody::project;
 
-    /// Returns `true` if the object contains a point.
+    /// Returns `true` if the object contains a point, boundary included.
     fn holds(body: &WorldBody<N, D>, point: &Point<N, D>) -> bool = WorldBody::holds;
 
     /// Iterates over all manifolds, read in place if possible; `slots` has the handles of the
@@ -170,7 +170,7 @@ compiled! {
     /// optimised program.
     inlined trait SmallWorldEntries;
 
-    /// Returns `true` if the exact box of an object overlaps `aabb`.
+    /// Returns `true` if the exact box of an object overlaps or touches `aabb`.
     fn overlaps_aabb(body: &WorldBody<N, D>, aabb: &Aabb<N, D>) -> bool = shape::overlaps_aabb;
 
     /// Returns a shape placed at a position.
@@ -179,7 +179,8 @@ compiled! {
         shape: Geometry<'a, N, D>,
     ) -> Placed<'a, N, D> = Placed::of_isometry;
 
-    /// Returns the box of a placed shape; `None` if the position is not finite.
+    /// Returns the box of a placed shape, grown by its rounding errors; `None` if the position is
+    /// not finite.
     fn placed_aabb(
         position: &<N as Space<D>>::Isometry,
         shape: &dyn Shape<N, D>,

@@ -6,7 +6,7 @@ use super::WorldMark;
 use crate::math::{Pose, Real, Space, is_unit};
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
 
-/// The reason why a world refused an operation, which then has changed nothing. Each `value` is the
+/// The reason why a world refused an operation; the world is then unchanged. Each `value` is the
 /// rejected number, converted to `f64` exactly.
 ///
 /// ```

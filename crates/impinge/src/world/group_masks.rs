@@ -2,8 +2,8 @@
 
 use super::groups::{ALL_GROUPS, CollisionGroups, GroupError};
 
-/// Returns the mask; an error if it has bit 30 or 31, which belong to no group. The error has the
-/// lower of these bits.
+/// Returns the mask if it has neither bit 30 nor bit 31, which belong to no group; else an error
+/// with the lower of the set bits.
 fn checked(mask: u32) -> Result<u32, GroupError> {
     match mask & !ALL_GROUPS {
         0 => Ok(mask),

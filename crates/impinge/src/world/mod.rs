@@ -1,4 +1,4 @@
-//! The world: objects, and the pairs, contacts and events among them, which each update computes.
+//! The world: objects, and the pairs, contacts and events among them as of the last update.
 //!
 //! The world connects the broad phase and the narrow phase. It has one record for each object:
 //! pose, shape, groups and query type as the user last set them (`bodies`), and the user's data.

@@ -218,7 +218,8 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         vec![Box::new(views.into_iter())]
     }
 
-    /// Fills `stream` with the manifolds of [`Self::contact_views`], in the same order.
+    /// Fills `stream` with the manifolds of [`Self::contact_views`], in their order, without
+    /// manifolds of removed objects.
     fn read_contacts(&self, objects: &CollisionObjects<N, D, T>, stream: &mut ContactStream<N, D>) {
         let are_here =
             |first, second| objects.get(first).is_some() && objects.get(second).is_some();

@@ -326,7 +326,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
 
     /// Writes the changes since the last update to the table and the broad phase, in order of
     /// handle indices, and clears them. Fills `algorithms` with the handle indices of the objects
-    /// whose pairs need other algorithms.
+    /// for whose pairs the algorithms must be chosen again.
     pub(super) fn flush(
         &mut self,
         broad_phase: &mut WorldBroadPhase<N, D>,
@@ -345,7 +345,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         changes.clear(order);
     }
 
-    /// Writes the row of an object to the table; does nothing if the object has a row already.
+    /// Writes the row of an object to the table; does nothing if the object has a row already, or
+    /// if the index is free.
     pub(super) fn acquire_row(&mut self, index: u32) {
         let Self { slots, records, table, .. } = self;
         let slot = slots.get(index as usize);

@@ -1,4 +1,5 @@
-//! Removed objects. They are kept as long as an event contains their handle.
+//! Removed objects, which are kept as long as an event contains their handle, so that readers of
+//! events can access them.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -8,7 +8,7 @@ use crate::narrow_phase::{
 use crate::query::Proximity;
 
 /// Maximum number of pairs passed to the narrow phase at once. It is small enough that the rows of
-/// their objects are still in the cache when they are released.
+/// the pairs' objects are still in the cache when these rows are released.
 const BATCH: usize = 512;
 
 type HandlePair = (CollisionObjectHandle, CollisionObjectHandle);
@@ -221,7 +221,7 @@ pub(super) fn in_order(
     if handle2 < handle1 { (handle2, handle1) } else { (handle1, handle2) }
 }
 
-/// The status of a pair that is not disjoint: touching, or a proximity other than `Disjoint`.
+/// The status of a pair with contacts, or the proximity of a pair that is not disjoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum StepStatus {
     Touching,

@@ -1,4 +1,4 @@
-//! The computation of a single pair between two updates.
+//! The computation of a single pair between two updates, for continuous collision detection.
 
 use super::error::or_panic;
 use super::step::in_order;

@@ -101,8 +101,8 @@ const MATCHED: usize = 4;
 /// The feature ids of a point, and its normal and tangential impulse for warm starting.
 type Warmth = ([PackedFeatureId; 2], f32, Vec2);
 
-/// Returns the ids and impulses of the points of a pair with at least [`MATCHED`] manifolds, since
-/// the update may exceed that number; empty for other pairs.
+/// Returns the ids and impulses of the points of a pair with at least [`MATCHED`] manifolds: after
+/// the update it may have more, and Avian would then not match its points. Empty for other pairs.
 fn warmth(manifolds: &[ContactManifold]) -> Vec<Warmth> {
     let many = if manifolds.len() >= MATCHED { manifolds } else { &[] };
     let points = many.iter().flat_map(|manifold| &manifold.points);

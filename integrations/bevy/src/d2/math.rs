@@ -45,7 +45,7 @@ impl Glam<2> for f32 {
         if rotation.x != 0.0 || rotation.y != 0.0 {
             return Self::place_child(&GlobalTransform::from(*transform));
         }
-        // The quaternion (0, 0, z, w) rotates by twice its angle.
+        // The quaternion (0, 0, z, w) rotates by twice the angle of the complex number w + z i.
         let (cos, sin) =
             (rotation.w * rotation.w - rotation.z * rotation.z, 2.0 * rotation.w * rotation.z);
         let isometry = isometry(transform.translation.truncate(), cos, sin);

@@ -153,7 +153,7 @@ fn despawning_a_tree_takes_all_of_it() {
     assert_eq!(collisions::<3>(&app).world().validate(), Ok(()));
 }
 
-/// The key of a second world.
+/// The key that selects a second collision world.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Ghosts;
 

@@ -1,4 +1,4 @@
-//! Invalid input does not panic, loses no entity, and gives an error.
+//! Tests that invalid input does not panic, loses no entity, and gives an error.
 
 use bevy_app::App;
 use bevy_ecs::prelude::*;

@@ -1,4 +1,4 @@
-//! Drawing with gizmos.
+//! Tests that the plugin draws a world with gizmos if and only if drawing is enabled.
 
 use bevy_asset::Assets;
 use bevy_gizmos::config::DefaultGizmoConfigGroup;

@@ -1,4 +1,5 @@
-//! Colliders from Bevy's meshes.
+//! Tests that Bevy's meshes become surfaces and hulls, and that meshes without triangles give
+//! errors.
 
 use bevy_asset::RenderAssetUsages;
 use bevy_impinge::ColliderError;

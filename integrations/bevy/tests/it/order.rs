@@ -1,4 +1,5 @@
-//! Schedules, and orders that do not depend on archetypes or on the run.
+//! Tests that the order of messages depends neither on archetypes nor on the run, in which schedule
+//! the world steps, and that changes between steps are not lost.
 
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;
@@ -10,7 +11,8 @@ use bevy_transform::prelude::*;
 #[derive(Component)]
 struct Other;
 
-/// Returns the messages of a cloud of moving sensors and circles.
+/// Returns the messages of moving circles on a grid, a third of them sensors. With
+/// `mixes_archetypes` every second entity has another archetype.
 fn run(mixes_archetypes: bool) -> Vec<(u32, usize, usize)> {
     let mut app = crate::support::app::<2>();
     let mut entities = Vec::new();
@@ -82,7 +84,7 @@ fn changes_between_steps_are_not_lost() {
     let child = (Collider::circle(1.0), Transform::default(), ChildOf(parent), Sensor);
     let child = app.world_mut().spawn(child).id();
     app.update();
-    // Five frames without a step.
+    // Five frames without a step of the world. They must not lose the changes.
     app.insert_resource(TimeUpdateStrategy::FixedTimesteps(0));
     app.world_mut().entity_mut(child).remove::<Sensor>();
     app.world_mut().get_mut::<Transform>(parent).expect("it has one").translation.x = 7.0;

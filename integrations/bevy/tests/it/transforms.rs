@@ -57,7 +57,7 @@ fn roots_keep_their_numbers() {
     assert_eq!((Vec3::from(pose.translation), pose.rotation), (transform.translation, rotation));
 }
 
-/// Returns the highest point of an entity, found by a ray from above.
+/// Returns the height at which a vertical ray from above, at `x` and z = 0, first hits a collider.
 fn top(app: &bevy_app::App, x: f32) -> f32 {
     let ray = bevy_math::Ray3d::new(Vec3::new(x, 100.0, 0.0), bevy_math::Dir3::NEG_Y);
     let hit = collisions::<3>(app).cast_ray(ray, 200.0, &bevy_impinge::SpatialFilter::new());
@@ -76,7 +76,7 @@ fn scale_is_applied_and_follows() {
     app.update();
     assert_eq!(top(&app, 0.0), 0.5);
 
-    // A parent's scale, and a child that is rotated by a right angle: no shear.
+    // The parent is scaled and the child is rotated by a right angle, so the scale causes no shear.
     let parent = app.world_mut().spawn(at(20.0).with_scale(Vec3::new(4.0, 1.0, 1.0))).id();
     let turned = Transform::from_rotation(Quat::from_rotation_z(FRAC_PI_2));
     let long = Collider::<3>::cuboid(2.0, 6.0, 2.0);

@@ -6,7 +6,8 @@ use impinge_record::Registry;
 
 use crate::prelude::*;
 
-/// The number of links. Each link is a capsule with a joint at either end of its axis, of length 1.
+/// The number of links. Each link is a capsule whose axis has length 1. The axis begins at a joint
+/// and ends at the next joint; that of the last link has a free end.
 const LINKS: usize = 5;
 const RADIUS: f32 = 0.15;
 

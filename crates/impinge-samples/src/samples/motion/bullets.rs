@@ -34,8 +34,9 @@ impl<const D: usize> Bullet<D>
 where
     f32: Dimension<D>,
 {
-    /// Computes the path of a step, of length `length` with a reflection at each hit, and the
-    /// direction at its end. Returns the number of reflections.
+    /// Computes the path of a step, with a reflection at each hit, and the direction at its end.
+    /// The path has the length `length`, or less if it ends after [`MAX_BOUNCES`] reflections.
+    /// Returns the number of reflections.
     fn fly(&mut self, world: &World<D>, mut length: f32) -> usize {
         let mut pose = pose_of(world, self.object);
         let (ball, walls) = (Ball::new(RADIUS), wall_groups());

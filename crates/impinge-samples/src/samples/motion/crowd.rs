@@ -25,8 +25,9 @@ impl<const D: usize> Person<D>
 where
     f32: Dimension<D>,
 {
-    /// Returns the velocity as a share of the full speed, of length 1 or less. It points towards
-    /// the goal, and away from the nearest people. Nearer people have more influence.
+    /// Returns the velocity as a share of the full speed, of length 1 or less. It is the sum of the
+    /// direction to the goal and of vectors away from the nearest people and to their side, which
+    /// are longer for nearer people. Zero if the person was removed.
     fn velocity(&self, world: &World<D>) -> Vector<f32, D> {
         let none = Vector::<f32, D>::zeros();
         let Some(own) = world.collision_object(self.object) else { return none };

@@ -17,9 +17,9 @@ pub(crate) struct Grid {
 
 impl Grid {
     /// Returns the position of the second solid of a pair. The solid is moved from the upper right
-    /// until it touches the first solid, and then by `depth` against the normal. If the solids do
-    /// not overlap after that, as parallel segments, it stays where they touch. `None` if the cast
-    /// does not hit.
+    /// until it touches the first solid, and then by `depth` against the normal, or away from the
+    /// first solid if `depth` is negative. If the solids should overlap but cannot, as parallel
+    /// segments, the second stays where they touch. `None` if the cast does not hit.
     fn touching<const D: usize>(
         &self,
         world: &World<D>,

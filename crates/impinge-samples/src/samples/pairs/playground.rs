@@ -39,8 +39,8 @@ impl Playground {
         Some([placed(first)?, placed(second)?])
     }
 
-    /// Returns the position of the second shape on its path, a line above the centre of the first
-    /// shape at which the shapes touch with the initial controls.
+    /// Returns the position of the second shape on its path: a horizontal line above the centre of
+    /// the first shape, so low that the shapes touch with the initial controls.
     fn path<const D: usize>(&self, panel: &Panel) -> Isometry<D>
     where
         f32: Dimension<D>,
@@ -58,8 +58,8 @@ where
     turn::<D>([0, 1], panel.value("direction")) * vector::<D>([1.0, 0.0, 0.0])
 }
 
-/// Returns the first impact of the second shape with the first; `None` if there is none within
-/// [`MARGIN`].
+/// Returns the earliest impact of the second shape with the first; `None` if there is none up to
+/// the time [`MARGIN`].
 fn time_of_impact<const D: usize>(
     [first, second]: &[Placed<D>; 2],
     panel: &Panel,
@@ -112,7 +112,8 @@ where
         Ok(())
     }
 
-    /// Replaces the shapes and query types of the objects, whose handles stay valid.
+    /// Replaces the shapes and query types of the objects, and the angle of the second. Their
+    /// handles stay valid.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let &[first, second] = self.objects.as_slice() else { return Ok(()) };
         // Both shapes are set for a change of any control. An equal shape has equal contacts.

@@ -6,7 +6,7 @@ use impinge_scenes::asteroids;
 use crate::prelude::*;
 use crate::scene::Play;
 
-/// An object that the query found, with its distance from the probe.
+/// An object that the query found, apart from the probe, and its distance.
 #[derive(Debug)]
 struct Near<const D: usize> {
     /// The closest points: the first on the probe, the second on the object.
@@ -22,7 +22,7 @@ pub(crate) struct Nearest<const D: usize> {
     play: Play<D>,
     /// The ball from which distances are measured.
     probe: Option<CollisionObjectHandle>,
-    /// The objects that the query found, the nearest first.
+    /// The found objects that do not overlap the probe, the nearest first.
     near: Vec<Near<D>>,
     step: usize,
     /// `true` after the user has dragged the probe.
@@ -74,7 +74,8 @@ where
     }
 
     /// Finds the objects nearest to the probe, by the distances between the shapes. The probe
-    /// itself is excluded.
+    /// itself is excluded, and objects that overlap it are dropped, since they have no closest
+    /// points.
     fn updated(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let found = self.probe.and_then(|probe| world.collision_object(probe));
         let Some(probe) = found else { return Ok(()) };

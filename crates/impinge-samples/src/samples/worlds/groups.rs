@@ -55,7 +55,7 @@ fn team(label: &str) -> Option<usize> {
     Some(index % TEAMS)
 }
 
-/// A pair filter that accepts only objects whose numbers begin with the same digit.
+/// A pair filter that accepts a pair only if the numbers of its objects begin with the same digit.
 #[derive(Clone, Copy, Debug)]
 struct SameFirstDigit;
 

@@ -75,8 +75,8 @@ where
         Ok(())
     }
 
-    /// Returns the numbers of pairs, and of pairs that began or stopped touching. A pair exists
-    /// while the fat AABBs overlap, with contacts or without.
+    /// Returns the numbers of pairs, and how often pairs began and stopped touching since the
+    /// start. A pair exists while the fat AABBs overlap, with contacts or without.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         vec![
             Readout::new("Pairs with contacts kept", world.contact_pairs().count()),

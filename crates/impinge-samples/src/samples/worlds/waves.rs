@@ -81,7 +81,7 @@ where
         Ok(())
     }
 
-    /// Computes the surfaces with the new height, which are used from the next step on.
+    /// Computes the surfaces with the new amplitude, which are used from the next step on.
     fn changed(&mut self, _: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         self.make_surfaces(panel);
         Ok(())

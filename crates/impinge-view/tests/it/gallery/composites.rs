@@ -7,9 +7,9 @@ use impinge_view::SvgPicture;
 
 type FloorWorld = CollisionWorld<f64, ()>;
 
-/// Slides a box over a floor with a penetration of 0.06, until a contact normal is more horizontal
-/// than vertical. With `stop` the box is only placed at that x coordinate. Returns the world, and
-/// the x coordinate at which there is such a normal; `None` if there is none.
+/// Slides a box over a floor with a penetration of 0.06, until a contact normal is tilted by more
+/// than 30 degrees from the vertical. With `stop`, places the box only at that x coordinate.
+/// Returns the world, and the x coordinate of the box with such a normal; `None` if there is none.
 fn slide(floor: Polyline<f64>, height: f64, stop: Option<f64>) -> (FloorWorld, Option<f64>) {
     let (everybody, contacts) = (CollisionGroups::new(), ContactQuery::default());
     let mut world = FloorWorld::new(0.02);

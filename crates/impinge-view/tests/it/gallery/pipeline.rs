@@ -75,7 +75,7 @@ fn nodes_of_the_tree() {
     let ball = ShapeHandle::new(Ball::new(0.07));
     for number in 0..240 {
         let [x, y] = spread(number, [12.0, 5.0]);
-        // The square makes the points denser towards the left.
+        // The coordinate x² / 12 makes the points denser towards the left.
         world.add(Isometry::translation(x * x / 12.0, y), ball.clone(), everybody, contacts, ());
     }
     world.update();

@@ -35,8 +35,9 @@ fn wave(x: f64) -> f64 {
     if phase < 2.0 { arch } else { -arch }
 }
 
-/// Adds a shape where it touches an object if it falls vertically at x and z from `at`, lowered by
-/// 0.02. `turned` is the vector part of the quaternion of its rotation, divided by the real part.
+/// Drops a shape vertically at the x and z coordinates `at`, and adds it where it first touches an
+/// object, lowered by 0.02. `turned` is the vector part of the quaternion of its rotation, divided
+/// by the real part.
 fn drop_shape(world: &mut World, shape: &ShapeHandle<f64>, at: [f64; 2], turned: Vector<f64>) {
     // No sines of the platform are used, so that the picture is the same on every machine.
     let rotation = Rotation::from_quaternion(Quaternion::new(1.0, turned.x, turned.y, turned.z));

@@ -32,9 +32,10 @@ struct Outcome {
     most_still: usize,
 }
 
-/// Plays a scene of 90 steps and returns its outcome. Many objects move, then few, so that the
-/// others come to rest, then many again. Each step also removes three objects and inserts them
-/// elsewhere. Asserts that the last pairs are those of a brute-force search.
+/// Runs a scene of 90 steps and returns its outcome. In the first 10 and the last 20 steps many
+/// objects move, in between few, so that the others come to rest. Each step also removes three
+/// objects and inserts them elsewhere. Asserts that the last pairs are those of a brute-force
+/// search.
 fn play<N: Real, const D: usize>(lanes: Lanes, count: u32, side: u32) -> Outcome {
     let mut finder = PairFinder::<N, D>::with_lanes(N::lit(0.125), lanes).expect("a margin");
     let (mut state, mut events, mut most_still) = (count.into(), Vec::new(), 0);
@@ -115,7 +116,8 @@ fn every_instruction_set_gives_the_same_events() {
     }
 }
 
-/// More than 16³ = 4096 objects, so the tree has four layers.
+/// Compares the pairs of a scene with those of a brute-force search; with more than 16³ = 4096
+/// objects, the tree has four layers.
 #[test]
 fn a_deep_tree() {
     check_reached(&play::<f32, 2>(Lanes::detect(), 5000, 90), 5000);

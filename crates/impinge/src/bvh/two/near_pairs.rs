@@ -57,16 +57,18 @@ pub(crate) trait TreePair<N: Real, const D: usize> {
     /// Returns the largest signed distance between objects of pairs to visit. It must never grow.
     fn limit(&self) -> N;
 
-    /// Returns a lower bound, zero or more, of the overlap along every axis of the boxes of two
-    /// objects within [`Self::limit`].
+    /// Returns a lower bound, zero or more, of the overlap along each axis that the boxes of two
+    /// objects have if the objects are within [`Self::limit`]. Boxes that overlap less are skipped.
     fn depth(&self) -> N;
 
     /// Returns the direction along which the nearest two objects compared so far are separated;
     /// `None` before two objects have been compared.
     fn best(&self) -> Option<Toward<N, D>>;
 
-    /// Returns the direction for a unit vector in the frame of the first (0) or the second (1)
-    /// tree. `None` if gaps along a direction are not valid bounds, because the objects move.
+    /// Takes a unit vector that points from the first (0) or the second (1) tree toward the other
+    /// tree, in the frame of the tree that it points from. Returns this vector, and the opposite
+    /// vector in the frame of the other tree. `None` if gaps along a direction are not valid
+    /// bounds, because the objects move.
     fn toward(&self, which: usize, along: &Vector<N, D>) -> Option<Toward<N, D>>;
 
     /// Returns the direction from a point of the first tree to a point of the second, each in its
@@ -114,7 +116,8 @@ struct PairSearch<'a, 'q, N: Real, const D: usize> {
     question: &'q mut dyn TreePair<N, D>,
 }
 
-/// Lanes of a block: their distances, and their slots or the indices of their child blocks.
+/// The near lanes of a block, each as the distance of its box and the index of its child block (its
+/// slot, in a leaf block).
 type NearLanes<N> = SmallVec<[(N, u32); LANES]>;
 
 /// Visits the pairs of objects of two trees that may be within the bound and limit of `question`,

@@ -1,5 +1,5 @@
-//! Regions of one tree in the frame of another, in `f32`, and the test of which boxes in a block a
-//! region may touch.
+//! Regions around blocks and objects of one tree in the frame of another, in `f32`, and the test of
+//! which boxes in a block a region may touch.
 //!
 //! ```text
 //!    own frame            the other tree's frame
@@ -40,9 +40,9 @@ pub(super) struct RotatedBox<const D: usize> {
     extent: Option<Extent<D>>,
 }
 
-/// A set that contains a region, so that its extent along any direction bounds the region's. It is
-/// the convex hull of `points`, plus the segments from `-w` to `w` for each `w` of `wider` (a
-/// Minkowski sum), widened by `margin`.
+/// A set that contains a region; the extent of the set along any direction bounds the extent of the
+/// region. It is the convex hull of `points`, plus the segments from `-w` to `w` for each `w` of
+/// `wider` (a Minkowski sum), widened by `margin`.
 struct Extent<const D: usize> {
     middle: [f32; D],
     points: SmallVec<[[f32; D]; 3]>,
@@ -189,7 +189,8 @@ impl<const D: usize> Extent<D> {
         Self { middle, points: SmallVec::from_slice(&points), wider: SmallVec::new(), margin }
     }
 
-    /// Returns the gaps to 8 boxes, each along the line from `middle` to the centre of the box.
+    /// Returns the gaps to 8 boxes, each along the line from `middle` to the centre of the box; NaN
+    /// if the two points coincide.
     #[inline(always)]
     fn gaps<S: Simd>(&self, simd: S, [lo, hi]: &[[S::F32x8; D]; 2]) -> S::F32x8 {
         let (half, zero) = (S::F32x8::all(simd, 0.5), S::F32x8::all(simd, 0.0));

@@ -2,10 +2,10 @@
 //!
 //! The search is depth first over pairs of blocks. The box of one block is transformed once into
 //! the frame of the other tree, and compared with all boxes in the other block. The boxes are
-//! compared along the axes of both frames and across the slab of the first block. The axes of both
-//! frames separate most disjoint boxes (Gottschalk, Lin and Manocha, "`OBBTree`", 1996, also test
-//! the cross products of edges). The larger of two blocks is opened; its children go on a stack,
-//! and the child with the deepest overlap comes next.
+//! compared along the axes of both frames and along the normal of the first block's slab. The axes
+//! of both frames separate most disjoint boxes (Gottschalk, Lin and Manocha, "`OBBTree`", 1996,
+//! also test the cross products of edges). The larger of two blocks is opened; its children go on a
+//! stack, and the child with the deepest overlap comes next.
 //!
 //! A search for the nearest pair is best first (Hjaltason and Samet, "Incremental distance join
 //! algorithms for spatial databases", 1998). Before it begins, a descent straight to one object of
@@ -202,7 +202,8 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
             [pair.blocks[which] as usize]
     }
 
-    /// Returns the lanes of block `which` that the contents of the other block may touch.
+    /// Returns the lanes of block `which` whose boxes may be within the maximum distance of the
+    /// other block's box and slab.
     fn held(&self, which: usize, pair: &OpenPair, margin: f32) -> Held {
         let own =
             self.trees[1 - which].slab_box(pair.layers[1 - which].into(), pair.blocks[1 - which]);

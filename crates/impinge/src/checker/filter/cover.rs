@@ -1,4 +1,5 @@
-//! Covers of bodies by balls, and bounding balls of sets of balls.
+//! Covers of bodies by balls, which the filter tests in place of the bodies, and bounding balls of
+//! sets of balls.
 
 use crate::math::{Point, Pose, Real, Vector, max};
 use crate::shape::{Kind, Shape};

@@ -1,4 +1,5 @@
-//! The bodies of a robot as groups of balls.
+//! The bodies of a robot as groups of balls, which the scan tests against each other and against
+//! obstacles.
 
 use std::collections::BTreeMap;
 
@@ -74,8 +75,9 @@ pub(super) struct NodePath<N: Real, const D: usize> {
     /// An upper bound of the distance from `anchor` to any point of the group's bounding ball,
     /// without slides.
     pub(super) length: f64,
-    /// The position of the first joint of the chain, or the centre of the group on the world.
-    /// `from_first` is the length of the chain from that position. Both determine the margins.
+    /// The position of the first joint of the chain, or the centre of a group that is fixed to the
+    /// world. `from_first` is the length of the chain from that position. Both determine the
+    /// margins.
     first: Vector<N, D>,
     from_first: f64,
     joints: usize,

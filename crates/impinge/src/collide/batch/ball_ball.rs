@@ -1,4 +1,5 @@
-//! Ball against ball for several pairs at a time; see `collide/separation/balls/ball_ball.rs`.
+//! Contacts of two balls, for several pairs at a time. `collide/separation/balls/ball_ball.rs` is
+//! the code for one pair.
 //!
 //! Reads these fields of [`Inputs`]: both `translations`, both `radii` and `prediction`.
 

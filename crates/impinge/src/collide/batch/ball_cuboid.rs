@@ -1,4 +1,5 @@
-//! Ball against box for several pairs at a time; see `collide/separation/balls/ball_cuboid.rs`.
+//! Contacts of a ball and a box, for several pairs at a time.
+//! `collide/separation/balls/ball_cuboid.rs` is the code for one pair.
 //!
 //! Reads these fields of [`Inputs`]: both `translations`, the box's rotation, the ball's
 //! `radii[0]`, `prediction`, and the half extents in `ends[1][0]`.
@@ -12,8 +13,9 @@ use crate::math::{Real, Wide, filled};
 use crate::shape::{Cuboid, FeatureId};
 
 /// Kernel for a ball and a box. The pair falls back to the builder for one pair if the centre of
-/// the ball lies in the box, if a half extent is at most four times the rounding error, or if a
-/// square is near underflow or overflow.
+/// the ball lies in the box, if a half extent is at most four times the rounding error, or if the
+/// squared half diagonal or the squared distance of the centre from the box is near underflow or
+/// overflow.
 pub(super) struct BallCuboid;
 
 impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
@@ -39,8 +41,8 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
         let (pose12, half) = (inputs.beside_ball::<S, V>(simd), inputs.end(simd, 1, 0));
         let radius = inputs.radius(simd, 0);
         let center = pose12.inverse_origin(simd);
-        // Point of the box nearest to the centre of the ball. If the centre is inside the box, it
-        // is the centre itself, and the pair falls back.
+        // Point of the box nearest to the centre of the ball. If the centre is inside the box, this
+        // point is the centre itself, and the pair falls back.
         let clamped = filled(
             #[inline(always)]
             |axis| center[axis].smaller(half[axis]).larger(-half[axis]),
@@ -66,10 +68,11 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
 }
 
 impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
-    /// Stores the features of the boxes that contain `point`, as `Cuboid::part_at` does: for each
+    /// Stores which feature of its box contains `point`, as `Cuboid::part_at` computes it: for each
     /// axis, a mask of the lanes where the feature extends along the axis; then for each axis, a
     /// mask of the lanes where the coordinate of `point` is not negative. Returns the lanes where
-    /// all half extents exceed four times `rounding_error` and `point` is not inside the box.
+    /// all half extents exceed four times `rounding_error` and `point` is not deeper than
+    /// `rounding_error` inside the box.
     #[inline(always)]
     fn put_part<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,

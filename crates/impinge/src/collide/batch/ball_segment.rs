@@ -1,5 +1,5 @@
-//! Ball against segment or capsule for several pairs at a time; see
-//! `collide/separation/balls/ball_segment.rs`.
+//! Contacts of a ball with a segment or capsule, for several pairs at a time.
+//! `collide/separation/balls/ball_segment.rs` is the code for one pair.
 //!
 //! Reads these fields of [`Inputs`]: both `translations`, the segment's rotation, both `radii`,
 //! `prediction`, and the ends of the core in `ends[1]`.

@@ -101,7 +101,8 @@ pub(super) struct LaneContacts<N: Real, const D: usize, const L: usize> {
     /// Signed distances of both contacts; unused in lanes with one contact, whose distance is
     /// `gap`.
     pub(super) distances: [[N; L]; 2],
-    /// Lengths up to this count as rounding errors. Zero in kernels that never find two contacts.
+    /// Largest length that counts as a rounding error; zero in kernels that never find two
+    /// contacts, because no choice between points depends on it there.
     pub(super) tolerance: [N; L],
     /// Before transposition, masks of the parts that the points lie on (see the figure); after it,
     /// one byte per pair, which [`Form::features`] decodes. With two contacts, the low four bits of

@@ -1,4 +1,4 @@
-//! Inputs of the kernels: 8 pairs side by side, or one.
+//! Inputs of the kernels, in rows: the numbers of 8 pairs side by side, or of a single pair.
 //!
 //! ```text
 //!                  lane 0   lane 1   ...        a row for each number, a column for each pair
@@ -21,7 +21,7 @@ type LaneRows<N, const D: usize, const L: usize> = [[N; L]; D];
 pub(super) struct Inputs<N: Real, const D: usize, const L: usize> {
     /// Columns of the rotation matrices of both poses.
     rotations: [[LaneRows<N, D, L>; D]; 2],
-    /// Translations of both poses, in the world frame.
+    /// Translations of both poses, in their common frame, usually the world.
     translations: [LaneRows<N, D, L>; 2],
     /// Ends of the core of each solid, in its own frame; for a box the first entry has its half
     /// extents.
@@ -38,7 +38,8 @@ pub(super) struct Inputs<N: Real, const D: usize, const L: usize> {
     pub(super) first: usize,
     /// Number of filled lanes.
     pub(super) count: usize,
-    /// Bits of the lanes whose pair the algorithm supports.
+    /// Bits of the lanes whose pair the kernel supports by its kinds and request; the other lanes
+    /// fall back.
     pub(super) is_usable: u8,
 }
 
@@ -152,8 +153,8 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         load(simd, &self.ends[solid][number])
     }
 
-    /// Returns the vector from the origin of the first solid to the origin of the second, in world
-    /// axes, which are also the axes of a ball's frame.
+    /// Returns the vector from the origin of the first solid to the origin of the second, in the
+    /// axes of the frame of both poses. These are also the axes of a ball's frame.
     #[inline(always)]
     pub(super) fn away<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> [V; D] {
         minus(&load(simd, &self.translations[1]), &load(simd, &self.translations[0]))

@@ -109,7 +109,7 @@ pub(crate) trait KeptPairs<N: Real, const D: usize> {
     fn end(&mut self, index: usize);
 }
 
-/// Algorithm for pairs of two kinds, `L` at a time.
+/// Algorithm for all pairs with one combination of kinds, `L` pairs at a time.
 trait Batch<N: Real, const D: usize> {
     /// Results of the kernel, from which [`Self::write_manifold`] builds each manifold.
     type Found<const L: usize>;
@@ -268,7 +268,7 @@ impl<N: Space<D>, P: KeptPairs<N, D>, const D: usize> Task<N, D> for Many<'_, P>
     }
 }
 
-/// A way to compute `L` lanes: with SIMD vectors or with scalars.
+/// Runs the kernels in `L` lanes, with SIMD vectors or with scalars.
 trait BatchLanes<const L: usize>: Copy {
     /// Runs [`Batch::find`]; compiled once for all implementations of [`KeptPairs`].
     fn find<B: Batch<N, D>, N: Real, const D: usize>(

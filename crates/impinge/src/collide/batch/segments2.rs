@@ -1,6 +1,6 @@
-//! Contacts of segments and capsules in 2D, for several pairs at a time. They are the ends of the
-//! overlap interval of both cores along the tangent, which `interval.rs` computes for one pair of
-//! any flat-sided solids.
+//! Contacts of segments and capsules in 2D, for several pairs at a time: the ends of the interval
+//! along the tangent in which both cores overlap. `interval.rs` computes the contacts of one pair
+//! of any solids with flat sides.
 //!
 //! ```text
 //!      normal
@@ -104,7 +104,7 @@ struct ContactLine<V> {
     point1: PlaneLanes<V>,
     /// Signed distance of the solids along the normal; negative for an overlap.
     distance: V,
-    /// Lengths up to this count as rounding errors.
+    /// Largest length that counts as a rounding error.
     tolerance: V,
     prediction: V,
     sine: V,
@@ -153,8 +153,8 @@ struct LaneSide<V, M> {
     radius: V,
     /// Cosine of the angle between the segment and the tangent.
     cosine: V,
-    /// Depth below the solid's nearest point, along the normal, of the core's end nearest to the
-    /// other solid; then the coordinate of that end along the tangent.
+    /// For the core's end nearest to the other solid: its depth below the solid's nearest point,
+    /// along the normal, then its coordinate along the tangent.
     top: (V, V),
     /// Lanes where the segment is tilted against the tangent by more than 60°, so that only its end
     /// nearest to the other solid is used.
@@ -189,8 +189,8 @@ impl<V, M> LaneSide<V, M> {
         let heights = [dot(&line.normal, first), dot(&line.normal, last)];
         let is_higher = heights[1].simd_gt(heights[0]);
         let is_last_near = if is_first { is_higher } else { heights[1].simd_lt(heights[0]) };
-        // An end is at the nearest point if its coordinate is at most twice the tolerance; if both
-        // ends are, only the first counts.
+        // An end is at the nearest point if its coordinate differs from zero by at most twice the
+        // tolerance; if both ends are, only the first counts.
         let near = lit::<S, N, V>(simd, 2.0) * line.tolerance;
         let is_at = [flats[0].abs().simd_le(near), flats[1].abs().simd_le(near)];
         let mut side = Self {
@@ -234,7 +234,8 @@ impl<V, M> LaneSide<V, M> {
         plus(&self.ends[0], &times(&minus(&self.ends[1], &self.ends[0]), share))
     }
 
-    /// Returns the height of the rounded surface above a point of the core, along the normal.
+    /// Returns the height of the rounded surface above a point of the core, along the normal: at
+    /// least zero, and at most the point's depth below the solid's nearest point.
     #[inline(always)]
     fn lift<S: Simd, N: Real>(&self, simd: S, core: &PlaneLanes<V>, line: &ContactLine<V>) -> V
     where
@@ -245,7 +246,8 @@ impl<V, M> LaneSide<V, M> {
         let away = line.flat(core) - self.top.1;
         let (away_squared, radius) = (away * away, self.radius);
         // Up to this squared distance along the tangent, the surface is the ball around the core's
-        // end nearest to the other solid.
+        // end nearest to the other solid. Farther away it is parallel to the core, at the height
+        // `radius / cosine` along the normal.
         let turns_squared = radius * radius * (one - self.cosine * self.cosine);
         let round = depth - self.top.0 + (radius * radius - away_squared).sqrt();
         let is_round = away_squared.simd_lt(turns_squared);

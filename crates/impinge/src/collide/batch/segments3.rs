@@ -1,5 +1,5 @@
-//! Segments and capsules in 3D for several pairs at a time; see
-//! `collide/separation/segments/segment_segment.rs`.
+//! Contacts of segments and capsules in 3D, for several pairs at a time.
+//! `collide/separation/segments/segment_segment.rs` is the code for one pair.
 //!
 //! Reads these fields of [`Inputs`]: both poses, both `radii`, the ends of both cores, `prediction`
 //! and `sine`. Lanes in which the code for one pair takes another branch fall back: if the normal
@@ -77,7 +77,7 @@ impl<N: Real> Form<N, 3> for Segments3 {
     }
 }
 
-/// Two points and their squared distance.
+/// A point on each of two segments, and the squared distance of the two points.
 struct SegmentPoints<V> {
     /// Points on the first and on the second segment, in the frame of the first solid.
     points: SegmentEnds<V>,
@@ -195,7 +195,8 @@ fn common_perpendicular<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 }
 
 /// Computes the unit vector and the distance between the nearest points. The mask has the lanes
-/// where the scalar `best_normal` chooses this direction.
+/// where the scalar `best_normal` chooses this direction: where the projections of the cores onto
+/// it are apart by this distance, up to rounding.
 #[inline(always)]
 fn best_normal<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -239,9 +240,10 @@ fn flat<S: Simd, V: Wide<S>>(along: &[V; 3], normal: &[V; 3]) -> V {
 }
 
 impl<N: Real, const L: usize> LaneContacts<N, 3, L> {
-    /// Stores the part of a segment that a point lies on, as `part_of` of `manifold/ring.rs` does,
-    /// in two masks from row `slot` of `parts`: the lanes where the point is at the first end, and
-    /// those where it is at the last end. Returns the lanes where the point is not at both ends.
+    /// Stores the part of a segment that a point lies on, as `part_of` of `manifold/ring.rs` does:
+    /// in row `slot` of `parts` a mask of the lanes where the point is at the first end, in the
+    /// next row those where it is at the last end. Returns the lanes where the point is not at both
+    /// ends.
     #[inline(always)]
     fn put_end_or_side<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,

@@ -1,5 +1,6 @@
-//! Asserts on every instruction set that batches of 8 pairs, batches of one and the builder for one
-//! pair give the same manifolds, to the bit.
+//! Asserts, for each instruction set of this machine, that batches of 8 pairs and batches of one
+//! give equal manifolds. For kinds whose builder for one pair is bit-identical to the kernel, its
+//! manifold must be equal, too.
 
 use super::{
     BallBall, BallCuboid, BallSegment, Batch, Boxes2, Boxes3, ClosedForm, KeptPairs, Many,
@@ -79,7 +80,8 @@ fn bits<N: Real>(value: N) -> u64 {
     if value.partial_cmp(&value).is_some() { value.bits() } else { u64::MAX }
 }
 
-/// Lists the values of a manifold as bits, without the codes of the points.
+/// Lists positions, distances, ids, features and normal of a manifold as bits, to compare manifolds
+/// with NaN; omits the codes of the points.
 fn facts<N: Real, const D: usize>(raw: &RawManifold<N, D>) -> Vec<u64> {
     let mut facts: Vec<u64> = Vec::new();
     for point in &raw.points {
@@ -123,8 +125,8 @@ fn compute_alone<N: Space<D>, const D: usize>(
 }
 
 /// Updates the same pairs in several steps, so that points inherit ids, in batches and alone, and
-/// asserts that the bits agree. Returns the number of points, then the numbers of pairs without
-/// points that fell back and that began.
+/// asserts that the manifolds are equal ([`are_same`]). Returns the number of points, then the
+/// numbers of pairs without points that fell back and that began, all for one instruction set.
 fn compare<F: Batch<N, D>, N: Space<D>, const D: usize>(
     steps: &[Vec<Case<N, D>>],
     what: &str,
@@ -171,7 +173,7 @@ fn in_lanes<F: Batch<N, D>, N: Space<D>, const D: usize>(
     [begun, declined]
 }
 
-/// Kinds of solids to draw.
+/// Kind of a random solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Sort {
     Ball,
@@ -236,8 +238,9 @@ impl<const D: usize> Draw<D> {
     }
 }
 
-/// Draws 203 pairs of the given kinds in four steps: two small motions, then one of up to 0.4.
-/// Every third pair starts on a grid, and one pair in eleven is not updated in a step.
+/// Draws 203 pairs of the given kinds, with lengths multiplied by `unit`, in four steps: the solids
+/// move a little before the second and third step, and by up to 0.4 units before the fourth. Every
+/// third pair starts on a grid, and one pair in eleven is not updated in a step.
 fn drawn<N: Scene<D>, const D: usize>(
     (seed, unit): (u64, f64),
     sorts: [Sort; 2],
@@ -262,10 +265,10 @@ fn request<N: Real>(prediction: f64, sine: f64) -> ManifoldRequest<N> {
     ManifoldRequest { prediction: N::lit(prediction), sine: N::lit(sine), max_points: 4 }
 }
 
-/// Makes a case degenerate or invalid; `number` selects how. A translation gets an entry that is
-/// NaN, infinite, extreme or zero, a rotation an entry that is NaN or infinite, or a solid an
-/// extreme length or a length of zero; or the second pose becomes equal to the first; or the
-/// request changes.
+/// Makes a case degenerate or invalid. The remainder of `number` by 7 selects one of these changes:
+/// an entry of a translation becomes NaN, infinite, extreme or zero; an entry of a rotation becomes
+/// NaN or infinite; a length of a solid becomes extreme or zero; the second pose becomes equal to
+/// the first; or prediction and sine of the request change.
 fn spoiled<N: Real, const D: usize>(case: &mut Case<N, D>, number: usize) {
     let strange = [N::lit(f64::NAN), N::INFINITY, -N::INFINITY, N::MAX, N::ZERO, N::MIN_POSITIVE];
     let value = strange[number / 7 % strange.len()];
@@ -308,7 +311,10 @@ fn with_length<N: Real, const D: usize>(solid: &Solid<N, D>, length: N) -> Solid
     }
 }
 
-/// Runs all comparisons for one algorithm.
+/// Compares batches with single pairs for one algorithm: random pairs for several angles of the
+/// request, lengths in seven units, degenerate or invalid pairs, and batches of 0 to 19 pairs.
+/// Asserts that there are contact points, that fewer than half of the random pairs fall back, and
+/// that some degenerate pairs do (unless both solids are boxes).
 fn check<F: Batch<N, D>, N: Scene<D> + Space<D>, const D: usize>(sorts: [Sort; 2]) {
     for (seed, sine) in [(1, 0.0), (2, 0.0), (3, 0.01), (4, 0.3)] {
         let steps = drawn::<N, D>((seed, 1.0), sorts, &request(0.3, sine));

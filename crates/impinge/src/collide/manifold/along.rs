@@ -25,7 +25,7 @@ where
     /// Lower bound of the signed distance of the solids. A candidate that is nearer by more than
     /// rounding lies below the plane of the face and beside the face, and is dropped.
     pub(crate) least: N,
-    /// Lengths up to this are rounding errors of the pair.
+    /// Largest length that counts as a rounding error for the pair.
     pub(crate) tolerance: N,
 }
 
@@ -34,21 +34,22 @@ where
 pub(crate) struct OnFace<N: Real, const D: usize> {
     /// Normal of the face: unit vector from the first solid to the second.
     pub(crate) normal: Vector<N, D>,
-    /// Points nearer than this by more than rounding are dropped; the distances of the other points
-    /// are raised to at least this.
+    /// Least distance of a contact point. Points that are nearer by more than rounding are dropped;
+    /// the distances of the others are raised to at least `least`.
     pub(crate) least: N,
     /// Signed distance of the solids if `normal` is also the normal of their separation; else
     /// `None`.
     pub(crate) nearest: Option<N>,
-    /// Points farther than this are dropped.
+    /// Largest distance of a contact point; farther points are dropped.
     pub(crate) prediction: N,
-    /// Lengths up to this are rounding errors of the pair.
+    /// Largest length that counts as a rounding error for the pair.
     pub(crate) tolerance: N,
 }
 
 /// Builds the manifold of two convex solids along a normal. It is empty if the supporting features
-/// do not overlap in projection, if all points are beyond the prediction or nearer than `least`,
-/// and if one of the solids is a half-space.
+/// do not overlap in projection, if all points are beyond the prediction or nearer than `least`, if
+/// one of the solids is a half-space, or if a supporting feature in 2D is neither a side nor a
+/// corner.
 pub(crate) fn build_along<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     along: &Along<N, D>,
@@ -62,7 +63,8 @@ pub(crate) fn build_along<N: Space<D>, const D: usize>(
 
 /// Builds the manifold of a pair whose separation has the normal of a face of a surface, up to
 /// rounding, and the signed distance `distance`. Returns `false` if the caller has to use
-/// [`build_between`] instead; always if `distance` is beyond the prediction.
+/// [`build_between`] instead: always in 2D and if `distance` is beyond the prediction, and in the
+/// cases that [`on_face3`] lists.
 pub(crate) fn build_on_face<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     normal: &Vector<N, D>,
@@ -129,7 +131,7 @@ pub(crate) fn on_face3<N: Real>(
     let frame = ContactFrame::known(&planes, tangents3(&normal), tolerance, prediction);
     let (mut candidates, mut lowest) = (Candidates::new(), N::INFINITY);
     clip::candidates(pair, &frame, &mut candidates);
-    // Candidates nearer than `least` lie beside the face, below its plane.
+    // Candidates nearer than `least` by more than rounding lie beside the face, below its plane.
     candidates.retain(|candidate| candidate.distance >= least - tolerance);
     for candidate in &mut candidates {
         candidate.distance = max(candidate.distance, least);

@@ -20,7 +20,7 @@ use crate::shape::{FeatureId, Kind};
 pub(crate) struct SegmentPair<'a, N: Real> {
     /// The two solids, in the frame of the first.
     pub(crate) pair: Pair<'a, N, 2>,
-    /// Lengths up to this are rounding errors.
+    /// Largest length that counts as a rounding error.
     pub(crate) tolerance: N,
     /// Points beyond this distance are not visited.
     pub(crate) prediction: N,
@@ -111,7 +111,8 @@ impl<N: Real> SegmentPair<'_, N> {
                 }
             }
         }
-        // Points nearer than `least` by more than rounding lie beside the face and below it.
+        // Points nearer than `least` by more than rounding lie beside the face, below its plane,
+        // and are dropped.
         let kept = candidates.iter().filter(|found| found.distance >= along.least - tolerance);
         for candidate in kept {
             let point = candidate.with_id(0);

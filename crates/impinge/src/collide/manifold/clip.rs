@@ -58,8 +58,8 @@ pub(super) fn build<N: Real>(
     choose_in_frame(pair, frame, &mut candidates, limit, out);
 }
 
-/// Returns the part of a solid's supporting feature that the nearest point lies on; the whole
-/// feature if rounding places the point outside.
+/// Returns the part of a solid's supporting feature on which the solid's nearest point to the other
+/// solid lies; the whole feature if rounding places that point outside.
 pub(super) fn part_at_witness<N: Real>(
     kind: Kind<'_, N, 3>,
     which: Which,
@@ -230,7 +230,8 @@ fn share<N: Real>(from: N, to: N) -> N {
     from / (from - to)
 }
 
-/// Two projected rings in one frame.
+/// The supporting features of two solids as rings, projected in one frame and measured against each
+/// other.
 struct RingClip<'a, N: Real> {
     frame: &'a ContactFrame<N, 3>,
     rings: [SupportRing<'a, N>; 2],

@@ -100,7 +100,7 @@ pub(in crate::collide) struct ContactFrame<N: Real, const D: usize> {
     /// Nearest points, normal and signed distance of the pair.
     pub(in crate::collide) witness: Separation<N, D>,
     tangents: [Vector<N, D>; 2],
-    /// Lengths up to this are rounding errors.
+    /// Largest length that counts as a rounding error.
     pub(in crate::collide) tolerance: N,
     /// Largest distance of a contact point; rotation may admit farther points ([`Self::admit`]).
     prediction: N,
@@ -109,7 +109,7 @@ pub(in crate::collide) struct ContactFrame<N: Real, const D: usize> {
     pub(in crate::collide) sine: N,
 }
 
-/// A point that may enter the manifold.
+/// A possible contact point, from which the points of the manifold are chosen.
 #[derive(Clone, Copy)]
 pub(in crate::collide) struct Candidate<N: Real, const D: usize> {
     /// Point on the surface of the first solid, in its frame.

@@ -127,7 +127,8 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
     fn feature_corners(&self, map: &dyn SupportMap<N, D>, out: &mut Candidates<N, D>) -> FeatureId {
         let (frame, radius, mut feature) = (self.frame, map.rounding(), Feature::default());
         let extra = contact_feature(map, &frame.normal(), &mut feature);
-        // All corners of a rim have the same id.
+        // All corners of a rim have the same id, so the additional corner `extra`, which comes
+        // first, gets the id of the first vertex.
         let ids = feature.vertex_ids.iter().copied();
         let ids = ids.clone().take(extra.iter().count()).chain(ids);
         let corners = extra.iter().chain(&feature.vertices).zip(ids);

@@ -10,13 +10,14 @@
 //!    [`REACH`] of the size.
 //!
 //! The distance of a match is the smaller of two: how far the point moved on the first solid, in
-//! that solid's frame, and how far it moved on the second, in the second's frame. It is zero for a
-//! point that stays on a vertex of either solid. If the normal turned by more than 45°, the
-//! distance is infinite, because a solid that fell on another side begins new contacts. Pairs of
-//! the same features with a vertex among them are exempt, because they have only one point. The
-//! kernels of `batch` keep no old pose, so they compare positions on the first solid only. A corner
-//! that slides over a floor thus counts as unmoved, and so does a point of the floor that a solid
-//! slides over.
+//! that solid's frame, and how far it moved on the second, in the second's frame. So a corner that
+//! slides over a floor counts as unmoved, and so does a point of the floor that a solid slides
+//! over. The distance is zero for a point that stays on a vertex of either solid. The kernels of
+//! `batch` keep no old pose, so they compare positions on the first solid only.
+//!
+//! If the normal turned by more than 45°, the distance is infinite, because a solid that fell on
+//! another side begins new contacts. It is zero nevertheless for the same pair of features with a
+//! vertex among them, because such a pair has only one point.
 //!
 //! ```text
 //!           ┌─────────┐            ┌─────────┐
@@ -41,7 +42,7 @@ use crate::math::{Point, Pose, Real, Vector, max_component};
 use crate::shape::FeatureId;
 
 /// Largest distance that a contact may move in one step and stay the same contact, as a fraction of
-/// the pair's size: half the diagonal of the local box of the smaller solid.
+/// the pair's size (`collide/size.rs`).
 pub(super) const SHARE: f64 = 1.0 / 16.0;
 
 /// Largest distance, along each axis and as a fraction of the pair's size, between crossings of the
@@ -135,9 +136,10 @@ pub(in crate::collide) fn are_near<N: Real, const D: usize>(
     moved(old, new, near_scale(size)) <= N::ONE
 }
 
-/// Returns the squared distance that a point moved, on the solid where it is smaller, times `scale`
-/// squared. Zero if both points are on the same vertex of either solid. If the normals do not
-/// agree, zero for the same features with a vertex among them, else infinite.
+/// Returns the smaller of the squared distances that a point moved on the two solids, times `scale`
+/// squared. Zero if the old and the new point are on the same vertex of one of the solids. If the
+/// normals do not agree ([`normals_agree`]), zero for the same features with a vertex among them,
+/// else infinite.
 #[inline]
 pub(super) fn moved<N: Real, const D: usize>(
     old: &Anchors<N, D>,
@@ -165,8 +167,8 @@ pub(super) fn moved<N: Real, const D: usize>(
 /// Cosine of the largest angle, 45°, between the old and new normal of one contact.
 const TURN: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
-/// Returns whether contacts with these normals, in the frame of the first solid, may be the same
-/// contact.
+/// Returns whether two contacts may be the same one by their normals, in the frame of the first
+/// solid: whether the angle between the normals is at most 45°. `false` for NaN.
 #[inline(always)]
 pub(in crate::collide) fn normals_agree<N: Real, const D: usize>(
     old: &Vector<N, D>,
@@ -181,8 +183,8 @@ pub(in crate::collide) fn is_one_point(features: [FeatureId; 2]) -> bool {
     features.iter().any(|id| matches!(id, FeatureId::Vertex(_)))
 }
 
-/// Gives a candidate without an id the id of the old point with the same features, if one of these
-/// features is a vertex and no other candidate has the same two.
+/// Passes the id of each old point on to the candidate with the same features, if one of these
+/// features is a vertex, only one candidate has both features, and that candidate has no id yet.
 pub(in crate::collide) fn inherit_by_features<N: Real, const D: usize>(
     old: &RawManifold<N, D>,
     candidates: &mut [Candidate<N, D>],

@@ -1,4 +1,5 @@
-//! Two flat-sided 2D solids: the overlap interval of their supporting sides.
+//! Contacts of two flat-sided 2D solids: the ends of the overlap interval of their supporting
+//! sides.
 //!
 //! This module computes the contacts of segments, capsules, triangles, boxes, polygons and rounded
 //! solids. It also handles other support maps whose supporting feature is a side or a corner, with
@@ -56,7 +57,7 @@ pub(super) struct Corner<N: Real, const D: usize> {
     pub(super) id: FeatureId,
 }
 
-/// Supporting feature of a solid: a side, or a point.
+/// Supporting feature of a 2D solid: a side or a corner, projected onto the tangent.
 pub(super) struct FeatureInterval<N: Real> {
     which: Which,
     id: FeatureId,
@@ -183,7 +184,7 @@ impl<N: Real> FeatureInterval<N> {
     #[inline(always)]
     pub(super) fn under(&self, coordinate: N) -> Point<N, 2> {
         let [from, to] = &self.corners;
-        // Sides run in either direction along the tangent.
+        // `along` is negative if the side runs against the tangent.
         let share = (coordinate - from.flat.x) * self.along / (self.along * self.along);
         from.point + (to.point - from.point) * min(max(share, N::ZERO), N::ONE)
     }

@@ -109,7 +109,8 @@ fn nearest_first<K: PartialOrd + Copy>(
         for at in Ones::<FEW>(pending) {
             (keys[at], others[at]) = nearest(at, new);
             let has_one = keys[at] < never;
-            // An old point without a match now has none later either.
+            // The set of new points only shrinks, so an old point without a match now has none
+            // later.
             old &= !(u32::from(!has_one) << at);
         }
         // New points that are nearest to at least one old point.
@@ -154,8 +155,9 @@ fn match_many<N: Real, const D: usize>(
     }
 }
 
-/// Visits matches by position alone. Precondition: no new point has the features of an old point.
-/// `old` and `new` are masks of points.
+/// Visits matches by position: features count only through `same_vertex`. Points do not match if
+/// their distance exceeds the near length (`SHARE` of the pair's size). `old` and `new` are masks
+/// of points.
 ///
 /// `moved` returns the squared distance of an old and a new point in units of the squared near
 /// length. `same_vertex` returns, for an old point and a mask of new points, the new points on the
@@ -246,7 +248,8 @@ fn between(keys: &[(u64, u32)], [low, high]: [u64; 2]) -> impl Iterator<Item = u
 }
 
 impl<N: Real, const D: usize> Anchors<N, D> {
-    /// Returns a hash of the parts and features of a point.
+    /// Returns a hash of the parts and features of a point; points with equal parts and features
+    /// are adjacent if sorted by it.
     fn ids_key(&self) -> u64 {
         let ([part1, part2], features) = self.ids;
         let [feature1, feature2] = features.mapped(|id| match id {

@@ -56,8 +56,8 @@ use crate::tables::ByDimension;
 /// Builds the manifold of two solids in 2D: at most two points.
 ///
 /// `out` holds the previous manifold of the pair, from which the new points inherit their ids. On
-/// return `out` is empty if and only if the solids are farther apart than the prediction, the
-/// separation is NaN, or the overlap is infinitely deep.
+/// return `out` is empty if and only if the solids are farther apart than the prediction or the
+/// distance of the separation is NaN or infinite.
 pub(crate) fn build2<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
@@ -91,7 +91,8 @@ fn build_2d<N: Real>(
     }
     let frame = ContactFrame::new(pair, separation, request, tangents2(&separation.normal));
     if !interval::build(pair, &frame, limit, out) {
-        // A user-defined solid whose supporting feature is neither a corner nor a side.
+        // One solid is user-defined and has a supporting feature that is neither a corner nor a
+        // side.
         build_witness_manifold(pair, separation, out);
     }
 }
@@ -172,7 +173,8 @@ pub(crate) fn tangents2<N: Real>(normal: &Vector<N, 2>) -> [Vector<N, 2>; 2] {
     [-perp(normal), Vector::<N, 2>::zeros()]
 }
 
-/// Computes the separation and the manifold of a pair in 3D.
+/// Computes the separation of a pair in 3D, and builds its manifold from it as [`build3`] does.
+/// Clears the points if the solids are beyond the prediction.
 pub(crate) fn contacts_of_separation3<N: Real>(
     pair: &Pair<'_, N, 3>,
     request: &ManifoldRequest<N>,
@@ -184,7 +186,8 @@ pub(crate) fn contacts_of_separation3<N: Real>(
     }
 }
 
-/// Computes the separation and the manifold of a pair in 2D.
+/// Computes the separation of a pair in 2D, and builds its manifold from it as [`build2`] does.
+/// Clears the points if the solids are beyond the prediction.
 pub(crate) fn contacts_of_separation2<N: Real>(
     pair: &Pair<'_, N, 2>,
     request: &ManifoldRequest<N>,
@@ -197,15 +200,15 @@ pub(crate) fn contacts_of_separation2<N: Real>(
 }
 
 /// An old point (a point of the previous manifold) may stand for the deepest point if its distance
-/// exceeds the smallest distance by at most this fraction of the pair's size (half the diagonal of
-/// the smaller solid's box). So a solid that vibrates at rest keeps its points although the deepest
-/// corner changes in each step. Such an old point gets the distance of the pair; it is off the
-/// surfaces by at most the difference.
+/// exceeds the smallest distance by at most this fraction of the pair's size (`collide/size.rs`).
+/// So a solid that vibrates at rest keeps its points although the deepest corner changes in each
+/// step. Such an old point gets the distance of the pair; it is off the surfaces by at most the
+/// difference.
 const SLACK: f64 = 1.0 / 512.0;
 
-/// Up to this number of candidates, all are kept if the limit on the number of points allows. Of
-/// more candidates, [`reduce`] chooses some, because some may coincide up to rounding, such as
-/// corners of two equal boxes.
+/// Up to this number of candidates, all are kept if the limit on the number of points allows. More
+/// candidates are reduced ([`reduce`]) even if the limit allows all of them, because some may
+/// coincide up to rounding, such as corners of two equal boxes.
 pub(in crate::collide) const ALL: usize = 4;
 
 /// Inputs of [`choose`].
@@ -217,7 +220,7 @@ pub(in crate::collide) struct PointChoice<'a, N: Real, const D: usize> {
     pub(in crate::collide) size: &'a dyn Fn() -> N,
     /// Signed distance of the pair; one of the deepest points gets exactly this distance.
     pub(in crate::collide) distance: N,
-    /// Lengths up to this are rounding errors.
+    /// Largest length that counts as a rounding error.
     pub(in crate::collide) tolerance: N,
     /// Largest number of points; at least one is kept.
     pub(in crate::collide) limit: usize,

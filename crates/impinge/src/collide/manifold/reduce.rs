@@ -12,9 +12,9 @@
 //! programming over these corners (Boyce, Dobkin, Drysdale and Guibas, "Finding extremal polygons",
 //! 1985). Both are exact up to [`FEW`] candidates; a longer hull is first reduced ([`coarsen`]).
 //!
-//! Old points (which continue points of the previous manifold) are all kept if they are few, span
-//! [`ENOUGH`] of the best choice and include a deepest one. Otherwise each weighs slightly more
-//! than a new one. So solids at rest keep their points even where many choices are equal.
+//! Old points (which continue points of the previous manifold) are all kept if they do not exceed
+//! the limit, span [`ENOUGH`] of the best choice and include a deepest one. Otherwise each weighs a
+//! bit more than a new one. So solids at rest keep their points even among equal choices.
 
 use core::cmp::Ordering;
 
@@ -155,7 +155,7 @@ fn best_spanning<N: Real>(points: &mut Projections<N>, limit: usize, tolerance: 
     }
     ring.extend(inner);
     if ring.is_empty() {
-        // Only if areas are NaN.
+        // The hull has no corners only if areas are NaN.
         ring.push(points[a_deepest(points)]);
     }
     if ring.len() > limit {
@@ -209,8 +209,8 @@ fn best_four<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> In
     chosen
 }
 
-/// Returns the positions of a deepest point, of the point farthest from it if that is beyond the
-/// tolerance and, if the deepest is inside a row and `limit` is above 2, of the row's other end.
+/// Returns the positions of a deepest point and the point farthest from it beyond the tolerance, if
+/// any and `limit` > 1; if the former is inside a row and `limit` > 2, also of its other end.
 fn farthest<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> Indices {
     let mut chosen = Indices::from_slice(&[a_deepest(points)]);
     let mut most = tolerance;
@@ -346,7 +346,7 @@ fn with_sides<N: Real>(
     (corners.len() > 2).then_some(corners)
 }
 
-/// Sorts the points; returns the corners of their convex hull, counter-clockwise.
+/// Sorts the points; returns the corners of their hull, counter-clockwise, [thinned](thin).
 fn hull<N: Real>(points: &mut [Projected<N>], tolerance: N) -> Projections<N> {
     points.sort_by(|a, b| ordering(a.at.x, b.at.x).then_with(|| ordering(a.at.y, b.at.y)));
     let mut ring = Projections::new();
@@ -444,7 +444,7 @@ fn best_addition<N: Real>(ring: &[Projected<N>], indices: &[usize]) -> Option<(u
     best
 }
 
-/// Returns the polygon of `count` corners with the largest area, with a deepest one if possible.
+/// Returns `count` corners with the largest area plus bonuses, one of them deepest if possible.
 fn largest_polygon<N: Real>(mut ring: Projections<N>, count: usize) -> Projections<N> {
     let has_deepest = ring.iter().any(|corner| corner.is_deepest);
     let is_first = |corner: &Projected<N>| corner.is_deepest || !has_deepest;

@@ -9,7 +9,8 @@
 //! ```
 //!
 //! A point has one corner, a segment two corners and one side, a face three or more corners and the
-//! same number of sides. Most rings need one block of [`LANES`] corners; a round cap may need two.
+//! same number of sides. A ring is a list of blocks of [`LANES`] corners. Most rings have one
+//! block; a round cap may need two, and a hull face with more than 8 corners needs one for each 8.
 //! [`LANES`] is the capacity of `FaceRing`, which `supporting` fills; `clip` measures corners
 //! against whole blocks of sides. Ids are those of
 //! [`SupportMap::core_feature`](crate::shape::SupportMap::core_feature). Corners that coincide in

@@ -2,7 +2,9 @@
 //!
 //! The features equal those of [`SupportMap::core_feature`], which is also called for the kinds
 //! that have no function here. Only the corners of round caps are chosen differently
-//! ([`contact_feature`]). A ring is one `FaceRing` for up to 8 corners; a round cap may fill two.
+//! ([`contact_feature`]). A ring is a list of blocks, each a `FaceRing` of up to 8 corners. Most
+//! rings have one block; a round cap may need two, and a hull face with more than 8 corners needs
+//! one for each 8.
 
 use smallvec::SmallVec;
 
@@ -15,7 +17,7 @@ use crate::shape::{
     SupportMap, Triangle,
 };
 
-/// Corners of a feature, 8 per ring; the first ring holds the id and normal of the feature.
+/// Corners of a feature, 8 per block; the first block holds the id and normal of the feature.
 pub(super) type FaceBlocks<N> = SmallVec<[FaceRing<N>; 2]>;
 
 /// Fills a blank ring with the supporting feature of a solid's core in `direction`, in the frame of

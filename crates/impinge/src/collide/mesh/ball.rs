@@ -28,8 +28,8 @@ use crate::shape::{Ball, CompositeShape, FeatureId, Kind, SupportMap, SurfaceAcc
 /// Rounding error of lengths, in units of epsilon times the sum of the bounding radii of the ball
 /// and the triangle around the ball's centre.
 const ROUNDING: f64 = 16.0;
-/// Number of parts that the cache may hold with its large margin. The number is large because a
-/// part outside the ball's box costs only a box test.
+/// Largest number of parts that the cache holds with its large margin. It is high because a part
+/// outside the ball's box costs only a box test.
 const MAX_ROOMY: usize = 5 * LANES;
 
 /// Updates the contacts of a ball and a surface. Returns `false`, with nothing changed but the part
@@ -143,9 +143,11 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         self.rounding_of_hidden(&candidates, around, part_contacts)
     }
 
-    /// Returns the largest `tolerance` of the hidden triangles that the ball may touch; zero with
-    /// at most one contact, because nothing is merged then. `None`, so that the generic path is
-    /// used, if a hidden triangle may be nearer than all contacts or its coordinates overflow.
+    /// Returns the largest `tolerance` of the hidden triangles that the ball may touch. The generic
+    /// path, which does not skip them, merges points within the largest tolerance of all parts, and
+    /// the result must be the same. Zero with at most one contact, because nothing is merged then.
+    /// `None`, so that the generic path is used, if a hidden triangle may be nearer than all
+    /// contacts or its coordinates overflow.
     fn rounding_of_hidden(
         &self,
         candidates: &CandidateTriangles<N>,

@@ -185,7 +185,9 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
     }
 
     /// Fills the cache with all parts near the solid, and returns a box around all points within
-    /// the prediction of the solid. `None` if the box is unbounded or a cached part is not a
+    /// the prediction of the solid. This is the box of the solid's bounding ball, which a rotation
+    /// does not change; but if that box is not cached and more than twice as large as the box of
+    /// the solid itself, it is the latter. `None` if the box is unbounded or a cached part is not a
     /// segment with corners.
     fn box_within(&self, around: &mut PartCache<N, 2>) -> Option<Aabb<N, 2>> {
         let max_distance = self.size + self.request.prediction;

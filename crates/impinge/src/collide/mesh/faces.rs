@@ -63,7 +63,8 @@ pub(crate) fn face_contacts<N: Real>(
         });
     found.clip();
     found.drop_missing();
-    // The generic path, which computes the contacts instead, does not look for backs.
+    // If the lanes served nothing, the generic path computes the contacts. It does not check on
+    // which side a face is touched, so the flag must be cleared.
     arena.are_fronts &= is_served;
     is_served
 }
@@ -218,7 +219,8 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
     }
 }
 
-/// Returns whether the faces of the solid are clipped in lanes.
+/// Returns whether the solid is a box or a hull: the kinds whose features are clipped against
+/// triangles in SIMD lanes.
 pub(super) const fn has_faces<N: Real, const D: usize>(solid: Kind<'_, N, D>) -> bool {
     matches!(solid, Kind::Cuboid(_) | Kind::Polytope(_))
 }
@@ -238,7 +240,7 @@ impl<N: Real> Default for PendingClips<N> {
     }
 }
 
-/// The contacts found so far.
+/// The contacts found so far, and the triangles whose contact points are still to be clipped.
 struct FaceContacts<'s, 'a, N: Real> {
     configuration: &'s FaceConfiguration<'a, N>,
     contacts: &'s mut PartContacts<N, 3>,
@@ -346,7 +348,7 @@ impl<N: Real> FaceContacts<'_, '_, N> {
         }
     }
 
-    /// Computes the contact of a triangle by the generic path.
+    /// Computes the contact of a triangle by the generic path; `None` if there is no contact.
     fn in_general(&mut self, cache_index: usize) -> Option<PartContact<N, 3>> {
         let FaceConfiguration { query, scene, around, .. } = *self.configuration;
         let parts = [0, around.parts()[cache_index]];

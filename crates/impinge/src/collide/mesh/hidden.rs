@@ -23,8 +23,8 @@ use super::scene::Scene;
 use crate::math::order::{order_of, sort_keyed};
 use crate::math::{Mapped, Point, Real, Space, Vector, max, min};
 
-/// Two faces do not hide each other if the cosine of the angle between their normals is larger than
-/// this.
+/// Smallest cosine of the angle between two normals that are alike: faces with such normals do not
+/// hide each other.
 const ALIKE: f64 = 0.99;
 /// Bound of the rounding errors of heights, in units of epsilon times the lengths of both parts.
 const ROUNDING: f64 = 16.0;
@@ -41,7 +41,7 @@ enum PlaneSide {
     Across,
 }
 
-/// A face in contact.
+/// A face of the composite in contact with the solid.
 struct TouchedFace<N: Real, const D: usize> {
     /// Index of the face's contact.
     contact: usize,
@@ -121,9 +121,10 @@ pub(super) fn are_alike<N: Real, const D: usize>(a: &Vector<N, D>, b: &Vector<N,
     a.dot(b) > N::lit(ALIKE)
 }
 
-/// Returns the index of the contact with the hidden face: this face lies behind the plane of the
-/// other face, while the other face lies in front of its plane and is not farther from the solid,
-/// or overlaps it. `None` if neither face hides the other.
+/// Returns the index of the contact with the hidden face of two. A face is hidden if it lies behind
+/// the plane of the other face, the other face lies in front of its plane, and the other face
+/// overlaps the solid or is not farther from it. `None` if neither face is hidden, or if the
+/// normals of both are alike.
 fn hidden_of<N: Real, const D: usize>(
     a: &TouchedFace<N, D>,
     b: &TouchedFace<N, D>,

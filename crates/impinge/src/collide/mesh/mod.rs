@@ -240,8 +240,8 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
 }
 
 /// Returns whether [`Query::resolve_contacts`] would change nothing: all contacts are
-/// [`PartStatus::Own`], their faces have about one normal, and the smallest distance of a point is
-/// not above that of the nearest parts, or not above zero if these overlap.
+/// [`PartStatus::Own`], the normals of their faces are alike ([`are_alike`]), and the smallest
+/// distance of a point is not above that of the nearest parts, or not above zero if these overlap.
 fn is_resolved<N: Real, const D: usize>(contacts: &[PartContact<N, D>]) -> bool {
     let (mut distance, mut lowest) = (N::INFINITY, N::INFINITY);
     let mut face: Option<Vector<N, D>> = None;
@@ -379,13 +379,13 @@ fn of_parts<N: Space<D>, const D: usize>(
     ManifoldRequest { prediction: prediction + margin, sine: N::ZERO, max_points: PART_POINTS }
 }
 
-/// Returns the bounding radius of a solid around its origin.
+/// Returns the bounding radius of a solid around its origin, including its rounding radius.
 fn size<N: Real, const D: usize>(map: &dyn SupportMap<N, D>) -> N {
     map.reach() + map.rounding()
 }
 
-/// Returns the contact of two placed shapes in the world frame, `None` beyond `limit`. For
-/// composites it is the deepest point of the manifolds that a world would have.
+/// Returns the contact of two placed shapes in the world frame; `None` beyond `limit`. For
+/// composites, the last paragraph of the module's description says which contact it is.
 pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
     placed1: &Placed<'_, N, D>,
     placed2: &Placed<'_, N, D>,

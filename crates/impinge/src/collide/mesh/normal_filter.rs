@@ -56,8 +56,8 @@ pub(super) struct Case<'a, N: Real, const D: usize> {
     pub(super) part: u32,
     /// Computes the feature of the part at the contact; most cases are decided without it.
     pub(super) feature: &'a dyn Fn() -> FeatureId,
-    /// Whether the other solid is known to have no point over the part's face, so that `Snapped`
-    /// and `Beyond` have the same effect and are not told apart.
+    /// Whether the other solid is a ball whose centre is known not to project into the part's face.
+    /// `Snapped` and `Beyond` both drop such a contact, so they are not distinguished.
     pub(super) is_beside: bool,
     /// Unit normal of the contact, away from the part.
     pub(super) outward: Vector<N, D>,

@@ -36,7 +36,7 @@ pub(crate) fn over3<N: Real>(
     let longest = max(lengths[0], max(lengths[1], lengths[2]));
     let normal = cross(&sides[0], &sides[1]);
     let (area, margin) = (normal.norm(), N::lit(CERTAIN) * tolerance);
-    // False for NaN.
+    // Both comparisons are false for NaN.
     let is_nondegenerate = area > N::lit(MIN_HEIGHT) * longest * longest && longest > margin;
     if !is_nondegenerate {
         return None;

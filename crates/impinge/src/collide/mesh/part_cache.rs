@@ -250,7 +250,8 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         }
     }
 
-    /// Returns the seams of the part at `index` in [`Self::parts`]; `None` if they are not cached.
+    /// Returns the seams of the part at `index` in [`Self::parts`]; `None` if they are not computed
+    /// yet, or if the surface does not provide them.
     pub(super) fn seams(&self, index: usize) -> Option<&FaceSeams<N>> {
         match self.seams.get(index)? {
             KeptSeams::Known(seams) => Some(seams),

@@ -113,8 +113,8 @@ fn appended<N: Space<D>, const D: usize>(
 pub(super) type Reference<N, const D: usize> = Option<Point<N, D>>;
 
 /// Computes the contact of two parts; `known` is their separation, if it is already known. `None`
-/// if the parts are beyond the prediction, or if one is on a side of the other's surface from which
-/// it cannot be touched.
+/// if the parts are beyond the prediction, if their distance is NaN or infinite, or if one is on a
+/// side of the other's surface from which it cannot be touched.
 pub(super) fn compute<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     placed: &PlacedPair<'_, N, D>,
@@ -236,7 +236,9 @@ pub(super) fn is_beside(over: Option<FeatureId>) -> bool {
     over.is_some_and(|over| !matches!(over, FeatureId::Face(_)))
 }
 
-/// Computes the contact of two parts, at least one of which belongs to a surface.
+/// Computes the contact of two parts with the separation `gap`, at least one of which belongs to a
+/// surface. `None` if the distance is NaN or infinite, or if a surface cannot be touched from the
+/// position of the other part.
 fn of_surfaces<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     configuration: &PartConfiguration<'_, N, D>,
@@ -319,9 +321,9 @@ fn over<N: Space<D>, const D: usize>(pair: &Pair<'_, N, D>, tolerance: N) -> Opt
     <N::Algorithms>::over(triangle, &center, tolerance)
 }
 
-/// Returns whether `over` is the face and the filter returned its normal, or neither is the case.
-/// If so, the contact gets the feature `over`; a ball close to a side may still have the normal of
-/// the face.
+/// Returns whether the filter returned the face's normal if and only if `over` is the face. Then
+/// the contact gets the feature `over`. Otherwise the feature is uncertain: a ball close to a side
+/// may still have the normal of the face.
 pub(super) fn is_certain<N: Real, const D: usize>(
     over: FeatureId,
     filtered: &FilteredNormal<N, D>,

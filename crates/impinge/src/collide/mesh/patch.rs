@@ -120,7 +120,7 @@ fn merge_one<N: Real, const D: usize>(
     ids: &mut PairIds,
 ) {
     let mut raw = merging.points[piece.points.start];
-    // False for NaN.
+    // The comparison is false for NaN.
     let is_near = raw.distance <= merging.request.prediction;
     if !is_near {
         return patches.clear();

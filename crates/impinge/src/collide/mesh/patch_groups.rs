@@ -169,7 +169,7 @@ fn are_coplanar<N: Real, const D: usize>(
     lead2: &Lead,
 ) -> bool {
     let piece = |lead: &Lead| &merging.pieces[lead.piece];
-    // False for NaN.
+    // The comparison is false for NaN.
     let is_same = (piece(lead1).normal - piece(lead2).normal).norm_squared() <= square_of_same();
     if !is_same {
         return false;
@@ -251,7 +251,7 @@ impl NormalCells {
     }
 
     /// Returns the patches that may have the normal of a piece: those in its cell and in the two
-    /// adjacent cells.
+    /// adjacent cells, from each cell at most the [`MAX_COMPARED`] deepest.
     fn near(&self, piece: usize) -> impl Iterator<Item = usize> {
         let own = self.of_pieces.get(piece).copied().unwrap_or(0);
         let number = self.cells[own].number;

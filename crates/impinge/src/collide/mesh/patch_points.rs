@@ -47,9 +47,9 @@ pub(super) struct Choosing<'a, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
-    /// Fills a patch with at most `max_points` points of `pieces`: a deepest point, and the points
-    /// that span the largest area. `lead` is the piece with the deepest point. `members` is scratch
-    /// space.
+    /// Fills a patch with at most `max_points` points of `pieces` (in 2D at most two): a deepest
+    /// point, and the points that span the largest area. `lead` is the piece with the deepest
+    /// point. `members` is scratch space.
     pub(super) fn fill(
         &self,
         lead: Lead,

@@ -7,7 +7,7 @@ use super::scene::Scene;
 use crate::math::order::{order_of, sort_keyed};
 use crate::math::{Real, Space, Vector, max};
 
-/// Two normals count as one direction if the cosine of the angle between them is larger than this.
+/// Smallest cosine of the angle between two normals that count as one direction.
 const ALIKE: f64 = 0.99;
 
 /// Largest number of escapes kept at a time; no two of them have about the same direction.

@@ -68,9 +68,9 @@ enum WholeOrPart<'a, N: Real, const D: usize> {
 
 /// A part of the first shape and a part of the second, in the order of their kinds.
 ///
-/// Both parts are translated to an anchor close to them, as in [`Between::parts`]. The distance of
-/// the two parts is therefore equal, bit for bit, to the distance of the pair that
-/// [`Between::parts`] makes; only the order of the parts may differ.
+/// Both parts are translated so that an anchor close to them becomes the origin, as in
+/// [`Between::parts`]. The distance of the two parts is therefore equal, bit for bit, to the
+/// distance of the pair that [`Between::parts`] makes; only the order of the parts may differ.
 pub(super) struct PlacedPair<'a, N: Real, const D: usize> {
     /// The two parts, in the order of their kinds.
     bodies: [PlacedPart<'a, N, D>; 2],

@@ -1,10 +1,12 @@
-//! Pairs of one part of each of two shapes, with tolerances independent of the frames' origins.
+//! Pairs of parts, one from each of two shapes, placed near a common origin so that tolerances do
+//! not grow with the distance of the parts from the origins of their shapes.
 //!
 //! The triangles of a mesh are in the frame of the mesh, whose origin may be far away, and the
 //! tolerances of the pair algorithms grow with all coordinates. So both parts are placed relative
 //! to an anchor close to them: the origin of the convex solid or, for two composites, the
-//! [`anchor`] of the first part. All parts that one solid is compared with are placed relative to
-//! one anchor, so that adjacent triangles still share their corners.
+//! [`anchor`] of the first part. All parts that are compared with one convex solid, or with one
+//! part of the first composite, are placed relative to one anchor, so that adjacent triangles still
+//! share their corners.
 
 use super::bounds::{aabb_of, enclosing};
 use crate::bounding_volume::Aabb;
@@ -40,7 +42,8 @@ enum PartOf<'a, N: Real, const D: usize> {
     Part(PartSolid<'a, N, D>),
 }
 
-/// A part of each shape, as a pair in the frame of the first part.
+/// One part of each of two shapes, placed relative to a common anchor, and the pose of the second
+/// part in the frame of the first.
 pub(crate) struct PartPair<'a, N: Real, const D: usize> {
     part1: AnchoredPart<'a, N, D>,
     part2: AnchoredPart<'a, N, D>,
@@ -61,7 +64,7 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
         Self { pair: *pair, pose21: pair.pose12.inverse() }
     }
 
-    /// Returns both shapes as composites; `None` for a convex solid.
+    /// Returns each shape as a composite; `None` for a shape that is not a composite.
     pub(crate) fn composites(&self) -> [Option<&'a dyn CompositeShape<N, D>>; 2] {
         [self.pair.first, self.pair.second].mapped(|kind| Geometry(kind).as_composite())
     }
@@ -84,8 +87,8 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
         matches!(self.pair.first, Kind::Plane(_))
     }
 
-    /// Returns the pair of the part `part1` of the first shape and `part2` of the second; the index
-    /// of a convex solid is 0.
+    /// Places part `part1` of the first shape and part `part2` of the second relative to a common
+    /// anchor. For a convex solid the index is ignored, and the solid counts as its only part.
     pub(crate) fn parts(&self, [part1, part2]: [u32; 2]) -> PartPair<'a, N, D> {
         let [composite1, composite2] = self.composites();
         if composite1.is_none() && composite2.is_none() {
@@ -153,8 +156,9 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
         Some((part, pose))
     }
 
-    /// Returns whether, in the frame of one of two composites, its bounding box is farther than
-    /// `limit` from a box around the other composite. False if one shape is convex.
+    /// Tests in the frame of each of two composites whether its bounding box is farther than
+    /// `limit` from a box around the other composite. Returns `true` if one of the tests succeeds,
+    /// which proves that the shapes are farther apart than `limit`. False if one shape is convex.
     pub(crate) fn are_boxes_beyond(&self, limit: N) -> bool {
         let [Some(parts1), Some(parts2)] = self.composites() else { return false };
         let is_beyond = |parts: &dyn CompositeShape<N, D>, other: usize| {
@@ -171,8 +175,8 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
     }
 }
 
-/// Orders two composites by their number of parts. Returns the index of the smaller one (0 on a
-/// tie), the smaller composite and the larger.
+/// Orders two composites by their number of parts. Returns the index of the composite with fewer
+/// parts (0 on a tie), this composite, and the composite with more parts.
 pub(crate) fn by_number<'a, N: Real, const D: usize>(
     parts1: &'a dyn CompositeShape<N, D>,
     parts2: &'a dyn CompositeShape<N, D>,
@@ -181,7 +185,8 @@ pub(crate) fn by_number<'a, N: Real, const D: usize>(
 }
 
 impl<'a, N: Real, const D: usize> AnchoredPart<'a, N, D> {
-    /// Places `piece`, or the whole convex shape if it is `None`, relative to the anchor `origin`.
+    /// Places `piece`, or the whole convex shape if `piece` is `None`, relative to the anchor
+    /// `origin`.
     fn new(whole: Kind<'a, N, D>, piece: Option<Part<'a, N, D>>, origin: &Point<N, D>) -> Self {
         let Some(piece) = piece else {
             let pose = Pose::from_translation(-origin.coords);
@@ -216,7 +221,9 @@ impl<N: Real, const D: usize> PartPair<'_, N, D> {
         Pair { first: self.part1.kind(), second: self.part2.kind(), pose12: self.pose12 }
     }
 
-    /// Returns the poses of the parts in the frame of the first shape.
+    /// Returns the poses of the solids of [`Self::pair`] in the frame of the first shape. The
+    /// triangles and segments of this pair are relative to the anchor, unlike those of the
+    /// composites.
     pub(crate) fn poses(&self) -> [Pose<N, D>; 2] {
         let Pose { rotation, translation } = self.part1.pose;
         let pose1 = Pose { rotation, translation: self.origin1.coords + translation };
@@ -252,8 +259,9 @@ impl<N: Real, const D: usize> PartPair<'_, N, D> {
     }
 }
 
-/// Returns a point close to a part: the first corner of a triangle or segment, else the origin of
-/// the part. The point is in the frame of the composite.
+/// Returns the point relative to which a part and its partner are placed: the first corner of a
+/// triangle or segment, which is close to the part, or the origin of any other part. The point is
+/// in the frame of the composite.
 pub(crate) fn anchor<N: Real, const D: usize>(part: &Part<'_, N, D>) -> Point<N, D> {
     match &part.solid {
         PartSolid::Triangle(triangle) => part.pose.point(&triangle.corners()[0]),

@@ -1,4 +1,5 @@
-//! Bounding boxes for searches of parts, loosened by the rounding error of their coordinates.
+//! Bounding boxes for searches of parts, and functions that enlarge boxes and limits by the
+//! rounding error, so that a search rejects no part within its limit.
 
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::{Point, Pose, Real, Space, Vector, max, max_component};
@@ -10,7 +11,8 @@ const ROUNDING_ERRORS: f64 = 16.0;
 
 /// Returns a box around a solid of any kind placed at `pose`.
 ///
-/// Cost: a few support points; for a composite, reading the bounds of its search structure.
+/// Cost: at most two support points for each coordinate axis; for a composite, reading the bounds
+/// of its search structure.
 pub(crate) fn aabb_of<N: Space<D>, const D: usize>(
     kind: Kind<'_, N, D>,
     pose: &Pose<N, D>,
@@ -31,7 +33,8 @@ pub(crate) fn aabb_of<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns the box of a support map, computed from its support points along the axes.
+/// Returns the box of a support map placed at `pose`, computed from its support points along the
+/// axes; unbounded if the computed corners do not form a valid box.
 fn of_map<N: Real, const D: usize>(map: &dyn SupportMap<N, D>, pose: &Pose<N, D>) -> Aabb<N, D> {
     let (mut mins, mut maxs) = (pose.point(&map.center()), pose.point(&map.center()));
     for axis in 0..D {
@@ -83,7 +86,7 @@ pub(super) fn extent<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> N {
     most
 }
 
-/// Returns the rounding error of coordinates up to `scale`.
+/// Returns an upper bound of the rounding error of lengths computed from coordinates up to `scale`.
 fn rounding<N: Real>(scale: N) -> N {
     N::lit(ROUNDING_ERRORS) * N::EPSILON * scale
 }

@@ -41,7 +41,8 @@ pub(crate) struct InsidePiece<N: Real, const D: usize> {
     /// [`Self::leads_out`] returns `true`; `None` before such a pair is found.
     nearest: Option<PartSeparation<N, D>>,
     /// Nearest pair of those for which [`Self::leads_out`] returns `false`, because the body
-    /// continues behind the boundary; used only if `nearest` is `None`.
+    /// continues behind the boundary. Used only if `nearest` is `None`; meaningless otherwise,
+    /// because later pairs are stored without a call of [`Self::leads_out`].
     blocked: Option<PartSeparation<N, D>>,
 }
 
@@ -51,7 +52,7 @@ const BEYOND: f64 = 1.0 / 64.0;
 /// Rounding error of lengths, in units of epsilon times the largest coordinate.
 const ROUNDING: f64 = 64.0;
 
-/// Pieces of both shapes that are inside bodies of the other shape.
+/// Pieces of both shapes, each with a point inside a body of the other shape.
 pub(crate) type InsidePieces<N, const D: usize> = SmallVec<[InsidePiece<N, D>; 1]>;
 
 /// Exit plane, in the frame of the first shape: through the nearest point of the boundary,
@@ -209,8 +210,8 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestBoundary<'_, '_, 
 }
 
 impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
-    /// Returns whether, of `parts`, the part of shape `inner` belongs to the piece and the part of
-    /// the other shape to the boundary of the body.
+    /// Returns whether `parts` consists of a part of the piece and a part of the boundary of the
+    /// body.
     pub(crate) fn has(&self, between: &Between<'_, N, D>, parts: [u32; 2]) -> bool {
         self.boundary.contains(&parts[1 - self.inner]) && self.is_own(between, parts[self.inner])
     }
@@ -221,7 +222,8 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
         composite.is_none_or(|composite| composite.piece_of(part) == self.piece)
     }
 
-    /// Calls `visit` with each part of the piece.
+    /// Calls `visit` with each part of the piece whose box overlaps the box of the other shape.
+    /// These are all parts of the piece if the piece is inside the body.
     pub(crate) fn each_part(&self, between: &Between<'_, N, D>, mut visit: impl FnMut(u32)) {
         let near = parts_near_other(between, self.inner);
         near.iter().filter(|(piece, _)| *piece == self.piece).for_each(|(_, part)| visit(*part));
@@ -234,7 +236,8 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
     }
 
     /// Returns whether the body ends behind the point of the boundary in `found`. The body
-    /// continues there if closed surfaces of one composite overlap.
+    /// continues there if closed surfaces of one composite overlap. Also returns `true` if the two
+    /// parts overlap by more than rounding, because then there is no exit to test.
     fn leads_out(&self, between: &Between<'_, N, D>, found: &PartSeparation<N, D>) -> bool {
         let Some(Exit { point, outward, .. }) = self.exit_at(found) else { return true };
         let outer = 1 - self.inner;
@@ -266,7 +269,8 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
         let PartSeparation { separation, parts, .. } = *found;
         let Separation { normal, point1, point2, distance } = separation;
         let (point, outward) = if self.inner == 0 { (point2, normal) } else { (point1, -normal) };
-        // Another algorithm may find a gap where this one finds an overlap within rounding error.
+        // An overlap within rounding error still has an exit, because another algorithm may find a
+        // gap there.
         (distance > -rounding([&point1, &point2])).then_some(Exit { point, outward, parts })
     }
 
@@ -311,7 +315,7 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
     }
 }
 
-/// Returns the bound of the rounding error of lengths that are computed from two points.
+/// Returns an upper bound of the rounding error of lengths that are computed from two points.
 fn rounding<N: Real, const D: usize>(points: [&Point<N, D>; 2]) -> N {
     let size = max(max_component(&points[0].coords), max_component(&points[1].coords));
     N::lit(ROUNDING) * N::EPSILON * size

@@ -1,13 +1,13 @@
-//! Composites as collections of parts: which pairs of parts are near, and the distance of the
-//! nearest pair.
+//! Searches of composites, which are collections of parts: for the pairs of parts near each other,
+//! and for the nearest pair.
 //!
 //! Nested composites are flattened: their parts have consecutive indices on one level. The result
 //! for a pair of parts is computed by the convex algorithms. [`between`] makes a pair of two parts.
 //! [`bounds`] makes boxes that include rounding errors. [`solid_bounds`] computes lower bounds of
 //! the distance from a convex solid to a part, and [`slab_lanes`] lower bounds of the distances
-//! from one part to 8 other parts. [`inside`] finds connected pieces that lie inside a body, which
-//! a closed surface bounds. The nearest pair does not depend on the order of the search: of equally
-//! near pairs, the one with the lowest indices is returned.
+//! from one part to 8 other parts. [`inside`] finds connected pieces that lie inside a body (a
+//! solid bounded by a closed surface). For [`Wanted::Deepest`] the result does not depend on the
+//! order of the search: of equally near pairs, the pair with the lowest indices is returned.
 
 pub(crate) mod between;
 pub(crate) mod bounds;

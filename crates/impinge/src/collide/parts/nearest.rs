@@ -43,7 +43,8 @@ pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
     nearest.best
 }
 
-/// State of a search for one pair of parts: its limits and the best pair so far.
+/// State of a search for the pair of parts that `wanted` selects: the largest distance of interest,
+/// and the best pair so far.
 struct NearestPart<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     limit: N,
@@ -64,8 +65,10 @@ impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
     }
 
     /// Searches two composites for their nearest parts, by [`each_touching`]. Returns `true` if no
-    /// further search is needed: these parts are apart, or none are within the limit. Parts that
-    /// touch or overlap need the search by depth of [`visit_near_pairs`].
+    /// further search is needed: the nearest parts are apart, or no parts are within the limit.
+    /// Returns `false` if parts touch or overlap, because only [`visit_near_pairs`] finds the
+    /// deepest pair; also, without a search, if the limit is zero or less or [`each_touching`] does
+    /// not support the shapes.
     fn finds_apart(&mut self) -> bool {
         let (between, max_distance) = (self.between, self.limit());
         max_distance > N::ZERO

@@ -42,10 +42,11 @@ pub(crate) struct PartPairs<N, const D: usize> {
 /// Results for 8 pairs, one bit each. If the test of a pair is undecided, neither bit is set.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct PairMasks {
-    /// Pairs farther apart than the limit; the distance of an overlap is negative.
+    /// Pairs certainly farther apart than the limit, which is compared with the signed distance
+    /// (negative for an overlap).
     pub(crate) beyond: u8,
-    /// Pairs not farther apart than the limit. Only valid for a limit of zero or less, because the
-    /// gaps along these axes may be smaller than a positive distance.
+    /// Pairs certainly not farther apart than the limit. Only valid for a limit of zero or less,
+    /// because the gaps along these axes may be smaller than a positive distance.
     pub(crate) within: u8,
 }
 
@@ -73,7 +74,8 @@ pub(crate) fn part_pairs3<N: Real>(pairs: &PartPairs<N, 3>, limit: N) -> PairMas
     )
 }
 
-/// Tests the lanes that hold pairs, one SIMD run after another.
+/// Tests the lanes that hold pairs, one SIMD run (all 8 lanes, or one lane without SIMD) after
+/// another, and merges the bits.
 #[inline(always)]
 fn masks(count: usize, of_run: impl Fn(Run) -> PairMasks) -> PairMasks {
     let mut all = PairMasks::default();
@@ -156,7 +158,9 @@ struct HeldPairs<S: Simd, V: Wide<S>, const D: usize> {
     simd: S,
     one: [[V; D]; 3],
     other: [[V; D]; 3],
-    /// The limit plus the rounding error, and the limit minus [`CERTAIN`] times the rounding error.
+    /// Thresholds for a gap along a unit axis. A gap above the first, which is the limit plus the
+    /// rounding error, proves that the pair is beyond. Gaps up to the second, which is the limit
+    /// minus [`CERTAIN`] times the rounding error, count as within.
     limits: [V; 2],
     is_precise: V::Mask,
     beyond: V::Mask,
@@ -195,7 +199,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         Self { simd, one, other, limits, is_precise, beyond: none, within: !none, unsure: none }
     }
 
-    /// Tests an axis, which may have any length, and updates the results.
+    /// Tests an axis, which may have any length, and updates `beyond` and `within`.
     #[inline(always)]
     fn along(&mut self, along: &[V; D]) {
         let squared = dot(along, along);
@@ -206,7 +210,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         let is_length = squared.simd_gt(V::all(self.simd, N::MIN_POSITIVE / N::EPSILON))
             & squared.simd_lt(V::all(self.simd, N::INFINITY));
         self.beyond |= gap.simd_gt(self.limits[0] * length) & is_length;
-        // Also false for NaN.
+        // False for a NaN gap, so that the pair does not count as within.
         self.within &= gap.simd_le(self.limits[1] * length);
     }
 
@@ -236,7 +240,8 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         self.unsure |= !self.is_wide(along, squares);
     }
 
-    /// Returns the results. A `within` bit is set only if all directions were exact and all axes
+    /// Returns the results. No bit is set for pairs whose lengths are too small to be precise. A
+    /// `within` bit is set only if the pair is not beyond, all directions were exact, and all axes
     /// were tested (`has_all`).
     #[inline(always)]
     fn masks(&self, has_all: bool) -> PairMasks {

@@ -1,4 +1,6 @@
-//! Signed distance of a composite and another shape, which is the distance of their nearest parts.
+//! Signed distance of a composite and another shape: the distance of their nearest parts or, if
+//! parts overlap, minus the depth of the deepest pair. A piece of one shape inside a body of the
+//! other also counts as an overlap (see `inside`).
 
 use crate::math::order::sort_few;
 use crate::tables::ByDimension;
@@ -30,7 +32,8 @@ pub(crate) struct PartSeparation<N: Real, const D: usize> {
 }
 
 /// Computes the separation of two shapes, at least one of them a composite: the separation of their
-/// nearest parts, or of the deepest pair if parts overlap. `None` if it exceeds `limit`.
+/// nearest parts, or of the deepest pair if parts overlap or a piece of one shape is inside a body
+/// of the other. `None` if the distance exceeds `limit`.
 pub(crate) fn separation<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -76,7 +79,8 @@ pub(crate) trait PairVisitor<N: Real, const D: usize> {
 }
 
 /// Visits all pairs of parts of two shapes that are within the limit of `visitor`, near pairs
-/// first. Also visits pairs beyond the limit that the bounds do not reject.
+/// first, until [`PairVisitor::bound`] is negative. Also visits pairs beyond the limit that the
+/// bounds do not reject.
 ///
 /// Cost: for a convex solid, only the parts near it are searched. Two composites with trees are
 /// descended together where their boxes are near each other. Otherwise each part of the composite
@@ -194,15 +198,15 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         self.toward(0, &unit(&offset)?.0)
     }
 
-    /// Returns the largest coordinate of a part along a direction; infinite for parts without
-    /// corners.
+    /// Returns the largest coordinate of part `id` along `along`, both in the frame of composite
+    /// `which`; infinite for parts without corners.
     fn extent(&self, which: usize, id: u32, along: &Vector<N, D>) -> N {
         let Some(corners) = corners_of(self.parts[which], id) else { return N::INFINITY };
         range(&corners, along)[1]
     }
 
-    /// Returns the gap along a direction between parts with these extents, minus the rounding
-    /// error, which is a lower bound of their distance.
+    /// Returns a lower bound of the distance of two parts with these extents along `toward`: the
+    /// gap between the parts minus the rounding error.
     fn gap(&self, toward: &Toward<N, D>, [extent1, extent2]: [N; 2]) -> N {
         let offset = toward[0].dot(&self.between.pair.pose12.translation);
         offset - extent1 - extent2 - self.slack
@@ -253,8 +257,8 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
     }
 }
 
-/// Lower bound of the distance to each of some parts, negative if the part may overlap, and the
-/// index of the part.
+/// Parts with lower bounds of their distances, as pairs (bound, index of the part). A part with a
+/// negative bound may overlap.
 type PartGaps<N> = SmallVec<[(N, u32); 2 * LANES]>;
 
 impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
@@ -291,7 +295,8 @@ impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
     }
 
     /// Raises the lower bounds in `near` to the gaps that [`part_gaps3`](super::part_gaps3), or its
-    /// counterpart in 2D, computes along the slabs and the separating axes.
+    /// counterpart in 2D, computes along the slabs and the separating axes. The bounds of parts
+    /// without corners stay unchanged.
     fn add_gaps(
         &self,
         around: &PartSlabs<N, D>,
@@ -382,8 +387,8 @@ impl<N: Space<D>, const D: usize> NearestSearch<'_, '_, N, D> {
     }
 }
 
-/// Ranks the parts of a composite by a lower bound of their distance to a convex solid, which is
-/// the first shape (0) or the second (1).
+/// Ranking of the parts of a composite by lower bounds of their distances from a convex solid,
+/// which is the first shape (0) or the second (1).
 struct RankedParts<'a, 'q, N: Real, const D: usize> {
     bounds: SolidBounds<'a, N, D>,
     parts: &'a dyn CompositeShape<N, D>,

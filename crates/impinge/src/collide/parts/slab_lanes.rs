@@ -109,7 +109,7 @@ struct SlabGaps<S, V, const D: usize> {
 }
 
 impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D> {
-    /// Raises each gap to the largest gap along the slabs.
+    /// Raises each gap to the largest gap along the slabs if that is larger.
     #[inline(always)]
     fn along(&mut self, slabs: &AxisSlabs<N, D>) {
         for slab in &slabs.slabs {
@@ -120,8 +120,9 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D>
         }
     }
 
-    /// Raises each gap to the gap along `along`, which may have any length, between the part with
-    /// the corners `own` and the part of the lane.
+    /// Raises each gap to the gap along `along` between the part with the corners `own` and the
+    /// part of the lane, if that is larger. `along` may have any length; the axis is skipped if its
+    /// squared length is close to underflow or overflows.
     #[inline(always)]
     fn across(&mut self, own: &Corners<V, D>, along: &[V; D]) {
         let squared = dot(along, along);

@@ -30,7 +30,8 @@ pub(crate) struct AxisSlabs<N: Real, const D: usize> {
     /// a larger coordinate of the other part.
     pub(super) size: N,
     /// For a triangle, one slab along the in-plane normal of each side and, in 3D, one along the
-    /// normal of the plane. A half-space has a single slab, a part without corners none.
+    /// normal of the plane. For a segment, one slab along the segment and one along a direction
+    /// perpendicular to it. A half-space has a single slab, a part without corners none.
     pub(super) slabs: SmallVec<[Slab<N, D>; 5]>,
     /// Corners of the part relative to `origin`; `None` if the part moves or has no corners.
     pub(super) corners: Option<[Vector<N, D>; 3]>,
@@ -95,7 +96,8 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
     }
 
     /// Returns whether a part of the composite is certainly farther from the solid than `limit`;
-    /// the distance of an overlap is negative. False without slabs or corners.
+    /// the distance of an overlap is negative. False without slabs or corners, and if the lengths
+    /// are too small to be precise.
     pub(crate) fn are_beyond(&self, part: &Part<'_, N, D>, limit: N) -> bool {
         if self.slabs.is_empty() {
             return false;
@@ -119,7 +121,9 @@ pub(super) fn rounding_unit<N: Real>() -> N {
 }
 
 /// Returns the in-plane unit normals of the sides of a triangle whose first corner is the origin
-/// and, in 3D, the unit normal of its plane. Vectors of zero length are omitted.
+/// and, in 3D, the unit normal of its plane. For a triangle that is a segment, returns the
+/// direction of the segment and a unit vector perpendicular to it. Vectors of zero length are
+/// omitted.
 pub(crate) fn across<N: Real, const D: usize>(
     [_, one, other]: &[Vector<N, D>; 3],
 ) -> impl Iterator<Item = Vector<N, D>> {
@@ -170,8 +174,8 @@ fn without<N: Real, const D: usize>(v: &Vector<N, D>, other: &Vector<N, D>) -> V
 }
 
 /// Removes the components in the span of `one` and `other` from each coordinate axis, and returns
-/// the longest remainder. Zero if the two vectors span all directions, so that all remainders are
-/// shorter than 1/4.
+/// the longest remainder. Zero if no remainder is longer than 1/4, as is the case if the two
+/// vectors span all directions.
 fn normal_to<N: Real, const D: usize>(one: &Vector<N, D>, other: &Vector<N, D>) -> Vector<N, D> {
     let along = |v: &Vector<N, D>| unit(v).map_or_else(Vector::<N, D>::zeros, |(along, _)| along);
     let spans = [along(one), along(&without(other, one))];

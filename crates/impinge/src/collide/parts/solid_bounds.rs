@@ -25,7 +25,8 @@ const ROUNDING: f64 = 128.0;
 /// a relative tolerance of 2⁻⁴⁰.
 const CURVED: f64 = 8.0e-12;
 
-/// A convex solid in the frame of a composite.
+/// A convex solid in the frame of a composite, prepared for lower bounds of its distance from boxes
+/// and parts.
 pub(crate) struct SolidBounds<'a, N: Real, const D: usize> {
     solid: Kind<'a, N, D>,
     map: &'a dyn SupportMap<N, D>,
@@ -50,16 +51,17 @@ impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
         self.center
     }
 
-    /// Returns the outward unit normal of the solid at its nearest point to the centre of a box,
-    /// and an upper bound of the solid's extent along this normal. `None` if the extent has no
-    /// finite bound.
+    /// Returns a direction from the solid toward the centre of a box, computed by
+    /// [`Self::outward_at`], and an upper bound of the solid's extent along this direction. `None`
+    /// if the direction is not a unit vector or the extent has no finite bound.
     pub(crate) fn toward(&self, aabb: &Aabb<N, D>) -> Option<(Vector<N, D>, N)> {
         let outward = self.outward_at(&aabb.center());
         let extent = -self.gap(&outward, N::ZERO, largest_coordinate(aabb));
         (extent < N::INFINITY).then_some((outward, extent))
     }
 
-    /// Returns a lower bound of the signed distance from the solid to everything in the box.
+    /// Returns a lower bound of the signed distance from the solid to everything in the box; minus
+    /// infinity if [`Self::toward`] returns `None`.
     pub(super) fn of_box(&self, aabb: &Aabb<N, D>) -> N {
         self.toward(aabb).map_or(-N::INFINITY, |(along, extent)| {
             along.dot(&aabb.center().coords) - along.abs().dot(&aabb.half_extents()) - extent

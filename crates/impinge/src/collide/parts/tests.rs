@@ -1,4 +1,5 @@
-//! Compares the searches and their bounds with a brute-force test of all pairs of parts.
+//! Asserts that searches return the pair of parts that a brute-force test of all pairs finds, and
+//! that lower bounds do not exceed computed distances.
 
 use super::nearest::nearest_between;
 use super::solid_bounds::SolidBounds;
@@ -17,7 +18,7 @@ use crate::shape::{
 type Solids<N, const D: usize> = Vec<Box<dyn Shape<N, D>>>;
 
 /// Returns a mesh of 40 triangles of four sizes, some of them thin or perpendicular to a coordinate
-/// axis, and a copy of one of them.
+/// axis (in 2D, without area), and a copy of one triangle.
 fn soup<N: Space<D>, const D: usize>(
     random: &mut Random,
     vector: fn(&mut Random) -> Vector<N, D>,
@@ -138,8 +139,8 @@ fn searches_of_surface<N: Space<3>>() {
 }
 
 /// Asserts that lower bounds do not exceed the distances of the parts, and that
-/// [`SolidBounds::of_part`] falls short by at most about 2.5 times the half diagonal of the part's
-/// box.
+/// [`SolidBounds::of_part`] is below the distance by less than 2.5 times half the diagonal of the
+/// part's box, plus 1e-4.
 fn bounds<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     mesh: &TriMesh<N, D>,

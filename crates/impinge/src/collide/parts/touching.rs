@@ -18,7 +18,7 @@ use crate::math::{Mapped, Point, Pose, Real, Space, Vector, max, max_component, 
 use crate::shape::CompositeShape;
 use crate::tables::ByDimension;
 
-/// Receives the pairs of parts that a search finds.
+/// Receives the pairs of parts that [`each_touching`] finds.
 pub(crate) trait TouchingVisitor<N: Real, const D: usize> {
     /// Handles two parts. Returns the `max_distance` for the rest of the search, which must not
     /// exceed the previous one; `None` ends the search.
@@ -44,9 +44,9 @@ pub(crate) enum Touching {
     Nearest,
 }
 
-/// Visits the pairs of parts that may be within `max_distance`. Returns `false`, without a visit,
-/// if one shape is not a composite with a tree, or if the translation between them overflows `f32`,
-/// the type of the boxes.
+/// Visits those pairs of parts within `max_distance` that `wanted` names, and possibly pairs that
+/// are farther apart. Returns `false`, without a visit, if one shape is not a composite with a
+/// tree, or if the translation between them overflows `f32`, the type of the boxes.
 ///
 /// Cost: O(n + k) for k pairs of parts and n pairs of blocks with boxes within `max_distance`, as
 /// long as the boxes fit tightly.
@@ -139,7 +139,8 @@ impl<N: Space<D>, const D: usize> TouchingSearch<'_, '_, N, D> {
         self.pairs.count = 0;
     }
 
-    /// Puts a pair into the next lane; the corners of both parts must be in one frame.
+    /// Puts a pair into the next lane, and flushes the lanes if all are full. The corners of both
+    /// parts must be in one frame.
     fn keep(&mut self, pair: [u32; 2], one: &[Vector<N, D>; 3], other: &[Vector<N, D>; 3]) {
         let lane = self.pairs.count;
         self.kept[lane] = pair;

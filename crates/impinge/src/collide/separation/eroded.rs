@@ -94,7 +94,8 @@ mod tests {
     use crate::convex;
     use crate::shape::{Cone, Cuboid, Cylinder, Shape};
 
-    /// Asserts that the separations with and without erosion agree within `accuracy`.
+    /// Asserts that [`general::separation`], which erodes ellipsoids, and [`convex::separation`] of
+    /// the unchanged solids agree within `accuracy`.
     fn compare<N: Real>(seed: u64, accuracy: f64) {
         let random = &mut Random(seed);
         for round in 0..600 {

@@ -19,7 +19,8 @@
 //! - [`hulls`] is the separating axis test of triangles, boxes and hulls in 3D; `triangles` and
 //!   `chain` test 8 triangles of a surface or 8 segments of a chain at a time;
 //! - `revolved` handles cylinders and cones by the signed distance of a point from them, `ridges`
-//!   their deep overlaps, and `revolved::coaxial` pairs with a common axis;
+//!   their overlaps with flat-sided solids that this does not prove, and `revolved::coaxial` pairs
+//!   with a common axis;
 //! - `shared_corner` sets the distance to zero if corners coincide exactly but rounding leaves a
 //!   small distance;
 //! - `plane_any` handles half-spaces, and `rounded` handles inflated solids. `general` handles all
@@ -95,7 +96,7 @@ pub(crate) type Algorithm<N, const D: usize> = fn(&Pair<'_, N, D>, N) -> Option<
 /// [`ShapeKind`].
 type Table<N, const D: usize> = [[Algorithm<N, D>; ShapeKind::COUNT]; ShapeKind::COUNT];
 
-/// Returns the separation of a pair of any two kinds, in either order.
+/// Returns the separation of a pair of any two kinds, in either order; `None` above `limit`.
 #[inline]
 pub(crate) fn separation<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,

@@ -72,8 +72,8 @@ pub(crate) fn distance_2d<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: N) -> 
     distance(pair, limit, method_2d(pair))
 }
 
-/// Returns the signed distance, without a limit, if a part of the formula for the separation
-/// computes it; else `None`.
+/// Returns the signed distance, without a limit, of pairs for which a closed form can compute it
+/// without the normal and the points of the separation; `None` for other pairs.
 fn known_3d<N: Real>(pair: &Pair<'_, N, 3>) -> Option<N> {
     use Kind::{Capsule, Segment};
     match (pair.first, pair.second) {
@@ -139,8 +139,8 @@ fn beside_ball_2d<N: Real>(radius: N, kind: Kind<'_, N, 2>, center: &Point<N, 2>
     Some(apart - radius)
 }
 
-/// Returns the signed distance of a ball from a solid of a kind that does not depend on the
-/// dimension; `None` for other kinds.
+/// Returns the signed distance of a ball from a segment, capsule or box, whose formulas do not
+/// depend on the dimension; `None` for other kinds.
 #[inline]
 fn beside_ball<N: Real, const D: usize>(
     radius: N,
@@ -177,8 +177,8 @@ fn distance<N: Simplicial<D> + Space<D>, const D: usize>(
     super::separation(pair, limit).map(|found| found.distance)
 }
 
-/// Returns whether depths are not needed, because `limit` is zero or more, and the solids are in
-/// the order of kinds.
+/// Returns whether the functions that compute no depth may be called: `limit` is zero or more, so
+/// that depths are not needed, and the solids are in canonical order.
 fn is_distance_only<N: Real, const D: usize>(pair: &Pair<'_, N, D>, limit: N) -> bool {
     limit >= N::ZERO && Geometry(pair.first).kind() <= Geometry(pair.second).kind()
 }

@@ -13,7 +13,8 @@ use crate::math::{Point, Pose, Real, Vector, unit};
 
 pub(super) use crate::math::perpendicular_to;
 
-/// A point projected onto a solid, in the frame of the solid.
+/// The projection of a point onto a solid, in the frame of the solid: nearest point of the surface,
+/// signed distance and direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Projection<N: Real, const D: usize> {
     /// Signed distance of the point from the surface: positive outside, negative inside.

@@ -1,5 +1,5 @@
-//! Sets the distance to exactly zero if a corner of one solid coincides with a corner of the other,
-//! or lies on one of its sides, where rounding would leave a small distance.
+//! Sets the distance to exactly zero if a corner of one solid coincides with a corner of the other
+//! solid or lies on a side of the other solid, where rounding would leave a small distance.
 //!
 //! Users build from shared corners: triangles of a mesh, polygons of a map, tetrahedra. The height
 //! of a corner over a side that ends there is computed from the other end of the side, so it may be
@@ -41,10 +41,10 @@ fn rounding<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
     N::lit(ROUNDING) * N::EPSILON * size
 }
 
-/// Compares those corners of both solids that are extreme along the normal, up to rounding. If one
-/// of them coincides with one of the other solid's or lies on the segment between two of these,
-/// returns `found` with distance zero and both points at this corner. Otherwise returns `found`
-/// unchanged.
+/// Compares the corners of both solids that are extreme along the normal, up to rounding. If such a
+/// corner of one solid coincides with such a corner of the other solid, or lies on the segment
+/// between two of these, returns `found` with distance zero and both points at this corner.
+/// Otherwise returns `found` unchanged.
 #[cold]
 fn at_corner<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,

@@ -53,7 +53,7 @@ impl<N: Real> Table2<N> {
     };
 }
 
-/// Returns the separation of a pair of any two kinds in 2D.
+/// Returns the separation of a pair of any two kinds in 2D, in either order; `None` above `limit`.
 pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> Option<Separation<N, 2>> {
     look_up(&Table2::<N>::TABLE, pair)(pair, limit)
 }

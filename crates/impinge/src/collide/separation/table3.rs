@@ -63,7 +63,7 @@ impl<N: Real> Table3<N> {
     };
 }
 
-/// Returns the separation of a pair of any two kinds in 3D.
+/// Returns the separation of a pair of any two kinds in 3D, in either order; `None` above `limit`.
 pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     look_up(&Table3::<N>::TABLE, pair)(pair, limit)
 }

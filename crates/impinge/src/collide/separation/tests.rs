@@ -1,4 +1,5 @@
-//! Tests that each pair of kinds has an algorithm. Without one, compilation or a test fails.
+//! Asserts the distance of one arrangement for each pair of kinds, in both orders. A kind that has
+//! no solid here fails to compile, and a pair without an algorithm fails the test.
 
 use crate::collide::Pair;
 use crate::collide::separation::separation;
@@ -93,7 +94,7 @@ impl<N: Space<D>, const D: usize> Solids<N, D> {
         }
     }
 
-    /// Returns the solid of a kind; `None` for a kind of 3D only.
+    /// Returns the solid of a kind; `None` for cylinders and cones, which exist in 3D only.
     fn kind(&self, kind: ShapeKind) -> Option<Kind<'_, N, D>> {
         Some(match kind {
             ShapeKind::Ball => Kind::Ball(&self.ball),

@@ -13,7 +13,8 @@ use crate::tables::ByDimension;
 /// Also `None` if a pose is not finite. The separation is computed in canonical order, in the frame
 /// of the first solid in that order, and then transformed to the world. So swapping the arguments
 /// swaps the points and negates the normal, bit for bit. For overlapping composites it is the
-/// separation of the deepest pair of parts.
+/// separation of the deepest pair of parts, or of a piece of one shape that is inside a body of the
+/// other shape.
 pub(crate) fn in_world<N: Space<D>, const D: usize>(
     placed1: &Placed<'_, N, D>,
     placed2: &Placed<'_, N, D>,
@@ -32,8 +33,8 @@ pub(crate) fn of_ordered<N: Space<D>, const D: usize>(
     Some(placed(&found, ordered.first, ordered.swapped))
 }
 
-/// Computes [`in_world`], except that for overlapping composites it may return the separation of
-/// any overlapping pair of parts.
+/// Computes [`in_world`], except that for composites that touch or overlap it may return the
+/// separation of any pair of parts that touch or overlap.
 pub(crate) fn touching_in_world<N: Space<D>, const D: usize>(
     placed1: &Placed<'_, N, D>,
     placed2: &Placed<'_, N, D>,

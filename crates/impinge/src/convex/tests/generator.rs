@@ -99,8 +99,8 @@ where
     f64: Simplicial<D> + Own<D>,
 {
     /// Draws a rotation, then moves the second solid in 12 steps until the distance is about
-    /// `target`. A step is along a random direction, or along the normal if the distance hardly
-    /// changes along that direction.
+    /// `target`. All steps are along one random direction, but along the normal where the distance
+    /// grows by less than a tenth of the step in that direction.
     pub(super) fn new(shapes: [Value; 2], target: f64, generator: &mut Generator) -> Self {
         let mut sample = Self { shapes, pose12: generator.rotation(), scale: 0.0 };
         let [a, b] = sample.solids::<f64>();

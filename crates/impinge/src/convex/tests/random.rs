@@ -159,8 +159,8 @@ fn lower_bounds_3d() {
     lower_bounds::<f64, 3>(KINDS.len(), [flat, [[1e-10, 1e-11], [1e-7, 1e-8]]]);
 }
 
-/// Asserts that swapping the solids keeps the distance, up to `tolerance`, relative to
-/// [`Sample::scale`]: for flat-faced cores, then for curved ones.
+/// Asserts that swapping the solids keeps the distance. `tolerance` has the largest error for
+/// flat-faced cores and the largest error for curved cores, relative to [`Sample::scale`].
 fn swapped<N, const D: usize>(kinds: usize, tolerance: [f64; 2])
 where
     N: Simplicial<D> + Own<D>,
@@ -229,7 +229,8 @@ fn scaling_by_powers_of_two_is_exact() {
     }
 }
 
-/// Asserts that a limit excludes no pair within it, and every pair that is beyond it by the margin.
+/// Asserts that [`separation`] returns `Some` if the distance is at most the limit, and `None` if
+/// it exceeds the limit by a small margin.
 #[test]
 fn limits() {
     let (mut within, mut beyond) = (0, 0);

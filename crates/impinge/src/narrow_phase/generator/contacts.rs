@@ -6,7 +6,7 @@ use crate::narrow_phase::state::{CompositeState, ContactState, KeptContacts, Kep
 use crate::query::{ContactManifold, ManifoldView};
 use crate::shape::Geometry;
 
-/// The stored contacts of a single pair.
+/// The contacts of a single pair, stored from one update to the next.
 #[derive(Clone)]
 pub(in crate::narrow_phase) enum PairContacts<N: Real, const D: usize> {
     Convex(ContactState<N, D>),

@@ -16,7 +16,8 @@ use crate::shape::{
 };
 use crate::tables::ByDimension;
 
-/// A copy of a shape from the last call, or a key that identifies the shape.
+/// A copy of a shape that an update received, or a key that identifies the shape, to detect a
+/// change of the shape at the next update.
 #[derive(Clone, Debug)]
 pub(super) enum KeptShape<N: Real, const D: usize> {
     Solid(Solid<N, D>),
@@ -106,8 +107,8 @@ impl<N: Real, const D: usize> KeptShape<N, D> {
     }
 }
 
-/// Copies of the solids on which a contact of a composite lies, from which readers build its
-/// manifold after the call.
+/// Copies of the two solids on which a contact of a composite lies. From these copies a reader
+/// builds the manifold of the contact when the shapes are no longer accessible.
 #[derive(Clone, Debug)]
 pub(super) struct KeptTouch<N: Real, const D: usize> {
     /// By solid: the touched part and its pose. `None` for a convex shape, which the generator

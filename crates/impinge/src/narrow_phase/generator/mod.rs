@@ -169,8 +169,9 @@ impl<N: Real, const D: usize> PairManifoldGenerator<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
-    /// Updates the contacts: keeps them if nothing changed, moves them along if contact reuse
-    /// allows it, else computes them.
+    /// Updates the contacts: keeps them if nothing changed, removes them if the solids are
+    /// certainly farther apart than the prediction, moves them along if contact reuse allows it,
+    /// else computes them.
     pub(crate) fn refresh(
         &mut self,
         isometries: [&N::Isometry; 2],
@@ -228,7 +229,8 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         }
     }
 
-    /// Computes the contacts, or removes all of them if `are_beyond`.
+    /// Computes the contacts, or removes all of them if `are_beyond`: the shapes are certainly
+    /// farther apart than the prediction.
     fn compute(&mut self, shapes: [Geometry<'_, N, D>; 2], are_beyond: bool) {
         if are_beyond {
             self.clear();

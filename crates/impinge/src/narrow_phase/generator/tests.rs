@@ -1,4 +1,5 @@
-//! Tests of the contacts that a generator keeps for one pair.
+//! Tests that a generator keeps contacts and ids if nothing changed, detects changed shapes, and
+//! can be read when the shapes are gone.
 
 use super::*;
 use crate::math::Isometry2;

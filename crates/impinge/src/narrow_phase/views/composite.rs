@@ -18,8 +18,8 @@ pub(super) struct CompositeViews<'a, N: Space<D>, const D: usize> {
     /// have not been read yet.
     word: usize,
     flags: u64,
-    /// Row of the current pair, and the index of its next patch: the contacts of one manifold. The
-    /// patch is `usize::MAX` if there is no current pair.
+    /// Row of the current pair, and the index of the patch that is read next. A patch has the
+    /// contacts of one manifold. The index is `usize::MAX` if there is no current pair.
     row: usize,
     patch: usize,
 }

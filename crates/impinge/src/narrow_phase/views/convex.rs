@@ -18,7 +18,8 @@ pub(super) struct ConvexViews<'a, N: Space<D>, const D: usize> {
     /// whose pairs have not been read yet.
     word: usize,
     flags: u64,
-    /// Number of words still to be read; `usize::MAX` if the iterator is not restricted.
+    /// Number of words of flags that the iterator may still read; `usize::MAX` if it is not
+    /// restricted to a range.
     left: usize,
 }
 

@@ -58,8 +58,8 @@ impl<'a, N: Space<D>, const D: usize> Views<'a, N, D> {
 /// The handle indices of two objects, and one of their manifolds.
 pub(crate) type View<'a, N, const D: usize> = (u32, u32, ManifoldView<'a, N, D>);
 
-/// Chains two iterators. Unlike `Iterator::chain` it does not fuse the first iterator, and does not
-/// access the second before the first has ended.
+/// Chains two iterators. Unlike `Iterator::chain` it does not record that the first iterator has
+/// ended. So each later step calls the first iterator again, which must go on returning `None`.
 struct UnfusedChain<A, B> {
     first: A,
     second: B,
@@ -184,7 +184,7 @@ impl<'a, N: Space<D>, const D: usize> Composite<'a, N, D> {
 }
 
 impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
-    /// Wraps the contacts of a custom algorithm.
+    /// Creates the access to the contacts of a custom algorithm, for a custom narrow phase.
     #[must_use]
     pub fn from_algorithm(algorithm: &'a dyn ContactManifoldGenerator<N, D>) -> Self {
         Self(ViewedContacts::Custom(algorithm))

@@ -138,17 +138,17 @@ impl<N: Real, const D: usize> StreamManifold<N, D> {
 pub struct ContactStream<N: Real, const D: usize> {
     now: Lists<N, D>,
     old: Lists<N, D>,
-    /// Scratch of a fill: the new pairs that have no match in the window.
+    /// Scratch of a fill: the pairs of this fill that have no match in the window.
     missed: Vec<PairRange>,
-    /// Scratch of a fill: the old pairs that match no new pair, sorted by id.
+    /// Scratch of a fill: the pairs of the previous fill that have no match yet, sorted by id.
     left: Vec<PairRange>,
 }
 
-/// Two handles and a manifold.
+/// The handles of two objects and a manifold of their pair.
 type NamedView<'a, N, const D: usize> =
     (CollisionObjectHandle, CollisionObjectHandle, ManifoldView<'a, N, D>);
 
-/// The contacts of a fill.
+/// The manifolds and points of one fill of a [`ContactStream`].
 #[derive(Clone, Debug)]
 struct Lists<N: Real, const D: usize> {
     manifolds: Vec<StreamManifold<N, D>>,
@@ -243,7 +243,8 @@ impl<N: Space<D>, const D: usize> ContactStream<N, D> {
     }
 }
 
-/// Replaces the id of an old pair that has a match. No pair has this id.
+/// The value that replaces the id of an old pair once the pair has a match. It is the id of no
+/// pair.
 const TAKEN: u64 = ContactId::NULL.pair;
 
 impl<N: Space<D>, const D: usize> Lists<N, D> {
@@ -295,8 +296,9 @@ impl<N: Real, const D: usize> Lists<N, D> {
         core::iter::from_fn(move || self.pair_at(&mut next))
     }
 
-    /// Searches the pair with the id `pair` among the [`WINDOW`] pairs from index `next`. If it is
-    /// there, marks it as [`TAKEN`], advances `next` behind it and returns it; else returns `None`.
+    /// Searches the pair with the id `pair` among [`WINDOW`] pairs, the first of which begins at
+    /// manifold `next`. If the pair is there, marks it as [`TAKEN`], advances `next` behind it and
+    /// returns it; else returns `None`.
     #[inline]
     fn take(&mut self, pair: u64, next: &mut usize) -> Option<PairRange> {
         let mut after = *next;

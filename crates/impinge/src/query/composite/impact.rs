@@ -27,10 +27,10 @@ pub(crate) struct PartArrival<N: Real, const D: usize> {
 /// Returns the first impact of two parts; of several impacts at the same time, the impact with the
 /// lowest part indices. `None` if no parts hit each other up to the end of the path.
 ///
-/// The contacts of the whole shapes decide whether a contact at the start is an impact. If they are
-/// no impact, the contacts of the whole shapes also decide about each later impact of two parts: if
-/// the parts of a floor were tested alone, their inner edges would stop a solid that has sunk into
-/// the floor.
+/// The contacts of the whole shapes decide whether a contact at the start is an impact. If none of
+/// them is an impact, the contacts of the whole shapes also decide about each later impact of two
+/// parts: if the parts of a floor were tested alone, their inner edges would stop a solid that has
+/// sunk into the floor.
 ///
 /// Of two composites, the one with fewer parts is searched for the parts that the box of the other
 /// composite hits. For each part found, the other composite is searched along the path of that
@@ -206,7 +206,8 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         }
     }
 
-    /// Computes, once, the result of the contacts of the whole shapes at the start.
+    /// Computes the result of the contacts of the whole shapes at the start, unless it is known. If
+    /// a contact is an impact, keeps the deepest such contact as the first impact.
     fn begin_in_contact(&mut self, tolerance: N) {
         if self.start == WholeContact::Unknown {
             let whole = WholeQuestion { between: *self.between, path: self.path, along: N::ZERO };
@@ -249,13 +250,14 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
     }
 
     /// Returns a box loosened by the target distance, so that it overlaps every box within that
-    /// distance of `aabb`.
+    /// distance of `aabb`; all of space if a coordinate overflows.
     fn grown(&self, aabb: &Aabb<N, D>) -> Aabb<N, D> {
         let grown = aabb.loosened(self.path.target);
         Aabb::try_new(*grown.mins(), *grown.maxs()).unwrap_or_else(|_| Aabb::unbounded())
     }
 
-    /// Returns the latest time still to be searched; negative once the start is an impact.
+    /// Returns the latest time still to be searched: that of the first impact found so far, or else
+    /// the end of the path, with a margin for rounding. Negative once the start is an impact.
     fn end(&self) -> N {
         if self.start == WholeContact::Hit {
             return -N::ONE;
@@ -273,9 +275,9 @@ struct WholeQuestion<'p, 'a, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> WholeQuestion<'_, '_, N, D> {
-    /// Returns the result of the contacts within the target distance plus `tolerance`, and the
-    /// deepest contact that is an impact. Calls `visit` with the normal of each contact that is an
-    /// impact.
+    /// Returns the result of the contacts within the target distance plus `tolerance`, and, if any
+    /// of them is an impact, the deepest contact that is an impact. Calls `visit` with the normal
+    /// of each contact that is an impact.
     fn contacts_within(
         &self,
         tolerance: N,

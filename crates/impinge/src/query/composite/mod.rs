@@ -1,8 +1,8 @@
 //! Queries on composites: a search finds candidate parts by their boxes, and the query runs on each
 //! of these parts.
 //!
-//! The result of a public query never depends on the order in which a search reports the parts:
-//! among equal results, the result with the lowest part indices wins.
+//! The result of a public query never depends on the order in which a search reports the parts: of
+//! equal results, the one with the lowest part indices is returned.
 
 mod impact;
 mod mover;

@@ -135,7 +135,8 @@ pub(crate) fn nearest_part<N: Space<D>, const D: usize>(
 }
 
 /// Returns the result for a composite with bodies: the deepest among `best` and the nearest
-/// boundary part of each body that contains the point.
+/// boundary part of each body that contains the point. Returns `best` if no body contains the
+/// point.
 fn deepest_within<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     point: &Point<N, D>,

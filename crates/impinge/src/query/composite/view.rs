@@ -10,7 +10,8 @@ use crate::query::{ContactId, ContactManifold, ManifoldView, PairRef, Placement}
 use crate::shape::{Geometry, Kind, Part, PartSolid};
 use crate::tables::ByDimension;
 
-/// Normals that differ by at most this many epsilon are treated as equal.
+/// Two normals are treated as equal if the length of their difference is at most this many
+/// epsilons.
 const ROUNDING: f64 = 64.0;
 
 impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {

@@ -216,8 +216,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         Moment { bodies, origin, poses, centers, time, normal }.safe_within(gap, -N::ONE, to)
     }
 
-    /// Returns an upper bound of the speed at which any points of the two parts approach, in any
-    /// direction, up to the time `to`.
+    /// Returns an upper bound of the speed at which a point of one part and a point of the other
+    /// approach, for all points and directions, up to the time `to`.
     pub(super) fn rate_of(&self, parts: &ImpactParts<'_, N, D>, to: N) -> Rate<N> {
         let swings = [0, 1].mapped(|index| {
             product(self.bodies[index].turn_bound(self.time, to), parts.bodies[index].arm)
@@ -227,8 +227,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
 
     /// Returns a bound of the motion of the points of body `which` during `span`, in the frame of
     /// the other body. `rate` bounds the approach of any two points. For constant velocities the
-    /// result is a linear function of the position plus a spread, unless the travel by `rate` alone
-    /// is smaller than that spread.
+    /// result is a linear function of the position plus a spread, if that spread is smaller than
+    /// the travel by `rate` alone.
     ///
     /// A point at `u` from the other body's centre has the velocity `u' - S u` in the frame of that
     /// body, which rotates with the generator `S`. The velocity is a linear function of the
@@ -294,7 +294,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     }
 
     /// Returns the time in which the bounding spheres of the bodies use up the distance `apart`;
-    /// zero if `apart` is not positive.
+    /// zero if `apart` is not positive or the centres coincide.
     fn spheres(&self, apart: N, to: N) -> N {
         let is_apart = apart > N::ZERO;
         if !is_apart {
@@ -384,8 +384,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         speed(0, N::ONE) + speed(1, -N::ONE)
     }
 
-    /// Returns an upper bound of the speed along the normal that the rotation of body `index` gives
-    /// to a point at `distance` from its centre.
+    /// Returns an upper bound, for all times up to `to`, of the speed along the normal that the
+    /// rotation of body `index` gives to a point at `distance` from its centre.
     fn swing(&self, index: usize, distance: N, to: N) -> N {
         let turn = match (self.slope(index), self.direction()) {
             (Some(slope), Some(_)) => length(&slope),
@@ -420,7 +420,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         self.closing_observed(points, &arms, size)
     }
 
-    /// Computes [`Self::closing`] by differences, from the positions of the points a short time
+    /// Computes the result of [`Self::closing`] from the positions of the points a short time
     /// later. Zero, with no error, if the bound of the speed is zero or not finite.
     fn closing_observed(
         &self,

@@ -50,14 +50,14 @@ impl<N: Real, const D: usize> Path<N, D> {
         start.pose12.translation + self.velocity * along
     }
 
-    /// Returns the pair `start` at the time `along`.
+    /// Returns the pair `start` with the second solid at its pose at the time `along`.
     pub(crate) fn moved<'a>(&self, start: &Pair<'a, N, D>, along: N) -> Pair<'a, N, D> {
         let pose12 = Pose { translation: self.position_at(start, along), ..start.pose12 };
         Pair { pose12, ..*start }
     }
 
     /// Returns the largest distance, at the time `along`, from which the solids may still come
-    /// within the target distance before the end.
+    /// within the target distance before the end; infinity if there is no end.
     fn limit(&self, along: N, tolerance: N) -> N {
         if !self.end.is_finite_number() {
             return N::INFINITY;
@@ -77,7 +77,8 @@ impl<N: Real, const D: usize> Path<N, D> {
         N::lit(8.0) * N::EPSILON * max_component(&self.velocity)
     }
 
-    /// Returns whether a contact at the start is an impact.
+    /// Returns whether a contact at the start is an impact: always with `contact_at_start`, else by
+    /// the rule of [`impact`](super::impact).
     pub(crate) fn counts_at_start(&self, normal: &Vector<N, D>, gap: N, tolerance: N) -> bool {
         self.contact_at_start
             || is_hit_at_start(gap, self.closing(normal), tolerance, self.rounding_error())
@@ -121,7 +122,8 @@ pub(super) fn is_hit_at_start<N: Real>(
 
 /// The result of [`begin`]: a contact at the start, or an impact later.
 pub(crate) enum Beginning<N: Real, const D: usize> {
-    /// The solids are in contact at the start; `counts` is true if the contact is an impact.
+    /// The solids are in contact at the start. `counts` is true if that contact is an impact by
+    /// [`Path::counts_at_start`].
     InContact { arrival: Arrival<N, D>, counts: bool },
     /// The solids are apart at the start; `None` if there is no impact.
     Apart(Option<Arrival<N, D>>),
@@ -175,7 +177,7 @@ pub(crate) fn begin<N: Space<D>, const D: usize>(
 }
 
 /// Runs conservative advancement from the configuration at time `along`, in which the separation is
-/// `found`.
+/// `found`. `None` if the solids do not touch up to the end of the path.
 fn by_steps<N: Space<D>, const D: usize>(
     start: &Pair<'_, N, D>,
     path: &Path<N, D>,

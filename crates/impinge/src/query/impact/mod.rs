@@ -2,9 +2,9 @@
 //!
 //! [`linear`] is for solids that do not rotate: this file brings the pair into its canonical order
 //! and maps the result back to the world, and the kernel in `linear` handles one pair of solids on
-//! a straight path. [`nonlinear`] is for bodies that rotate. It uses only the separation of the
-//! pair, and only the poses and speed bounds of the motions ([`motion`], [`velocities`],
-//! [`bounds`]).
+//! a straight path. [`nonlinear`] is for bodies that rotate. It is conservative advancement: each
+//! step follows from the separation and from bounds of the speeds of points, which come from the
+//! motions ([`motion`], [`velocities`]) and the extents of the shapes ([`bounds`]).
 //!
 //! An impact is never reported late: no step is longer than the time during which the solids
 //! certainly stay apart. The number of steps is limited; the status reports a reached limit.
@@ -235,10 +235,10 @@ pub struct Impact<N: Real, const D: usize> {
     pub part1: u32,
     /// The index of the touching part of the second shape; zero for a shape of one part.
     pub part2: u32,
-    /// The feature of the first shape's part that touches, with the id as in a
-    /// [`Witness`](super::Witness): for a rounded solid a feature of its core.
+    /// The touching feature of part `part1` of the first shape. Ids are as in a
+    /// [`Witness`](super::Witness): for a rounded solid, they name features of its core.
     pub feature1: FeatureId,
-    /// The feature of the second shape's part that touches.
+    /// The touching feature of part `part2` of the second shape.
     pub feature2: FeatureId,
     /// Whether the touch is certain, and whether it was at the start.
     pub status: ImpactStatus,
@@ -305,7 +305,7 @@ impl<N: Real, const D: usize> Impact<N, D> {
 /// # Cost
 ///
 /// A query of two convex solids takes a few distance computations, about 130 at most. Each step is
-/// as long as the solids certainly stay apart (conservative advancement: Mirtich, "Impulse-based
+/// as long as the solids are known to stay apart (conservative advancement: Mirtich, "Impulse-based
 /// dynamic simulation", 1996). This is Newton's method on a convex function, which squares the
 /// error at a head-on impact and halves it at a grazing one. A composite is searched for parts on
 /// the path; of two composites, the parts of the one with fewer parts each search the other.
@@ -336,10 +336,9 @@ pub fn impact<N: Space<D>, const D: usize>(
 }
 
 /// Returns the first time, zero or more, at which two solids with constant velocities and without
-/// rotation touch; `None` if they never touch.
+/// rotation touch; `None` if [`impact`] returns `None`.
 ///
-/// The result is the time of [`impact`] with default options; see [`impact`] for starts in contact,
-/// the accuracy and the cost.
+/// The time of [`impact`] with default options; see there for starts in contact, accuracy and cost.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Vector};
@@ -377,7 +376,7 @@ pub(crate) fn impact_of_pair<N: Space<D>, const D: usize>(
     Some(if course.ordered.swapped { found.flipped() } else { found })
 }
 
-/// Returns the time of [`impact_of_pair`], without computing the parts and features.
+/// Returns the time of [`impact_of_pair`], without the parts and features; `None` without impact.
 pub(crate) fn time_of_pair<N: Space<D>, const D: usize>(
     moving1: &Moving<'_, N, D>,
     moving2: &Moving<'_, N, D>,
@@ -400,8 +399,8 @@ struct Course<'m, 'a, N: Real, const D: usize> {
 }
 
 impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
-    /// Returns `None` if the latest time is negative or NaN, if bounding balls prove that the
-    /// solids stay apart, or if a pose or velocity is not finite.
+    /// Brings two solids into canonical order. `None` if the latest time is negative or NaN, if
+    /// bounding balls prove that the solids stay apart, or if a pose or velocity is not finite.
     #[inline(always)]
     fn new(
         moving1: &'m Moving<'a, N, D>,
@@ -433,7 +432,8 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
         Some(Self { first, ordered, pair, path, scale })
     }
 
-    /// Returns the earliest impact and its [`Impact::toi`], which is finite. `None` without impact.
+    /// Returns the earliest impact and its [`Impact::toi`]. `None` if there is no impact, or if its
+    /// time overflows.
     #[inline(always)]
     fn touch(&self) -> Option<(PartArrival<N, D>, N)> {
         let found = if self.ordered.has_composite() {

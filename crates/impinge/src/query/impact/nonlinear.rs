@@ -39,8 +39,9 @@ const PARTS_WAY: f64 = 1.0 / 32.0;
 
 /// Returns the first impact of two bodies that move and rotate.
 ///
-/// Returns `None` if the bodies never come within the target distance up to the latest time, and if
-/// a pose at time zero is not finite. Swapping the bodies gives a bitwise equal result.
+/// Returns `None` if the bodies never come within the target distance up to the latest time, if a
+/// pose at time zero is not finite, and for a composite without parts. Swapping the bodies gives a
+/// bitwise equal result.
 ///
 /// *Never late.* The time is not later than the first touch, up to the rounding error of the
 /// bodies' positions and sizes: fast rotation and thin bodies are not missed. *Hardly early.* With
@@ -108,7 +109,7 @@ pub(crate) struct Flight<'a, N: Space<D>, const D: usize> {
     shapes: [&'a dyn Shape<N, D>; 2],
 }
 
-/// Runs [`nonlinear_time_of_impact`] in the canonical order.
+/// Runs [`nonlinear_time_of_impact`] for the bodies in canonical order, and swaps the result back.
 pub(crate) fn impact_of_flight<N: Space<D>, const D: usize>(
     flight: &Flight<'_, N, D>,
     options: &ImpactOptions<N>,
@@ -181,7 +182,7 @@ struct ImpactSearch<'a, N: Space<D>, const D: usize> {
     mirrored: bool,
 }
 
-/// The poses of the bodies at a time.
+/// The poses of the bodies at a time, before their separation is known.
 struct BodyPoses<'b, 'a, N: Space<D>, const D: usize> {
     /// The poses, centres and time; the normal is zero until it is known.
     moment: Moment<'b, 'a, N, D>,
@@ -339,8 +340,8 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
         })
     }
 
-    /// Returns whether a contact at the start is an impact, by the rule of
-    /// [`impact`](super::impact).
+    /// Returns whether a contact at the start is an impact: always with `contact_at_start`, else by
+    /// the rule of [`impact`](super::impact).
     fn counts_at_start(&self, configuration: &Configuration<'_, '_, N, D>) -> bool {
         let (closing, rounding_error) =
             configuration.poses.moment.closing(&configuration.points, configuration.size);
@@ -373,8 +374,8 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
-    /// Returns the length by which a contact may get deeper, or bodies may separate, and still be
-    /// treated as resting.
+    /// Returns a length. A contact that gets deeper by less than half of it is not an impact, and
+    /// bodies have separated only if the gap exceeds the tolerance by more than it.
     fn slack(&self) -> N {
         N::lit(1024.0) * N::EPSILON * self.size
     }

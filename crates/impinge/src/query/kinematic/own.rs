@@ -23,7 +23,7 @@ use crate::shape::FeatureId;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSide<N: Real, const D: usize> {
-    /// The feature of the solid that touches.
+    /// The touching feature of the solid.
     pub feature: FeatureId,
     /// The local geometry of the solid's core at the contact, in the solid's local frame.
     pub geometry: NeighborhoodGeometry<N, D>,

@@ -66,7 +66,8 @@ impl<N: Real, const D: usize> KinematicSide<N, D> {
         surface - self.outward * self.rounding
     }
 
-    /// Returns the local geometry of the core at the feature `id`.
+    /// Returns the local geometry of the core at the feature `id`. A face without a normal of its
+    /// own has the manifold's normal.
     pub(super) fn geometry(&self, id: FeatureId) -> NeighborhoodGeometry<N, D> {
         match (&self.support, id) {
             (SideSupport::Boundary(normal), _) => NeighborhoodGeometry::Plane(*normal),
@@ -154,7 +155,8 @@ fn upward<N: Real, const D: usize>() -> Vector<N, D> {
     axis
 }
 
-/// Returns the line of a side of a feature; a point for a rim, which is not a straight edge.
+/// Returns the line along the side with the id `id` of a feature. Returns a point for a rim, which
+/// is not a straight edge, for an unknown id, and for a side without length.
 fn line<N: Real, const D: usize>(
     feature: &Feature<N, D>,
     id: FeatureId,

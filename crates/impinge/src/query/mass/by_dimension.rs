@@ -22,10 +22,12 @@ pub trait MassByDimension<N: Real, const D: usize> {
     /// Returns the moments of the set of points within a positive radius of an ellipsoid.
     fn round_ellipsoid(half_axes: &Vector<N, D>, radius: N) -> Moments<D>;
 
-    /// Returns the moments of a convex solid, integrated from its support points.
+    /// Returns the moments of a convex solid, integrated from its support points; an error if a
+    /// support point is not finite.
     fn by_support(solid: &dyn SupportMap<N, D>) -> Result<Moments<D>, MassError>;
 
-    /// Returns the moments of the interior of a built-in composite other than a compound.
+    /// Returns the moments of the area (in 2D) or the volume (in 3D) of a built-in composite other
+    /// than a compound; an error if it bounds none.
     fn enclosed(shape: &dyn Shape<N, D>) -> Result<Moments<D>, MassError>;
 }
 

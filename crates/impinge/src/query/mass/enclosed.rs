@@ -8,7 +8,8 @@ use crate::bounding_volume::Aabb;
 use crate::math::{Point, Real, Vector};
 use crate::shape::{EdgeNeighbor, MassError, Moments, Polyline, Shape, TriMesh};
 
-/// A volume is treated as zero if it is at most this fraction of the sum of its terms' magnitudes.
+/// The enclosed area or volume is treated as zero if it is at most this fraction of the sum of the
+/// magnitudes of all cones.
 const NONE: f64 = 1024.0 * f64::EPSILON;
 
 /// A sum of signed cones with their apex at the origin; a cone is positive if the origin lies
@@ -94,7 +95,7 @@ pub(super) fn enclosed3<N: Real>(shape: &dyn Shape<N, 3>) -> Result<Moments<3>, 
     Ok(units.grown(&cones.moments()))
 }
 
-/// Returns the local units for a shape with these bounds.
+/// Returns the local units for a shape with these bounds; around the origin for `None`.
 fn units<N: Real, const D: usize>(bounds: Option<&Aabb<N, D>>) -> LocalUnits<D> {
     let origin = Point::<N, D>::origin();
     let [low, high] = bounds.map_or([&origin; 2], |bounds| [bounds.mins(), bounds.maxs()]);

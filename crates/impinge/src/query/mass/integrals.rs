@@ -50,7 +50,7 @@ impl<const D: usize> LocalUnits<D> {
         (point.coords.map(N::as_f64) - self.origin) / self.scale
     }
 
-    /// Converts the body from the units to the frame of the shape.
+    /// Converts moments from these units to the frame and the units of the shape.
     pub(super) fn grown(&self, moments: &Moments<D>) -> Moments<D> {
         moments.grown(self.scale, &self.origin)
     }

@@ -135,7 +135,8 @@ struct Weighing<'d, N> {
 }
 
 impl<N: Real> Weighing<'_, N> {
-    /// Returns the moments of a shape, with the density that belongs to its path.
+    /// Returns the moments of a shape, with the density that belongs to its path; an error if that
+    /// density is invalid, or if the shape has no finite mass.
     fn of_shape<const D: usize>(&mut self, shape: &dyn Shape<N, D>) -> Result<Moments<D>, MassError>
     where
         N: Space<D>,
@@ -166,7 +167,8 @@ impl<N: Real> Weighing<'_, N> {
         Ok(found.of_density(self.density()?))
     }
 
-    /// Returns the sum of the moments of a compound's children, in the compound's frame.
+    /// Returns the sum of the moments of a compound's children, in the compound's frame; the error
+    /// of the first child that has one.
     fn of_children<const D: usize>(
         &mut self,
         compound: &Compound<N, D>,
@@ -242,7 +244,8 @@ fn add_placed<N: Real, const D: usize>(
 }
 
 /// Returns the moments of a solid at density 1: per volume, or per length or area for a segment or
-/// flat triangle.
+/// flat triangle. An error for a half-space, and for a user's solid with a support point that is
+/// not finite.
 fn of_solid<N: Space<D>, const D: usize>(
     solid: Geometry<'_, N, D>,
 ) -> Result<Moments<D>, MassError> {

@@ -110,7 +110,8 @@ pub(super) fn round_triangle<N: Real>(corners: &[Point<N, 3>; 3], radius: N) -> 
     units.grown(&sum.moments())
 }
 
-/// Returns a unit vector perpendicular to the line through collinear points.
+/// Returns a unit vector perpendicular to the line through collinear points; any unit vector if
+/// they coincide.
 fn across_all(ring: &[V3]) -> V3 {
     let mut longest = V3::zeros();
     for (a, b) in sides(ring) {

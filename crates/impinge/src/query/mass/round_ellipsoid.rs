@@ -17,7 +17,7 @@ use crate::shape::Moments;
 const STEP: f64 = 0.4;
 const STEPS: i32 = 80;
 
-/// Half axes shorter than this fraction of the radius are raised to it.
+/// Half axes shorter than this fraction of the radius are raised to that length.
 const THIN: f64 = 1e-9;
 
 /// The sine and the cosine of an angle up to 90°, and its quadrature weight.

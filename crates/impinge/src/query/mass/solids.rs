@@ -85,7 +85,7 @@ pub(super) fn simplex<N: Real, const D: usize, const CORNERS: usize>(
     units.grown(&body).of_density(spare)
 }
 
-/// Returns the length of a segment, or the area of a triangle.
+/// Returns the length of a segment or the area of a triangle, given its 2 or 3 corners.
 pub(super) fn measure_of<const D: usize>(corners: &[Vector<f64, D>]) -> f64 {
     let side = corners[1] - corners[0];
     let Some(third) = corners.get(2) else { return side.norm() };

@@ -28,9 +28,9 @@ const THIN_EPSILON: f64 = 64.0;
 /// The maximum number of times that a group of slices is halved.
 const HALVINGS: u32 = 6;
 
-/// A group is not halved further if its mass plus the trace of its second moments differs by at
-/// most this between the group and the sum of its halves. In the round frame these numbers are
-/// about 1.
+/// A group of slices is halved again if its mass plus the trace of its second moments differs by
+/// more than this value from the same sum over its two halves. In the round frame the sum is about
+/// 1.
 const ENOUGH: f64 = 1e-5;
 
 /// The maximum number of times that each quarter of a slice's outline is halved.
@@ -119,7 +119,7 @@ impl RoundFrame {
     }
 
     /// Returns the unit direction of the solid whose support point corresponds to a direction of
-    /// the round frame.
+    /// the round frame; y for a zero direction.
     fn direction(&self, round: &V3) -> V3 {
         let direction = self.axes * round.component_div(&self.widths);
         direction.try_normalize(0.0).unwrap_or_else(V3::y)
@@ -169,7 +169,8 @@ impl<N: Real> Sliced<'_, N> {
         sum
     }
 
-    /// Adds the slices between two angles; `whole` is their sum as one group.
+    /// Adds the slices between two angles, halving the interval until the sum is accurate enough.
+    /// `whole` is the sum with the slices of the interval as one group.
     fn halve(
         &self,
         ends: [V3; 2],

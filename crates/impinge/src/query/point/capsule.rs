@@ -6,7 +6,8 @@ use crate::math::{Point, Real, Vector, unit_or};
 use crate::shape::{Capsule, FeatureId};
 
 /// Returns the point at the distance `radius` from the nearest point of the core segment, towards
-/// `point`. A capsule without radius is that segment.
+/// `point`; in a direction perpendicular to the segment if `point` lies on it. A capsule without
+/// radius is that segment.
 pub(super) fn surface_point<N: Real, const D: usize>(
     capsule: &Capsule<N, D>,
     point: &Point<N, D>,

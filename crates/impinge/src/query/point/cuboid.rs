@@ -24,8 +24,8 @@ pub(super) fn surface_point<N: Real, const D: usize>(
     SurfacePoint::on(nearest, feature_beyond(corners, point))
 }
 
-/// Returns the nearest point on the nearest face. If several faces are equally near, the face with
-/// the lowest index wins.
+/// Returns the nearest point on the nearest face; of several equally near faces, on the one with
+/// the lowest index.
 fn on_nearest_face<N: Real, const D: usize>(
     corners: [&Point<N, D>; 2],
     point: &Point<N, D>,

@@ -152,7 +152,8 @@ fn touches<N: Space<D>, const D: usize>(
     entries::nearest_part(parts, point, true).is_some()
 }
 
-/// Returns the distance to the nearest part, with the sign given by the winding number.
+/// Returns the distance to the nearest part: positive if the winding number is zero, else negative;
+/// zero on a part, and infinite if there is no nearest part.
 fn signed<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     point: &Point<N, D>,

@@ -65,10 +65,10 @@ pub struct PointProjection<N: Real, const D: usize> {
 /// points that lie on them within rounding, which is a few units in the last place of the largest
 /// coordinate.
 ///
-/// If several points are equally near, the result is deterministic: the face with the lowest index
-/// wins. Where the direction to the surface is undefined, it is fixed by the shape: the first
-/// coordinate axis from the centre of a ball, a direction across the axis from a point on the axis
-/// of a capsule, cylinder or cone.
+/// If several points are equally near, the result is deterministic: the point on the face with the
+/// lowest index. Where the direction to the surface is undefined, it is fixed by the shape: the
+/// first coordinate axis from the centre of a ball, a direction across the axis from a point on the
+/// axis of a capsule, cylinder or cone.
 ///
 /// `contains_point`, `project_point(…, true).is_inside` and `distance_to_point(…, true) == 0`
 /// always agree. A point that is not finite is never inside; its projection and distance are
@@ -78,10 +78,10 @@ pub struct PointProjection<N: Real, const D: usize> {
 /// outside, the result is for the nearest part. For a point inside, the result is for the part in
 /// which the point is deepest: the nearest point of that part's own boundary, which may lie inside
 /// another part. So the depth is at most the depth in the union, and equal to it where parts do not
-/// overlap. Of several parts with equal results the one with the lowest index wins. Triangles in 3D
-/// and segments are surfaces, which contain the points on them and enclose nothing (but closed
-/// meshes have [`signed_distance`](crate::shape::TriMesh::signed_distance)). Distances from
-/// triangles and segments are as accurate far from the mesh's origin as near it. A composite
+/// overlap. Of several parts with equal results, the one with the lowest index is returned.
+/// Triangles in 3D and segments are surfaces, which contain the points on them and enclose nothing
+/// (but closed meshes have [`signed_distance`](crate::shape::TriMesh::signed_distance)). Distances
+/// from triangles and segments are as accurate far from the mesh's origin as near it. A composite
 /// without parts is infinitely far from every point.
 ///
 /// For a composite, the cost is a search for the parts near the point.
@@ -105,8 +105,8 @@ pub trait PointQuery<N: Space<D>, const D: usize> {
     /// even if the given point is inside.
     fn project_local_point(&self, point: &Point<N, D>) -> (PointProjection<N, D>, FeatureId);
 
-    /// Returns [`Self::project_local_point`] with the part of a composite and the barycentric
-    /// weights of its corners.
+    /// Returns the projection of [`Self::project_local_point`], and its location: the part of a
+    /// composite, the feature, and the barycentric weights of the part's corners.
     ///
     /// With `solid`, the projection of a point inside is the point itself, with the weights of that
     /// point. The feature is still the feature that contains the nearest point of the boundary.
@@ -365,7 +365,8 @@ pub(crate) fn holds<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns the projection onto a shape without points: the point itself, not inside.
+/// Returns the result for a composite without parts, which has no nearest point: the query point
+/// itself, not inside.
 fn nowhere<N: Real, const D: usize>(point: &Point<N, D>) -> PointProjection<N, D> {
     PointProjection { is_inside: false, point: *point }
 }

@@ -37,8 +37,9 @@ pub(super) fn surface_point2<N: Real>(
     best
 }
 
-/// Returns the nearest point of the boundary. For a point outside, this is its nearest projection
-/// onto a face that contains the projection, or else the nearest point of all edges.
+/// Returns the nearest point of the boundary. For a point outside, it is the nearest among the
+/// points of all edges and those projections of the point onto planes of faces that lie in the
+/// face.
 pub(super) fn surface_point3<N: Real>(
     solid: &Polytope<N, 3>,
     point: &Point<N, 3>,

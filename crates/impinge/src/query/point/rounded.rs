@@ -8,7 +8,8 @@ use crate::shape::{Ball, FeatureId, Geometry, Kind, Rounded, SupportMap};
 use crate::tables::ByDimension;
 
 /// Returns the point at the distance `radius` from the nearest point of the inner shape, towards
-/// `point`. A radius of zero gives the result of the inner shape.
+/// `point`. For a point in the inner shape, the direction is outwards, along the normal of its
+/// separation from that shape. A radius of zero gives the result of the inner shape.
 pub(super) fn surface_point<N: Space<D>, const D: usize>(
     solid: &Rounded<N, D>,
     point: &Point<N, D>,

@@ -26,8 +26,9 @@ impl<N: Real, const D: usize> OnTriangle<N, D> {
 /// The result is the nearest of four candidates: one on each side and one on the [chord](on_chord)
 /// below `point`. Each is a weighted mean of corners, so that it lies on the triangle up to
 /// rounding. One of them is the nearest point up to a few epsilon times the largest coordinate or
-/// distance, whatever the shape of the triangle. Computed from a normal, or from barycentric
-/// coordinates by areas, the error would grow with l/h for a triangle of length l and height h.
+/// distance, whatever the shape of the triangle. If the point were computed from a normal, or from
+/// barycentric coordinates that are quotients of areas, its error would grow with l/h for a
+/// triangle of length l and height h.
 pub(super) fn nearest<N: Real, const D: usize>(
     corners: &[Point<N, D>; 3],
     point: &Point<N, D>,

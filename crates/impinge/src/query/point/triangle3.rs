@@ -16,7 +16,8 @@ pub(super) fn surface_point<N: Real>(
     SurfacePoint { feature, ..found }.snapped(point, triangle.reach())
 }
 
-/// Returns the face of the triangle on the side of the point.
+/// Returns the face of the triangle on the side of the point: `Face(0)` for a point in front of the
+/// triangle or in its plane, else `Face(1)`.
 fn facing<N: Real>(triangle: &Triangle<N, 3>, point: &Point<N, 3>) -> FeatureId {
     let [a, b, c] = triangle.corners();
     let (to_b, to_c, to_point) = (b - a, c - a, point - a);

@@ -31,7 +31,8 @@ impl<N: Real, const D: usize> Roots<N, D> {
 }
 
 /// Returns the times at which `origin + t · dir` is at the distance `radius` from zero; `None` if
-/// the line never comes that near. A line with zero `dir` is within that distance always or never.
+/// the line never comes that near. If `dir` is zero, the point `origin` is within that distance
+/// always or never.
 ///
 /// The method follows Haines, Günther and Akenine-Möller, "Precision improvements for ray/sphere
 /// intersection", 2019: the discriminant is computed from the line's point nearest to the centre,
@@ -73,13 +74,14 @@ fn ordered_roots<N: Real>(toward: N, root: N, squared: N, product: N) -> (N, N) 
     (min(first, second), max(first, second))
 }
 
-/// Returns the span of the line in the ball of `radius` around the local origin.
+/// Returns the span of the line in the ball of `radius` around the local origin; `None` if the line
+/// misses the ball.
 pub(super) fn span<N: Real, const D: usize>(radius: N, ray: &Ray<N, D>) -> Option<Span<N, D>> {
     around(&Point::origin(), radius, FeatureId::Face(0), ray)
 }
 
-/// Returns the span of the line in a ball around any centre. An infinite ball contains the whole
-/// line.
+/// Returns the span of the line in a ball around `center`; `None` if the line misses the ball. A
+/// ball with an infinite radius contains the whole line.
 pub(super) fn around<N: Real, const D: usize>(
     center: &Point<N, D>,
     radius: N,

@@ -9,7 +9,8 @@ use crate::math::{Mapped, Real, Vector, max, min, unit, unit_or};
 use crate::shape::{Capsule, FeatureId};
 
 /// Returns the span of the union of two balls and of the round side between them. The union is
-/// convex, so the span runs from the first entry to the last exit.
+/// convex, so the span runs from the first entry to the last exit; `None` if the line misses all
+/// three.
 ///
 /// A capsule without radius is treated as a segment.
 pub(super) fn span<N: Real, const D: usize>(
@@ -25,7 +26,8 @@ pub(super) fn span<N: Real, const D: usize>(
     Span::union_of(side(capsule, ray), Span::union_of(at_a, at_b))
 }
 
-/// Returns the span in the cylinder around the segment, cut off flat at its ends.
+/// Returns the span in the cylinder around the segment, with flat ends; `None` if the line misses
+/// the cylinder or the segment has no length.
 ///
 /// The normal is radial at both ends of the span, even if the line passes through a flat end. A
 /// flat end lies inside the balls; only its rim may come first, by rounding.
@@ -58,8 +60,8 @@ fn side<N: Real, const D: usize>(capsule: &Capsule<N, D>, ray: &Ray<N, D>) -> Op
     in_order(&span).then_some(span)
 }
 
-/// Replaces the normals by more accurate normals where the line passes through the round side
-/// itself.
+/// Replaces the normals by the directions of `points` where the line passes through the round side
+/// itself: these are more accurate. A zero point leaves the normal.
 fn refined<N: Real, const D: usize>(
     points: &[Vector<N, D>; 2],
     normals: [Vector<N, D>; 2],

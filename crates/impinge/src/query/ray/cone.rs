@@ -8,8 +8,9 @@ use crate::bounding_volume::Ray;
 use crate::math::{Mapped, Point, Real, Vector, cross2, max, min, unit_or};
 use crate::shape::{Cone, Cylinder, FeatureId};
 
-/// Returns the span by clipping the lower nappe of the infinite double cone at the base and at the
-/// apex. A cone without height is a disk, and a cone without radius is a segment.
+/// Returns the span in the lower nappe of the infinite double cone, clipped at the base and at the
+/// apex; `None` if the line misses the cone. A cone without height is a disk, and a cone without
+/// radius is a segment.
 pub(super) fn span<N: Real>(cone: &Cone<N>, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
     let (radius, half_height) = (cone.radius(), cone.half_height());
     if half_height == N::ZERO {
@@ -59,8 +60,9 @@ impl<N: Real> Nappe<N> {
         (self.cosine * a - self.sine * b) * (self.cosine * a + self.sine * b)
     }
 
-    /// Returns the span in this nappe; of the opposite nappe it contains at most the apex. By
-    /// rounding the span may extend beyond the apex, which later clipping at the apex repairs.
+    /// Returns the span in this nappe, without the opposite nappe except the apex; `None` if the
+    /// line misses the nappe. By rounding the span may extend beyond the apex, which later clipping
+    /// at the apex repairs.
     fn span(&self) -> Option<Span<N, 3>> {
         let quadratic = self.form(self.flat_dir.norm(), self.climb.abs());
         let constant = self.form(self.flat.norm(), self.height.abs());
@@ -81,7 +83,8 @@ impl<N: Real> Nappe<N> {
     }
 
     /// Returns the interval below the apex where `quadratic · t² + 2 · linear · t + constant ≤ 0`;
-    /// `larger = −linear ∓ root` is the numerator of the root without cancellation.
+    /// `larger = −linear ∓ root` is the numerator of the root without cancellation. `None` if the
+    /// quadratic and the linear term vanish and the constant is positive.
     ///
     /// A line steeper than the side (`quadratic < 0`) passes through both nappes. Its part below
     /// the apex is unbounded in the direction in which the line descends.

@@ -6,10 +6,10 @@ use crate::bounding_volume::Ray;
 use crate::math::{Point, Real, Vector};
 use crate::shape::FeatureId;
 
-/// Returns the span by the slab test (Kay and Kajiya 1986), with the crossed faces; corners may be
-/// infinite.
+/// Returns the span by the slab test (Kay and Kajiya 1986), with the crossed faces; `None` if the
+/// line misses the box. Corners may be infinite.
 ///
-/// If several faces are crossed at the same time, the lowest index wins.
+/// Of several faces crossed at the same time, the one with the lowest index is returned.
 pub(super) fn span<N: Real, const D: usize>(
     corners: [&Point<N, D>; 2],
     ray: &Ray<N, D>,

@@ -7,7 +7,8 @@ use crate::bounding_volume::Ray;
 use crate::math::{Mapped, Real, Vector, unit_or};
 use crate::shape::{Cylinder, FeatureId};
 
-/// Returns the span by clipping the span in the infinite round side with the two caps.
+/// Returns the span in the infinite cylinder, clipped at the planes of the two caps; `None` if the
+/// line misses the cylinder.
 pub(super) fn span<N: Real>(cylinder: &Cylinder<N>, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
     let side = round_side(cylinder.radius(), ray)?;
     let half_height = cylinder.half_height();
@@ -15,7 +16,8 @@ pub(super) fn span<N: Real>(cylinder: &Cylinder<N>, ray: &Ray<N, 3>) -> Option<S
     clipped(side, caps.mapped(|(sign, feature)| cap(half_height, sign, feature, ray)))
 }
 
-/// Returns the span of the line in the infinite cylinder around the y axis.
+/// Returns the span of the line in the infinite cylinder around the y axis; `None` if the line
+/// misses it.
 fn round_side<N: Real>(radius: N, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
     let flat = |v: &Vector<N, 3>| Vector::<N, 2>::new(v.x, v.z);
     let (origin, dir) = (flat(&ray.origin.coords), flat(&ray.dir));

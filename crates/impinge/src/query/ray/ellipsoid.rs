@@ -8,8 +8,9 @@ use crate::collide::separation::balls::ball_ellipsoid::project;
 use crate::math::{Real, Vector, max, max_component, min, unit_or};
 use crate::shape::{Ellipsoid, FeatureId};
 
-/// Returns the span, computed in units of the half axes, in which the ellipsoid is a unit ball. An
-/// ellipsoid with a zero half axis is hit in one point, unless the line lies in its plane.
+/// Returns the span, computed in units of the half axes, in which the ellipsoid is a unit ball;
+/// `None` if the line misses the ellipsoid. An ellipsoid with a zero half axis is hit in one point,
+/// unless the line lies in its plane.
 pub(super) fn span<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     ray: &Ray<N, D>,
@@ -43,7 +44,8 @@ fn squeezed<N: Real, const D: usize>(
     (in_units(&ray.origin.coords), dir / speed, speed)
 }
 
-/// Returns the span in the ellipsoid, computed only from the axes whose half axis is not zero.
+/// Returns the span in the ellipsoid, computed only from the axes whose half axis is not zero;
+/// `None` if the line misses the ellipsoid in the space of these axes.
 fn inside<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     ray: &Ray<N, D>,
@@ -65,7 +67,8 @@ fn inside<N: Real, const D: usize>(
     Some(Span { enter, leave, thin: false })
 }
 
-/// Returns the crossing of a line with a flat ellipsoid, whose half axis `axis` is zero.
+/// Returns the crossing of a line with a flat ellipsoid, whose half axis `axis` is zero; `None` if
+/// the line crosses the plane beside the ellipsoid.
 fn through<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     ray: &Ray<N, D>,

@@ -94,7 +94,7 @@ struct MeshCast<'a, N: Real> {
     first: Option<Met<N>>,
 }
 
-/// A triangle that is hit by the ray.
+/// The triangle with the first hit so far.
 #[derive(Clone, Copy)]
 struct Met<N: Real> {
     corners: [Point<N, 3>; 3],
@@ -131,7 +131,8 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
         loosened(self.latest)
     }
 
-    /// Tests a triangle. Keeps it if its hit is the first so far.
+    /// Tests a triangle. Keeps it if its hit is the earliest so far, or as early as the earliest
+    /// and on a part with a lower index.
     #[inline(always)]
     fn propose(&mut self, part: u32, corners: &[Point<N, 3>; 3]) {
         let Some(inner) = self.own.inner_hit(corners) else {
@@ -187,7 +188,8 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
         is_within
     }
 
-    /// Returns the first hit, after all triangles that may be hit were tested.
+    /// Returns the first hit, after all triangles that may be hit were tested; `None` if there is
+    /// none.
     fn first(&self) -> Option<RayIntersection<N, 3>> {
         let Met { corners, part, inner } = self.first?;
         let Some(inner) = inner else {
@@ -198,7 +200,8 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
         Some(RayIntersection { toi: inner.toi, normal, feature, part })
     }
 
-    /// Casts the ray against a single triangle.
+    /// Returns the hit of the ray on a single triangle, as the algorithm for separate triangles
+    /// computes it; `None` if the ray misses the triangle.
     fn cast_alone(&self, corners: &[Point<N, 3>; 3]) -> Option<RayIntersection<N, 3>> {
         let ray = self.ray.inverse_transformed_by(&Pose::identity());
         let hit = Triangle::of_finite(*corners).cast_local_ray(&ray, self.solid)?;

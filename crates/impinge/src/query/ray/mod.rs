@@ -86,10 +86,10 @@ pub struct RayIntersection<N: Real, const D: usize> {
 ///
 /// A composite is the union of its parts, and the ray is cast against each part separately. So with
 /// `solid`, a ray that starts in any part hits at time zero. Without `solid`, the boundaries of all
-/// parts are hit, also where they lie inside other parts. Of parts that are hit at the same time
-/// the lowest index wins. Parts whose common corners are bitwise equal, as in a mesh or a height
-/// field, leave no gap: a ray through a common side or corner hits at least one of them, however
-/// far from the origin (Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", 2013).
+/// parts are hit, also where they lie inside other parts. Of parts hit at the same time, the lowest
+/// index is returned. Parts whose common corners are bitwise equal, as in a mesh or a height field,
+/// leave no gap: a ray through a common side or corner hits at least one of them, however far from
+/// the origin (Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", 2013).
 ///
 /// For a composite, the cost is a search for the parts along the ray, up to the hit.
 /// [`Self::intersects_ray`] ends at any part that is hit.
@@ -108,7 +108,7 @@ pub struct RayIntersection<N: Real, const D: usize> {
 /// assert_eq!(cube.toi_with_ray(&place, &inner, false), Some(1.0), "where it leaves");
 /// ```
 pub trait RayCast<N: Space<D>, const D: usize> {
-    /// Returns [`Self::cast_local_ray_until`] without a latest time.
+    /// Returns the result of [`Self::cast_local_ray_until`] with an infinite `max_time`.
     fn cast_local_ray(&self, ray: &Ray<N, D>, solid: bool) -> Option<RayIntersection<N, D>> {
         self.cast_local_ray_until(ray, N::INFINITY, solid)
     }
@@ -192,7 +192,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         self.cast_local_ray_until(ray, max_time, true).is_some()
     }
 
-    /// Returns [`Self::first_hit_with_ray`] without a latest time.
+    /// Returns the result of [`Self::first_hit_with_ray`] with an infinite `max_time`.
     fn toi_and_normal_with_ray<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
@@ -252,7 +252,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         self.all_hits_with_ray(m, ray, max_time, solid).into_iter().find(|hit| counts(hit))
     }
 
-    /// Returns [`Self::local_ray_hits`] of the shape placed at `m`, with normals in the world.
+    /// Returns the hits of [`Self::local_ray_hits`] on the shape placed at `m`, in the world frame.
     ///
     /// ```
     /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -280,7 +280,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         hits
     }
 
-    /// Returns the time of [`Self::first_hit_with_ray`] without a latest time.
+    /// Returns the time of the hit of [`Self::first_hit_with_ray`] with an infinite `max_time`.
     fn toi_with_ray<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
@@ -435,7 +435,7 @@ pub(crate) fn cast_many_on<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns the first hit on a part for which `counts` is true.
+/// Returns the earliest hit that `counts` accepts, in a tie on the lowest part; `None` if none.
 #[inline]
 pub(crate) fn first_that<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
@@ -460,7 +460,7 @@ fn is_before<N: Real, const D: usize>(
     a.toi < b.toi || (a.toi == b.toi && a.part < b.part)
 }
 
-/// Returns the hit of a ray that starts in the set.
+/// Returns the hit of a ray that starts in the set: at time zero, without a normal.
 pub(crate) fn at_start<N: Real, const D: usize>(feature: FeatureId) -> RayIntersection<N, D> {
     RayIntersection { toi: N::ZERO, normal: Vector::<N, D>::zeros(), feature, part: 0 }
 }

@@ -98,8 +98,8 @@ fn is_behind<N: Real, const D: usize>(
     goes_away && exceeds(distance, half[axis], unit * distance + lost())
 }
 
-/// Returns false if a solid certainly does not contain a point. A fast test for the most frequent
-/// kinds, since most rays that come near a solid miss it.
+/// Returns whether a solid may contain a point; false only if it certainly does not. A fast test
+/// for the most frequent kinds, since most rays that come near a solid miss it.
 pub(super) fn may_hold<N: Real, const D: usize>(kind: Kind<'_, N, D>, point: &Point<N, D>) -> bool {
     match kind {
         Kind::Triangle(triangle) => may_lie_on(triangle, point),

@@ -7,7 +7,7 @@ use crate::bounding_volume::Ray;
 use crate::math::{Real, Vector, max, max_component};
 use crate::shape::{FeatureId, Polytope, PolytopeFace, SupportMap};
 
-/// Returns the span of the line clipped by the planes of all faces.
+/// Returns the span of the line, clipped by the planes of all faces; `None` if nothing is left.
 pub(super) fn span<N: Real, const D: usize>(
     solid: &Polytope<N, D>,
     ray: &Ray<N, D>,

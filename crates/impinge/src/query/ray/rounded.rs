@@ -9,8 +9,8 @@ use crate::math::{Point, Pose, Real, Space, Vector, max};
 use crate::shape::{Ball, Geometry, Kind, Rounded, ShapeKind, SupportMap};
 use crate::tables::ByDimension;
 
-/// Returns the span by a search with the distances of points from the rounded solid. If the radius
-/// is zero, returns the span of the inner shape.
+/// Returns the span by a search with the distances of points from the rounded solid; see
+/// [`RaySolid::span`] for `None`. If the radius is zero, returns the span of the inner shape.
 pub(super) fn span<N: Space<D>, const D: usize>(
     solid: &Rounded<N, D>,
     ray: &Ray<N, D>,
@@ -34,8 +34,8 @@ pub(super) fn span<N: Space<D>, const D: usize>(
         .span(ray)
 }
 
-/// Returns the accuracy of point distances, as a fraction of the size. Closed forms are exact up to
-/// rounding.
+/// Returns the accuracy of point distances, as a fraction of the rounded solid's bounding radius.
+/// Closed forms are exact up to rounding.
 fn precision<N: Real, const D: usize>(inner: Geometry<'_, N, D>) -> N {
     let rounding = N::lit(16.0) * N::EPSILON;
     match inner.0 {

@@ -21,8 +21,8 @@ impl RayFeatures {
 
 /// Returns the span. The projection along the ray maps the segment to a segment in one dimension
 /// less, and the ray to a point. The ray hits if that point is on the projected segment within
-/// rounding. A segment along the ray projects to a point; the ray enters it at one end and leaves
-/// it at the other end.
+/// rounding; else the result is `None`. A segment along the ray projects to a point; the ray enters
+/// it at one end and leaves it at the other end.
 pub(super) fn span<N: Real, const D: usize>(
     ends: [&Point<N, D>; 2],
     features: RayFeatures,

@@ -66,7 +66,7 @@ impl<N: Real, const D: usize> Span<N, D> {
         }
     }
 
-    /// Returns the union of two spans, either of which may be missing.
+    /// Returns the union of two spans; `None` stands for an empty span.
     pub(super) fn union_of(first: Option<Self>, second: Option<Self>) -> Option<Self> {
         match (first, second) {
             (Some(first), Some(second)) => Some(first.union(second)),
@@ -75,7 +75,7 @@ impl<N: Real, const D: usize> Span<N, D> {
     }
 
     /// Returns the first hit at a time of zero or more. `None` if the line leaves the set before
-    /// time zero, or if it starts in a hollow set and never leaves it.
+    /// time zero, if it starts in a hollow set and never leaves it, or if it never enters the set.
     pub(super) fn first_hit(self, solid: bool) -> Option<RayIntersection<N, D>> {
         if self.enter.t >= N::ZERO {
             return self.enter.hit();

@@ -10,7 +10,8 @@ use crate::math::{Mapped, Real, Vector, max, min, unit_or};
 use crate::shape::{FeatureId, Taper, TaperedCapsule};
 
 /// Returns the span of the union of the two balls and the frustum between the circles in which it
-/// touches them. If both radii are zero, the shape is a segment.
+/// touches them; `None` if the line misses the solid. If both radii are zero, the shape is a
+/// segment.
 pub(super) fn span<N: Real, const D: usize>(
     capsule: &TaperedCapsule<N, D>,
     ray: &Ray<N, D>,
@@ -73,7 +74,7 @@ impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
         }
     }
 
-    /// Returns the span of the line in the frustum.
+    /// Returns the span of the line in the frustum; `None` if the line misses the frustum.
     fn span(&self) -> Option<Span<N, D>> {
         let (low, high) = self.between_circles()?;
         let (enter, leave) = self.in_cone()?;
@@ -89,7 +90,7 @@ impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
     }
 
     /// Returns the interval, relative to `start`, in which the line is between the planes of the
-    /// circles.
+    /// circles; `None` if the line is parallel to these planes and not between them.
     fn between_circles(&self) -> Option<(N, N)> {
         let [low, high] = self.heights.mapped(|height| height - self.height);
         if self.climb == N::ZERO {
@@ -101,7 +102,7 @@ impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
     }
 
     /// Returns the interval, relative to `start`, in which the line is in the cone, on the nappe
-    /// where `radius1 − sine · y` is positive.
+    /// where `radius1 − sine · y` is positive; `None` if the line misses the cone.
     ///
     /// The interval ends at roots of `quadratic · t² + 2 · linear · t + constant`, whose
     /// coefficients are differences of squares that are not expanded.

@@ -16,9 +16,9 @@ struct RayCorner<N: Real> {
     side: N,
 }
 
-/// Returns the span of the line in the triangle. The line enters a counter-clockwise triangle
-/// through a side that leads from the line's left to its right, and leaves through a side that
-/// leads back.
+/// Returns the span of the line in the triangle; `None` if the line misses it. The line enters a
+/// counter-clockwise triangle through a side that leads from the line's left to its right, and
+/// leaves through a side that leads back.
 ///
 /// Whether the line hits depends on the signs of the three corners alone, and each is computed from
 /// one corner and the ray: triangles that share corners leave no gap.

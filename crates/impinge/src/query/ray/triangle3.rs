@@ -10,7 +10,7 @@ use crate::math::{
 use crate::shape::{FeatureId, Triangle};
 
 /// Returns the span of the line: the hit in the interior, or, if the line is parallel to the
-/// triangle, the hits on the sides, each within rounding.
+/// triangle, the hits on the sides, each within rounding. `None` if the line misses the triangle.
 ///
 /// The method is valid for both sides of the triangle, and for collinear corners.
 pub(super) fn span<N: Real>(triangle: &Triangle<N, 3>, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
@@ -38,8 +38,8 @@ pub(super) struct TriangleRay<N: Real> {
     unit: N,
 }
 
-/// A hit in the interior of a triangle: `t` is the time along the divided direction, `toi` the time
-/// in units of the ray's direction.
+/// A hit in the interior of a triangle. `t` is the time in units of the direction divided by
+/// [`TriangleRay::unit`], `toi` the time in units of the ray's direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct InnerHit<N: Real> {
     t: N,
@@ -151,7 +151,7 @@ fn through<N: Real>(corners: &[Sheared<N>; 3]) -> Through<N> {
 }
 
 /// Returns the crossing at `t`. Its normal points against the ray, and its face is the face on that
-/// side of the triangle.
+/// side of the triangle. For a triangle without area, the normal is opposite to the ray.
 fn crossing<N: Real>(corners: &[Point<N, 3>; 3], dir: &Vector<N, 3>, t: N) -> Crossing<N, 3> {
     let [a, b, c] = corners;
     let normal = cross(&(b - a), &(c - a));

@@ -6,7 +6,8 @@ use crate::math::Real;
 use crate::shape::FeatureId;
 
 impl<N: Real, const D: usize> Aabb<N, D> {
-    /// Returns the first hit of the ray on the box, by the rules of [`RayCast`](super::RayCast).
+    /// Returns the first hit of the ray on the box, by the rules of [`RayCast`](super::RayCast);
+    /// `None` if the ray misses the box.
     ///
     /// The faces have the indices of a cuboid's faces.
     pub fn toi_and_normal_with_ray(
@@ -18,14 +19,16 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         cast(ray, solid, project, |ray| cuboid::span([self.mins(), self.maxs()], ray))
     }
 
-    /// Returns the time of the first hit of the ray on the box, in units of the ray's direction.
+    /// Returns the time of the first hit of the ray on the box, in units of the ray's direction;
+    /// `None` if the ray misses the box.
     pub fn toi_with_ray(&self, ray: &Ray<N, D>, solid: bool) -> Option<N> {
         self.toi_and_normal_with_ray(ray, solid).map(|hit| hit.toi)
     }
 }
 
 impl<N: Real, const D: usize> BoundingSphere<N, D> {
-    /// Returns the first hit of the ray on the sphere, by the rules of [`RayCast`](super::RayCast).
+    /// Returns the first hit of the ray on the sphere, by the rules of [`RayCast`](super::RayCast);
+    /// `None` if the ray misses the sphere.
     ///
     /// The only feature is `Face(0)`. An infinite sphere has no boundary to hit.
     pub fn toi_and_normal_with_ray(
@@ -38,7 +41,8 @@ impl<N: Real, const D: usize> BoundingSphere<N, D> {
         cast(ray, solid, project, |ray| ball::around(center, radius, FeatureId::Face(0), ray))
     }
 
-    /// Returns the time of the first hit of the ray on the sphere, in units of the ray's direction.
+    /// Returns the time of the first hit of the ray on the sphere, in units of the ray's direction;
+    /// `None` if the ray misses the sphere.
     pub fn toi_with_ray(&self, ray: &Ray<N, D>, solid: bool) -> Option<N> {
         self.toi_and_normal_with_ray(ray, solid).map(|hit| hit.toi)
     }

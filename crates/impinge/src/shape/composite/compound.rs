@@ -61,7 +61,8 @@ pub struct Compound<N: Space<D>, const D: usize> {
     /// placing its child; see [`search_box`].
     pub(in crate::shape) tree: BoxTree<N, D>,
     sphere: BoundingSphere<N, D>,
-    /// Whether any child is a composite with a surface, and so has seams.
+    /// Whether any child is a composite whose parts form a surface ([`CompositeShape::surface`]),
+    /// so that contacts follow the rule for seams.
     has_surface: bool,
     /// Whether any child encloses a solid region by a closed surface: has an [`EnclosedBody`].
     has_bodies: bool,
@@ -174,7 +175,7 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
         self.firsts[child as usize]
     }
 
-    /// Returns the index of the child that owns `part`, and the part's index within that child.
+    /// Returns the index of the child that contains `part`, and the part's index within that child.
     ///
     /// # Panics
     /// If `part` is not below the number of parts.
@@ -192,8 +193,8 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
         self.children[child].1.geometry().as_composite()
     }
 
-    /// Returns the surface of the child that owns `part`, the child's pose, and the part's index
-    /// within the child. `None` if the child has no surface.
+    /// Returns the surface of the child that contains `part`, the child's pose, and the part's
+    /// index within the child. `None` if the child has no surface.
     fn surface_at(&self, part: u32) -> Option<(SurfaceAccess<'_, N, D>, &Pose<N, D>, u32)> {
         let (child, own) = self.child_of_part(part);
         Some((self.composite(child)?.surface_access()?, &self.poses[child], own))
@@ -234,7 +235,7 @@ fn own_factors<N: Real, const D: usize>(
     (!all.any(is_beside)).then(|| rotated.diagonal())
 }
 
-/// Returns [`Compound::firsts`]: the index of the first part of each child, then the number of
+/// Computes [`Compound::firsts`]: the index of the first part of each child, then the number of
 /// parts.
 ///
 /// # Errors

@@ -89,7 +89,7 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
     }
 
     /// Returns the surface with the methods that the library's own composites implement in addition
-    /// to [`Surface`].
+    /// to [`Surface`]; `None` if [`Self::surface`] returns `None`.
     #[doc(hidden)]
     fn surface_access(&self) -> Option<SurfaceAccess<'_, N, D>> {
         self.surface().map(SurfaceAccess::of_any)
@@ -115,7 +115,7 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
         is_shared
     }
 
-    /// Appends the path to a part to `path`.
+    /// Appends to `path` the indices that lead to a part.
     fn extend_path(&self, part: u32, path: &mut PartPath) {
         path.push(part);
     }

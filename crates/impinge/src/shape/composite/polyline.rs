@@ -155,7 +155,7 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
     /// also reverses each segment, so that the solid side stays solid.
     ///
     /// # Errors
-    /// If a scale is zero or not finite, or a coordinate becomes infinite.
+    /// If a factor of the scale is zero or not finite, or a coordinate becomes infinite.
     pub fn try_scaled(&self, scale: &Vector<N, D>) -> Result<Self, MeshError> {
         check_scale(scale)?;
         let scaled = |point: &Point<N, D>| Point::from(point.coords.component_mul(scale));
@@ -307,7 +307,7 @@ impl<N: Real> Polyline<N, 2> {
     /// segments end as start, as in every [closed](Self::closed) line. O(1).
     ///
     /// If [`Self::set_vertices`] moves joined vertices apart, the line is no longer an outline.
-    /// [`Self::encloses`] and [`Self::signed_distance`] compute what lies inside.
+    /// [`Self::encloses`] and [`Self::signed_distance`] test whether a point lies inside.
     #[must_use]
     pub const fn is_outline(&self) -> bool {
         self.is_cycle

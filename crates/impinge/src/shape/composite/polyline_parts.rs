@@ -135,9 +135,10 @@ impl<N: Real, const D: usize> Polyline<N, D> {
         front.map_or(N::ZERO, |front| front.dot(vector))
     }
 
-    /// Returns whether the joint admits `normal` ([`Seam::admits`]): no segment that leaves the
-    /// joint rises along `normal`, the segments do not continue each other straight, and on a
-    /// one-sided line the highest segment has its front towards `normal`.
+    /// Returns whether the joint at an end of `part` admits `normal` ([`Seam::admits`]): the
+    /// directions of all segments away from the joint have components of at most zero along
+    /// `normal`, the segments do not continue each other straight, and on a one-sided line the
+    /// segment with the largest component has its front towards `normal`.
     fn joint_admits(&self, part: u32, end: u32, normal: &Vector<N, D>) -> bool {
         let joint = self.joints.of(self.segments[part as usize][end as usize]);
         let own = self.along(part).unwrap_or_else(Vector::<N, D>::zeros);

@@ -68,12 +68,12 @@ impl fmt::Display for MassError {
 
 impl std::error::Error for MassError {}
 
-/// Checks that a number is finite.
+/// Returns the number `value`, or an error if it is not finite.
 pub(crate) fn finite(what: &'static str, value: f64) -> Result<f64, MassError> {
     if value.is_finite() { Ok(value) } else { Err(MassError::NotFinite { what, value }) }
 }
 
-/// Checks that a number is finite and not below zero.
+/// Returns the number `value`, or an error if it is negative or not finite.
 pub(crate) fn amount(what: &'static str, value: f64) -> Result<f64, MassError> {
     if value < 0.0 { Err(MassError::Negative { what, value }) } else { finite(what, value) }
 }

@@ -178,7 +178,7 @@ impl<N: Real, const D: usize> MassProperties<N, D> {
     }
 }
 
-/// Returns 1 / x; zero if that is infinite or NaN.
+/// Returns 1 / x; zero if the quotient is infinite or NaN.
 fn inverse<N: Real>(x: N) -> N {
     let inverse = N::ONE / x;
     if inverse.is_finite_number() { inverse } else { N::ZERO }

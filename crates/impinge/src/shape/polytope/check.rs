@@ -57,7 +57,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     /// solid that fails this test is damaged.
     pub(in crate::shape) fn is_roughly_convex(&self) -> bool {
         let most = N::lit(ROUGHLY) * self.reach;
-        // A height that is NaN counts as convex: an overflow of lengths is no damage.
+        // A NaN height does not fail the test: it comes from an overflow, not from damaged data.
         let is_in_front = |face: &PolytopeFace<N, D>| {
             self.vertices.iter().any(|vertex| face.height_of(vertex) > most)
         };

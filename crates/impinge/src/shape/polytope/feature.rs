@@ -36,9 +36,9 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
-    /// Returns the id of the vertex, side or face on which a surface point lies, up to `tolerance`.
-    /// Only the supporting feature for the unit vector `direction`, and its sides and vertices, are
-    /// considered.
+    /// Returns the id of the vertex, side or face on which a surface point lies, up to `tolerance`
+    /// from a side and twice that from a vertex. Only the supporting feature for the unit vector
+    /// `direction`, and its sides and vertices, are considered.
     pub(crate) fn part_at(
         &self,
         point: &Point<N, D>,
@@ -222,7 +222,7 @@ impl<N: Real> Polytope<N, 2> {
             along.map_or(N::ONE, |(along, _)| along.dot(direction).abs())
         };
         let (slope_before, slope_after) = (slope(before, vertex), slope(vertex, after));
-        // If both slopes are equal, the side with the lower index wins.
+        // If both slopes are equal, the side with the lower index is chosen.
         let is_after =
             if vertex > 0 { slope_after < slope_before } else { slope_after <= slope_before };
         let (side, to) = if is_after { (vertex, after) } else { (before, vertex) };

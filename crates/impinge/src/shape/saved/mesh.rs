@@ -26,7 +26,8 @@ pub(crate) struct MeshRecord<N: Real> {
 }
 
 impl<N: Real> MeshRecord<N> {
-    /// Returns the `K` vertex indices of each part.
+    /// Returns the `K` vertex indices of each part; an error if the number of indices is not a
+    /// multiple of `K`.
     pub(in crate::shape) fn parts<const K: usize>(&self) -> Result<Vec<[u32; K]>, Damage> {
         let (parts, rest) = self.parts.as_chunks::<K>();
         ensure(rest.is_empty(), "a part of a mesh lacks a corner")?;

@@ -154,8 +154,9 @@ impl<N: Real> ShapeRecords<N> {
         Self { numbers: BTreeMap::new(), limit: PartLimit::default(), records: Vec::new() }
     }
 
-    /// Returns the number of a shape. If the shape has no number yet, saves it first, and before it
-    /// the shapes that it holds.
+    /// Returns the number of a shape. If the shape has no number yet, first saves the shapes that
+    /// it holds, then the shape. An error if one of these is a user's shape that cannot be saved,
+    /// or if there are too many parts or shapes.
     pub(crate) fn number<const D: usize>(
         &mut self,
         shape: &ShapeHandle<N, D>,
@@ -230,7 +231,8 @@ fn solid<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> Option<ShapeRecord
     })
 }
 
-/// Restores all shapes from their records, in order; `own` restores shapes of a user's types.
+/// Restores all shapes from their records, in order; `own` restores shapes of a user's types. Ends
+/// with the first error: a damaged record, an error of `own`, or too many parts.
 pub(crate) fn make_all<N: Space<D>, E: From<Damage>, const D: usize>(
     records: Vec<ShapeRecord<N>>,
     own: &mut dyn FnMut(&SavedShape) -> Result<ShapeHandle<N, D>, E>,
@@ -247,7 +249,8 @@ pub(crate) fn make_all<N: Space<D>, E: From<Damage>, const D: usize>(
     Ok(shapes)
 }
 
-/// Restores a shape of the library; `known` are the shapes restored before it.
+/// Restores a shape of the library; `known` are the shapes restored before it. An error if the
+/// record is damaged.
 fn make<N: Space<D>, const D: usize>(
     record: &ShapeRecord<N>,
     known: &[ShapeHandle<N, D>],
@@ -281,7 +284,8 @@ pub(crate) fn shape_of<N: Real, const D: usize>(
     shapes.get(number as usize).ok_or(Damage("there is no shape of a number".into()))
 }
 
-/// Restores a shape from a record that [`solid`] returned; `None` for any other record.
+/// Restores a shape from a record that [`solid`] returned; `None` for any other kind of record, and
+/// an error for a damaged one.
 fn make_solid<N: Real, const D: usize>(
     record: &ShapeRecord<N>,
 ) -> Result<Option<ShapeHandle<N, D>>, Damage> {

@@ -21,7 +21,8 @@ pub(crate) fn record2<N: Real>(shape: &dyn Shape<N, 2>) -> Option<ShapeRecord<N>
     Some(ShapeRecord::HeightField(field.record()))
 }
 
-/// Restores a shape from a record that [`record2`] returned.
+/// Restores a shape from a record that [`record2`] returned; an error for a damaged record or
+/// another kind.
 pub(crate) fn make2<N: Real>(record: &ShapeRecord<N>) -> Result<ShapeHandle<N, 2>, Damage> {
     match record {
         ShapeRecord::ConvexPolygon(vertices) => Ok(ShapeHandle::new(polygon(vertices.points()?)?)),
@@ -35,7 +36,8 @@ pub(crate) fn make2<N: Real>(record: &ShapeRecord<N>) -> Result<ShapeHandle<N, 2
 }
 
 /// Restores a polygon from its vertices, which must be counter-clockwise. Public constructors would
-/// drop vertices on the line between their neighbours.
+/// drop vertices on the line between their neighbours. An error if there are fewer than 3 vertices,
+/// one is not finite, or the polygon is not roughly convex.
 fn polygon<N: Real>(vertices: Vec<Point<N, 2>>) -> Result<ConvexPolygon<N>, Damage> {
     let is_finite = vertices.iter().flat_map(|point| point.iter()).all(|x| x.is_finite_number());
     ensure(is_finite && vertices.len() >= 3, "a polygon has too few vertices, or infinite ones")?;

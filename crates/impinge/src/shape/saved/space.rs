@@ -33,7 +33,8 @@ pub(crate) fn record3<N: Real>(shape: &dyn Shape<N, 3>) -> Option<ShapeRecord<N>
     Some(ShapeRecord::HeightField(field.record()))
 }
 
-/// Restores a shape from a record that [`record3`] returned.
+/// Restores a shape from a record that [`record3`] returned; an error for a damaged record or
+/// another kind.
 pub(crate) fn make3<N: Real>(record: &ShapeRecord<N>) -> Result<ShapeHandle<N, 3>, Damage> {
     match record {
         ShapeRecord::ConvexHull { vertices, normals, faces } => {
@@ -62,7 +63,8 @@ pub(crate) fn make3<N: Real>(record: &ShapeRecord<N>) -> Result<ShapeHandle<N, 3
     }
 }
 
-/// Restores a hull from its vertices and faces. Public constructors would renumber them.
+/// Restores a hull from its vertices, face normals and faces. Public constructors would renumber
+/// them. An error if they do not form a closed and roughly convex solid.
 fn hull<N: Real>(
     vertices: Vec<Point<N, 3>>,
     normals: &[Point<N, 3>],

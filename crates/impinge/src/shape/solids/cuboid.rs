@@ -100,7 +100,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
         (free != CuboidPart::<D>::ALL).then(|| part.id())
     }
 
-    /// Returns the id of the part with the lower `D` bits as `free` and the upper `D` as `corner`.
+    /// Returns the id of a part: its set `free` is the lower `D` bits, `corner` the upper `D`.
     #[inline]
     pub(crate) const fn id_of_bits(bits: u8) -> FeatureId {
         CuboidPart::<D>::IDS[bits as usize & ((1 << (2 * D)) - 1)]
@@ -168,8 +168,8 @@ impl<const D: usize> CuboidPart<D> {
         ids
     };
 
-    /// Returns the supporting feature for a unit vector. Frees axes from the smallest component up,
-    /// while `tilt` admits the sum of squares (see [`SupportMap::core_feature`]).
+    /// Returns the supporting feature for a unit vector. Adds axes to `free`, smallest components
+    /// first, while `tilt` admits the sum of their squares (see [`SupportMap::core_feature`]).
     pub(in crate::shape) fn toward<N: Real>(direction: &Vector<N, D>, tilt: Tilt<N>) -> Self {
         let (mut free, mut sine_squared) = (0, N::ZERO);
         for _ in 1..D {

@@ -160,8 +160,8 @@ fn polytope<N: Real>(corners: [Point<N, 3>; 4], is_mirrored: bool) -> Polytope<N
     let faces = FACES.map(|[a, b, c]| if is_mirrored { [a, c, b] } else { [a, b, c] });
     let faces = faces.into_iter().map(|face| {
         let [a, b, c] = face.map(|corner| &positions[corner as usize]);
-        // Computed from rounded sides, the normal would have a relative error of epsilon times the
-        // ratio of length to height.
+        // If the normal were computed from rounded sides, it would have a relative error of epsilon
+        // times the ratio of length to height.
         let normal = area_vector(a, b, c).try_normalize(0.0);
         let normal = normal.unwrap_or_else(Vector::<f64, 3>::y).map(N::lit);
         (unit(&normal).map_or(normal, |(normal, _)| normal), face)

@@ -63,10 +63,10 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
         false
     }
 
-    /// Returns whether a surface in 3D has two properties: parts are adjacent if and only if they
-    /// have corners at one position, and a seam admits no normal along which a direction into an
-    /// adjacent part rises. Then a ball's contact with a triangle can be skipped if an adjacent
-    /// triangle hides it.
+    /// Returns whether a surface in 3D has two properties: parts are adjacent exactly where they
+    /// have coincident corners, and at a seam every direction into an adjacent part has a component
+    /// of at most zero along each admitted normal. Then the contact of a ball with a triangle can
+    /// be skipped if an adjacent triangle hides it; see `collide/separation/triangles/ball.rs`.
     fn has_regular_seams(&self) -> bool {
         false
     }
@@ -135,7 +135,7 @@ impl<'a, N: Real, const D: usize> SurfaceAccess<'a, N, D> {
         }
     }
 
-    /// Returns [`OwnSurface::face_seams`]; `None` for a user's surface.
+    /// Returns the result of [`OwnSurface::face_seams`]; `None` for a user's surface.
     pub(crate) fn face_seams(&self, part: u32) -> Option<FaceSeams<N>> {
         self.own?.face_seams(part)
     }
@@ -152,22 +152,22 @@ impl<'a, N: Real, const D: usize> SurfaceAccess<'a, N, D> {
         self.surface.faces(part, center)
     }
 
-    /// Returns [`OwnSurface::is_body`]; false for a user's surface.
+    /// Returns the result of [`OwnSurface::is_body`]; false for a user's surface.
     pub(crate) fn is_body(&self, part: u32) -> bool {
         self.own.is_some_and(|own| own.is_body(part))
     }
 
-    /// Returns [`OwnSurface::is_beside_ghost`]; false for a user's surface.
+    /// Returns the result of [`OwnSurface::is_beside_ghost`]; false for a user's surface.
     pub(crate) fn is_beside_ghost(&self, part: u32) -> bool {
         self.own.is_some_and(|own| own.is_beside_ghost(part))
     }
 
-    /// Returns [`OwnSurface::sidedness`]; `None` for a user's surface.
+    /// Returns the result of [`OwnSurface::sidedness`]; `None` for a user's surface.
     pub(crate) fn sidedness(&self) -> Option<Sidedness> {
         self.own?.sidedness()
     }
 
-    /// Returns [`OwnSurface::has_regular_seams`]; false for a user's surface.
+    /// Returns the result of [`OwnSurface::has_regular_seams`]; false for a user's surface.
     pub(crate) fn has_regular_seams(&self) -> bool {
         self.own.is_some_and(OwnSurface::has_regular_seams)
     }

@@ -1,14 +1,14 @@
 //! The normals that a connected surface admits at a seam: one rule for the edges, vertices and
 //! joints of every composite surface.
 //!
-//! A point set has, at one of its points, exactly those normals along which no direction into the
-//! set rises: the polar cone of these directions. For an edge between two triangles this is the arc
-//! between their normals on the convex side; for a vertex it is the cone over the normals of a
-//! convex corner; on the concave side it is empty. So the rule depends only on the directions that
-//! leave the seam, not on winding or sides. Contacts with other normals are computed from single
-//! pieces as if these had no neighbours. They are called ghost collisions: Catto, "Ghost
-//! Collisions" (2020), for chains; Terdiman, "Contact generation for meshes" (2015); and the active
-//! edges of Jolt and Box3D.
+//! The normals of a point set at one of its points form the polar cone of the directions into the
+//! set: each of these directions has a component of at most zero along each normal. For an edge
+//! between two triangles this is the arc between their normals on the convex side; for a vertex it
+//! is the cone over the normals of a convex corner; on the concave side it is empty. So the rule
+//! depends only on the directions that leave the seam, not on winding or sides. Contacts with other
+//! normals are computed from single pieces as if these had no neighbours. They are called ghost
+//! collisions: Catto, "Ghost Collisions" (2020), for chains; Terdiman, "Contact generation for
+//! meshes" (2015); and the active edges of Jolt and Box3D.
 //!
 //! ```text
 //!   n1   n2         ╲           ╱            n1
@@ -21,7 +21,8 @@
 //! ```
 //!
 //! The figure looks along the edge `e`, with fronts up. On the back of the valley, the edge has the
-//! normals from -n1 to -n2. A one-sided surface has only the normals in front of its highest piece.
+//! normals from -n1 to -n2. A one-sided surface admits a normal only if the front of the highest
+//! piece (the piece with the largest component along the normal) faces that way.
 
 use crate::math::{Real, Vector, unit};
 
@@ -54,12 +55,13 @@ pub(in crate::shape) fn is_across<N: Real, const D: usize>(
     unit(edge).is_none_or(|(along, _)| is_flat(along.dot(normal)))
 }
 
-/// A side clearly rises or sinks along a normal if its sine exceeds `slack` by this factor.
+/// A side clearly rises or sinks along a normal if the component of its unit direction along the
+/// normal exceeds, in magnitude, `slack` times this factor.
 const CLEAR: f64 = 8.0;
 
 /// Compares a normal at a corner with the sides that leave the corner. This decides most cases
-/// without the faces: the normal is rejected if a side rises along it, and admitted if all sides
-/// sink.
+/// without the faces: the normal is rejected if a side rises along it (has a positive component),
+/// and mostly admitted if all sides sink (have negative components).
 pub(in crate::shape) struct CornerEdges<'a, N: Real, const D: usize> {
     normal: &'a Vector<N, D>,
     /// Whether a side clearly rises along the normal.
@@ -82,7 +84,8 @@ impl<'a, N: Real, const D: usize> CornerEdges<'a, N, D> {
         self.has_perpendicular |= !is_clear;
     }
 
-    /// Returns whether a side rises, so that more sides cannot change the result.
+    /// Returns whether a side clearly rises along the normal, so that more sides cannot change the
+    /// result.
     pub(in crate::shape) const fn is_refused(&self) -> bool {
         self.has_rising
     }
@@ -113,8 +116,8 @@ pub(in crate::shape) struct Seam<N: Real, const D: usize> {
     own: Vector<N, D>,
     /// The component of the normal along the queried face or segment.
     tilt: Vector<N, D>,
-    /// A piece lies on the side to which the normal tilts if a direction into it rises along `tilt`
-    /// by more than `margin`.
+    /// A piece lies on the side to which the normal tilts if a unit direction into it has a
+    /// component along `tilt` of more than `margin`.
     margin: N,
     /// Whether the normal is a normal of the queried face or segment, and all pieces added so far
     /// are coplanar with that face or segment, within `FLAT_SINE`.
@@ -122,11 +125,12 @@ pub(in crate::shape) struct Seam<N: Real, const D: usize> {
     /// Whether a coplanar piece lies on the side to which the normal tilts, so that the seam is not
     /// a rim there.
     is_hemmed: bool,
-    /// Whether no direction into a piece rises along the normal.
+    /// Whether every direction into a piece has a component of at most zero along the normal.
     is_in_cone: bool,
     /// The component along the normal of the highest piece, the absolute cosine between its front
-    /// and the normal, and whether its front is up. The highest piece at the seam is the first one
-    /// met when coming from far along the normal; of two equally high pieces, the flatter.
+    /// and the normal, and whether the scalar product of front and normal is at least zero. The
+    /// highest piece at the seam is the first one met when coming from far along the normal; of two
+    /// equally high pieces, the flatter.
     highest: N,
     flatness: N,
     is_front: bool,
@@ -198,7 +202,8 @@ impl<N: Real, const D: usize> Seam<N, D> {
         self.is_hemmed |= self.is_flat && rise(&self.tilt) > self.margin;
         let is_same = |a: N, b: N| (a - b).abs() <= slack();
         if is_same(own, self.highest) && is_same(flatness, self.flatness) {
-            // A piece that was added twice has its front up if the front is up in either addition.
+            // For a piece that was added twice, one addition with the front towards the normal
+            // suffices.
             self.is_front |= front >= N::ZERO;
         } else if own > self.highest || (own == self.highest && flatness > self.flatness) {
             (self.highest, self.flatness) = (own, flatness);

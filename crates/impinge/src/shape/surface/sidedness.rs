@@ -114,7 +114,8 @@ impl<'a, N: Real> KnownSegment<'a, N> {
         Some(joined)
     }
 
-    /// Applies the rule of [`Seam`] to a normal at an end where the segments `joined` meet.
+    /// Returns whether the rule of [`Seam`] admits a normal at an end where the segments `joined`
+    /// meet.
     fn seam_admits(&self, sidedness: Sidedness, joined: &Joined<N>, normal: &Vector<N, 2>) -> bool {
         let own = self.along.unwrap_or_else(Vector::<N, 2>::zeros);
         let mut seam = Seam::of_segments(own, normal);

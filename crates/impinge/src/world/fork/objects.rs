@@ -6,19 +6,21 @@ use crate::world::bodies::BodyMotion;
 use crate::world::objects::Slot;
 use crate::world::{CollisionObject, CollisionObjects};
 
-/// A change of the objects, which can be undone.
+/// A change of the objects, by which a rewind undoes it.
 #[derive(Clone, Copy)]
 pub(in crate::world) enum ObjectNote<N: Space<D>, const D: usize> {
     Added(CollisionObjectHandle),
-    /// An object before its removal, with a [`KeptObject`].
+    /// The removal of an object. The journal also has the removed object, as a [`KeptObject`].
     Removed,
-    /// An object before its first change since a mark, other than a move, with a [`KeptObject`].
+    /// The first change of an object since a mark, other than a move. The journal also has the
+    /// object before the change, as a [`KeptObject`].
     Changed,
     /// Handle index, pose and state of an object before its first move since a mark.
     Moved(u32, BodyMotion<N, D>),
 }
 
-/// A copy of an object, with its skin and prediction, which the world stores elsewhere.
+/// A copy of an object, with its skin and its predicted pose, which the world stores in the list of
+/// changes.
 pub(in crate::world) struct KeptObject<N: Space<D>, const D: usize, T> {
     object: CollisionObject<N, D, T>,
     skin: N,
@@ -26,7 +28,7 @@ pub(in crate::world) struct KeptObject<N: Space<D>, const D: usize, T> {
 }
 
 impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
-    /// Sets a mark; see [`Journal`](crate::journal::Journal).
+    /// Sets a mark for a later [`Self::rewind`]; see [`Journal`](crate::journal::Journal).
     pub(super) fn mark(&mut self, number: u64)
     where
         T: Clone,
@@ -37,7 +39,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.table.mark(number);
     }
 
-    /// Drops the marks with smaller numbers.
+    /// Drops the marks whose numbers are less than `number`.
     pub(super) fn forget_before(&mut self, number: u64) {
         self.journal.forget_before(number);
         self.table.forget_before(number);
@@ -98,7 +100,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         object
     }
 
-    /// Records the object at index `place` of the records before it changes, if there are marks.
+    /// Records the object at index `place` in `records` before its first change since the latest
+    /// mark. Does nothing if there are no marks.
     #[inline]
     pub(in crate::world) fn note(&mut self, place: usize) {
         if self.journal.is_on() {
@@ -115,8 +118,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }
     }
 
-    /// Records the motion of the object at index `place` of the records before it moves, if there
-    /// are marks.
+    /// Records pose and state of the object at index `place` in `records` before its first move
+    /// since the latest mark. Does nothing if there are no marks.
     #[inline]
     pub(in crate::world) fn note_motion(&mut self, place: usize) {
         if self.journal.is_on()
@@ -127,8 +130,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }
     }
 
-    /// Records the motion of the objects that changed before a mark, which the next update
-    /// processes. All other objects that it processes are recorded when they change.
+    /// Records pose and state of the objects in the list of changes, because the next update alters
+    /// their state. Objects that enter the list later are recorded when they change.
     fn note_waiting(&mut self) {
         for index in self.changes.waiting().collect::<Vec<_>>() {
             self.note_motion(self.slots[index as usize].record as usize);
@@ -142,7 +145,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }
     }
 
-    /// Returns a copy of the object at index `place` of the records; `None` if there are no marks.
+    /// Returns a copy of the object at index `place` in `records`; `None` if there are no marks or
+    /// no object has this index.
     fn kept(&self, place: usize) -> Option<KeptObject<N, D, T>> {
         let cloned = self.cloned.filter(|_| self.journal.is_on())?;
         let object = self.records.get(place)?;

@@ -1,19 +1,19 @@
-//! Rewinds a world to a mark in its history.
+//! Rewinding a world to a mark: an earlier state of the world that the user has marked.
 //!
 //! While there are marks, each part records its state before it changes
-//! ([`Journal`](crate::journal::Journal)). Small state is copied as a whole with the mark
-//! ([`WorldHead`]).
+//! ([`Journal`](crate::journal::Journal)). State that takes little memory is copied as a whole with
+//! the mark ([`WorldHead`]).
 //!
-//! | state | who notes | how it comes back |
+//! | state | recorded by | restored by |
 //! |---|---|---|
-//! | objects, with data, skins and predictions | `body_mut`, `body_mut_to_move`, `get_mut`, `insert`, `remove` and `flush` of `CollisionObjects` | record by record |
-//! | rows of objects with pairs | `set`, `set_position`, `acquire`, `release` and `set_skin` of `ObjectTable` | they are written again |
-//! | boxes, proxies and their pairs | `apply_waiting` and `remove` of `PairFinder`; `PairTable`; `DBVTBroadPhase` | boxes are set in the trees, whose order affects time alone |
-//! | contacts and proximities | `Group`; before an update `PairGroups::note` and `note_due` | to their former positions, since `contact_views` reads in that order |
+//! | objects, with data, skins and predictions | `body_mut`, `body_mut_to_move`, `get_mut`, `insert`, `remove` and `flush` of `CollisionObjects` | replacing each record |
+//! | rows of objects with pairs | `set`, `set_position`, `acquire`, `release` and `set_skin` of `ObjectTable` | writing the rows again |
+//! | boxes, proxies and their pairs | `apply_waiting` and `remove` of `PairFinder`; `PairTable`; `DBVTBroadPhase` | setting the boxes in the trees, whose order affects time alone |
+//! | contacts and proximities | `Group`; before an update `PairGroups::note` and `note_due` | writing each pair to its row at the mark, since `contact_views` reads in the order of the rows |
 //!
 //! The order of partners in a `PairTable` is not restored, so no result may depend on it.
-//! `Run::play_again` of the tests plays every golden scene and rewinds it after every tenth step;
-//! `world_model/forks.rs` tests random operations.
+//! `Run::play_again` of the tests simulates every golden scene and rewinds it after every tenth
+//! step; `world_model/forks.rs` tests random operations.
 
 use std::collections::VecDeque;
 
@@ -25,7 +25,7 @@ use crate::world::filter::Filters;
 use crate::world::removed::RemovedObjects;
 use crate::world::{CollisionWorld, WorldBroadPhase, WorldError, WorldsNarrowPhase};
 
-/// Number of marks that a world keeps unless the user sets another.
+/// Number of marks that a world keeps unless the user sets another number.
 const DEFAULT_MARKS: usize = 8;
 
 /// A state in the history of a world, to which the world can return: see [`CollisionWorld::mark`].
@@ -49,7 +49,8 @@ pub struct WorldMark {
     number: u64,
 }
 
-/// State that a mark copies as a whole.
+/// The state of a world that a mark copies as a whole: events, filters, removed objects, custom
+/// phases, and the phases that the next update will install.
 pub(in crate::world) struct WorldHead<N: Space<D>, const D: usize, T> {
     number: u64,
     events: Events,
@@ -57,7 +58,8 @@ pub(in crate::world) struct WorldHead<N: Space<D>, const D: usize, T> {
     keeps_events: bool,
     removed: RemovedObjects<N, D, T>,
     filters: Filters<N, D, T>,
-    /// The present phases, unless they are the library's own, which have journals.
+    /// The present broad phase if it is custom; `None` for the library's own, which has a journal.
+    /// `narrow_phase` corresponds.
     broad_phase: Option<Box<WorldBroadPhase<N, D>>>,
     narrow_phase: Option<Box<dyn WorldsNarrowPhase<N, D, T>>>,
     next_broad_phase: Option<Box<WorldBroadPhase<N, D>>>,
@@ -80,7 +82,7 @@ impl<N: Space<D>, const D: usize, T> History<N, D, T> {
         Self { name: None, next: 0, most: DEFAULT_MARKS, heads: VecDeque::new() }
     }
 
-    /// Creates a history without marks that keeps at most `most`.
+    /// Creates a history without marks that keeps at most `most` marks.
     #[cfg(feature = "serde")]
     pub(in crate::world) fn for_marks(most: usize) -> Self {
         Self { most, ..Self::new() }
@@ -98,7 +100,7 @@ impl<N: Space<D>, const D: usize, T> History<N, D, T> {
     }
 }
 
-/// Marks and rewinding.
+/// Marks, and the return to the state of a mark.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Marks the present state, so that [`Self::rewind`] can restore it: for example before a step
     /// with guessed inputs, in a game over a network.
@@ -108,10 +110,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// marks.
     ///
     /// While there are marks, the world records old state before each change: each object and each
-    /// pair once between two marks. A mark itself costs 0.4 to 16 µs: a clone of the events and, if
-    /// the world has custom phases, of these. With 100 of 10 000 objects moving and a mark before
-    /// each update, a step takes 7 % longer in a dense pile, 18 to 21 % where some hundred pairs are
-    /// computed, and 11 to 15 % where there is nothing to compute (9 µs become 10.5 µs).
+    /// pair once between two marks. A mark itself costs 0.4 to 16 µs: a clone of the events, of the
+    /// pending changes and filters, and of custom phases if the world has any. With 100 of 10 000
+    /// objects moving and a mark before each update, a step takes 7 % longer in a dense pile, 18 to
+    /// 21 % where some hundred pairs are computed, and 11 to 15 % where there is nothing to compute
+    /// (9 µs become 10.5 µs).
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;
@@ -165,11 +168,12 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.drop_old_marks();
     }
 
-    /// Restores the state of a mark: objects with their data, shapes, groups, query types, pairs,
-    /// contacts with their ids, events, filters, and the changes that wait for the next update. The
-    /// same calls as before then give the same bits, including handles of added objects. So a
-    /// handle that was issued after the mark now refers to another object, or to none. All queries,
-    /// pairs and contacts have the results that they had at the mark, in the same order.
+    /// Restores the state that the world had at the mark: objects with their data, shapes, groups,
+    /// query types, pairs, contacts with their ids, events, filters, and the changes that wait for
+    /// the next update. The same calls as before then give the same bits, including handles of
+    /// added objects. So a handle that was issued after the mark refers to no object until the same
+    /// handle is issued again, possibly for another object. All queries, pairs and contacts have
+    /// the results that they had at the mark, in the same order.
     ///
     /// The mark stays, so that the world can return to it again; later marks end. The cost is
     /// proportional to the changes since the mark: undoing 8 updates takes as long as two to five

@@ -1,4 +1,4 @@
-//! Filters that select the objects of a query.
+//! Filters that select the objects that a query considers.
 
 use core::fmt;
 

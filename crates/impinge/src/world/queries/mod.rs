@@ -70,7 +70,7 @@ impl<N: Space<D>, const D: usize, T> fmt::Debug for NearObject<'_, N, D, T> {
     }
 }
 
-/// Functions shared by all queries.
+/// Functions by which queries find the objects to test.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns the objects that the filter allows and whose boxes have a key ([`WorldProbe`]) of at
     /// most `limit`, each once, in order of their handles. A few objects with a larger key may be

@@ -1,7 +1,7 @@
 //! The best results of a query that ranks objects by a key.
 //!
 //! Results are ordered by (key, handle), whatever the order in which objects are proposed. A box is
-//! skipped only if its key is a proof that its object has no result among the best.
+//! skipped only if its key proves that its object has no result among the best.
 
 use core::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -29,7 +29,7 @@ pub(super) struct Ranked<N: Real, A> {
 
 /// The best results so far, which limit the keys of further results.
 pub(super) trait Rank<N: Real, A> {
-    /// Returns the largest key that a further result among the best can have.
+    /// Returns the largest key with which a further result can still be among the best.
     fn limit(&self) -> N;
 
     /// Keeps the result if it is among the best. Drops a result with a NaN key.
@@ -38,8 +38,8 @@ pub(super) trait Rank<N: Real, A> {
     /// Returns the largest key of a box whose object may still have a result among the best.
     ///
     /// Keys of boxes are quotients, or square roots of sums, with errors of a few units in the last
-    /// place. The error is larger where squares underflow, so the limit is never less than a small
-    /// bound.
+    /// place. Squares of lengths below `√(MIN_POSITIVE / EPSILON)` lose digits to underflow, so the
+    /// limit is never less than this length.
     fn limit_of_boxes(&self) -> N {
         let limit = self.limit();
         let least = (N::MIN_POSITIVE / N::EPSILON).sqrt();

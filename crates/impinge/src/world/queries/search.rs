@@ -162,8 +162,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns the object of a proposal of the broad phase; `None` if the object does not exist or
     /// is dirty.
     ///
-    /// Usually the uid of the proxy identifies the object, so that the data of the proxy need not
-    /// be loaded: a uid that belongs to a present object identifies that object.
+    /// Usually the object is found by the uid of the proxy, without loading the proxy's data: no
+    /// two present objects have proxies with the same uid.
     #[inline]
     fn clean_proposal(
         &self,

@@ -48,7 +48,7 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         )
     }
 
-    /// Returns `true` if the object contains a point.
+    /// Returns `true` if the object contains a point, boundary included.
     pub(crate) fn holds(&self, point: &Point<N, D>) -> bool {
         let local = N::pose(&self.isometry).inverse_point(point);
         self.ask(

@@ -85,7 +85,7 @@ pub struct SavedWorld<N: Real, const D: usize, T> {
     record: Option<WorldRecord<N, T>>,
 }
 
-/// The first element of the data. It is the same in all versions of the format.
+/// The first element of the data. It has the same fields in all versions of the format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Header {
     version: u32,
@@ -169,8 +169,9 @@ impl Header {
     }
 }
 
-/// Deserializes and restores a world that needs no [`Registry`]. Errors of the data become errors
-/// of the format; [`SavedWorld`] has typed errors.
+/// Deserializes and restores a world that needs no [`Registry`]. A [`RestoreError`] becomes an
+/// error of the deserializer, which has only its text; [`SavedWorld::restore`] returns the typed
+/// error.
 impl<'de, N: Space<D>, const D: usize, T: Deserialize<'de>> Deserialize<'de>
     for CollisionWorld<N, D, T>
 {

@@ -291,7 +291,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
 /// A placeholder for the proxy of an object, until the broad phase is restored.
 const NOT_YET: ProxyHandle = ProxyHandle::new(u32::MAX, u16::MAX);
 
-/// Returns the record of the present properties of an object.
+/// Returns the record of an object's present shape, position, query type and skin.
 fn row<N: Space<D>, const D: usize>(
     body: &WorldBody<N, D>,
     skin: N,
@@ -301,7 +301,8 @@ fn row<N: Space<D>, const D: usize>(
     Ok(RowRecord::of::<D>(shape, &body.isometry, body.query.get(), skin))
 }
 
-/// Returns the record of an object without its prediction, its changes and its row.
+/// Returns the record of an object with `row` as its present properties, without prediction,
+/// changes and table row.
 fn described<N: Space<D>, const D: usize, T>(
     object: &CollisionObject<N, D, T>,
     row: RowRecord<N>,
@@ -320,7 +321,8 @@ fn described<N: Space<D>, const D: usize, T>(
 }
 
 impl<N: Real, T> ObjectRecord<N, T> {
-    /// Restores the object, without its prediction, changes and row. Returns it with its skin.
+    /// Restores the object, without its prediction, changes and table row. Returns the object and
+    /// its skin.
     fn restore<const D: usize>(
         self,
         handle: CollisionObjectHandle,
@@ -355,7 +357,8 @@ impl<N: Space<D>, const D: usize, T> RemovedObjects<N, D, T> {
         self.objects.values().map(record).collect()
     }
 
-    /// Restores removed objects, with handles of the table whose first generation is `first`.
+    /// Restores the removed objects whose handles are in events, with handles of the table whose
+    /// first generation is `first`.
     pub(super) fn restore(
         &mut self,
         records: Vec<RemovedRecord<N, T>>,

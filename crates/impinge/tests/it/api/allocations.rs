@@ -1,4 +1,5 @@
-//! Tests that a step without new pairs or objects allocates no memory.
+//! Tests that a step without new pairs or objects allocates no memory, once all buffers have grown
+//! to their final size.
 
 use impinge::dim2::shape::ConvexPolygon;
 use impinge::math::na::{Translation2, Translation3, UnitComplex, UnitQuaternion};
@@ -94,7 +95,8 @@ impl<N: Stage<D>, const D: usize> Grid<N, D> {
         Self { world, handles, step: 0 }
     }
 
-    /// Plays one period and returns the number of events and of contacts.
+    /// Simulates one period. Returns the number of events, and the sum of the contact points of all
+    /// steps.
     fn play(&mut self) -> (usize, usize) {
         let (mut events, mut contacts) = (0, 0);
         for _ in 0..PERIOD {
@@ -136,7 +138,8 @@ fn nor_where_contacts_are_kept() {
     takes_nothing::<f64, 3>(DefaultNarrowPhase::new().reusing(0.05));
 }
 
-/// Asserts that a solid that slides to and fro over a surface with hills allocates no memory.
+/// Asserts that updates allocate no memory while a solid slides to and fro over a surface with
+/// hills.
 fn slides_without_memory<const D: usize>(ground: ShapeHandle<f32, D>, solid: ShapeHandle<f32, D>)
 where
     f32: Stage<D>,

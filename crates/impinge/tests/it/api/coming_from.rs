@@ -1,5 +1,6 @@
-//! Tests the page for users of other libraries: every name in its column for impinge is used below,
-//! so the column compiles. Also tests that the programs of the two READMEs are equal.
+//! Tests `guide/coming-from.md`: asserts that each name in the impinge column of its tables occurs
+//! in the code of this file, so that the name exists. Also asserts that the two READMEs have equal
+//! programs.
 
 use impinge::dim2;
 use impinge::dim3;

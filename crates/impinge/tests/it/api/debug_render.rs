@@ -239,8 +239,8 @@ fn ids_follow_from_the_mesh() {
     assert_ne!(ShapeMesh::<f32, 3>::of(&Ball::new(0.5), &fine).id, ids[0]);
 }
 
-/// Returns a world of shapes that overlap their neighbours, above a half-space, with a sensor
-/// beside the first one.
+/// Returns a world of a half-space and five bounded shapes above it. Three overlap each other in a
+/// row; a point and a box to the left of the row are sensors.
 fn stage<N: Space<D>, const D: usize>() -> CollisionWorld<N, D, ()> {
     let mut world = CollisionWorld::new(N::lit(0.02));
     let contacts = GeometricQueryType::Contacts(N::ZERO, N::ZERO);
@@ -262,8 +262,8 @@ fn stage<N: Space<D>, const D: usize>() -> CollisionWorld<N, D, ()> {
     world
 }
 
-/// Returns all lines drawn for a world, each in a colour whose red component is the uid of the
-/// object.
+/// Draws a world twice, asserts that both drawings are equal, and returns the lines. The lines of
+/// an object have the object's uid as the red component of their colour.
 fn picture<N: Space<D>, const D: usize>(
     world: &CollisionWorld<N, D, ()>,
     options: DebugOptions<N>,

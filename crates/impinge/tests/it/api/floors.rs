@@ -109,7 +109,8 @@ fn rules_of_the_house() {
             let forbidden = asks_dimension.iter().any(|words| line.contains(words))
                 || line.contains(".unwrap()")
                 || (line.contains("nalgebra") && source.module != "math")
-                // Kernels compiled for the fallback of `dispatch` take very long to compile.
+                // `dispatch` also compiles each kernel for its fallback without SIMD, which takes
+                // very long.
                 || line.contains("fearless_simd::dispatch")
                 || (line.contains("fearless_simd")
                     && !["math", "bvh"].contains(&source.module.as_str()));

@@ -114,7 +114,8 @@ fn features_that_are_not_there_are_named() {
     names(&["Face(4)"], || cuboid.feature_normal(FeatureId::Face(4)));
 }
 
-/// Names of private fields and parts, which users do not know.
+/// Names of private fields and parts, which debug output must not contain, because users do not
+/// know them.
 const INSIDES: [&str; 22] = [
     "state",
     "blocks",

@@ -124,8 +124,8 @@ macro_rules! programs {
                 assert_eq!(around.maxs().y, N::lit(4.0), "its box");
             }
 
-            /// Query types made from named fields equal those made by position, and cause the same
-            /// events.
+            /// Asserts that query types made from named fields equal those made by position, and
+            /// cause the same events.
             fn query_types<N: Real>() {
                 let contacts = ContactQuery::new(N::HALF).with_angular_prediction(N::ONE);
                 let by_place = GeometricQueryType::Contacts(N::HALF, N::ONE);
@@ -160,7 +160,8 @@ macro_rules! programs {
                 );
             }
 
-            /// Each alias of a query gives the result of the method that it is an alias for.
+            /// Asserts that each alias of a query gives the same result as the method that it is an
+            /// alias for.
             fn aliases<N: Real>() {
                 let mut world = CollisionWorld::new(N::lit(0.02));
                 let ball = ShapeHandle::new(Ball::new(N::ONE));
@@ -333,12 +334,13 @@ macro_rules! programs {
 programs!(plane, dim2, 2);
 programs!(space, dim3, 3);
 
-/// Passes vectors and poses of glam into a world and out of it.
+/// Tests the conversions between types of glam and of the library.
 #[cfg(feature = "glam")]
 mod glam_conversions {
     use glam::{DQuat, DVec3, Mat4, Quat, Vec2, Vec3};
 
-    /// A program with glam vectors places a ball on a box in 3D.
+    /// Places a ball on a box in 3D with vectors and rotations of glam. Asserts that the contact
+    /// and the pose come back as the same glam values.
     #[test]
     fn in_space() {
         use impinge::dim3::prelude::*;

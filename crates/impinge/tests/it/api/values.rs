@@ -63,7 +63,7 @@ fn a_world_is_what_its_data_is() {
     sent::<CollisionWorld<f32, std::cell::Cell<u32>>>();
 }
 
-/// Returns a world of two balls with the same centre.
+/// Returns a world of two balls with the same centre, after its first update.
 fn two<N: Real, T: Clone>(data: &T) -> CollisionWorld<N, T> {
     let mut world = CollisionWorld::new(N::lit(0.02));
     let shape = ShapeHandle::new(Ball::new(N::HALF));
@@ -107,8 +107,8 @@ fn points_of_a_tilted_box(angle: f64) -> usize {
     count(&world)
 }
 
-/// A larger angular prediction never gives fewer points, even beyond a right angle, where its sine
-/// decreases or is negative.
+/// Asserts that a larger angular prediction never gives fewer points, even beyond a right angle,
+/// where its sine decreases or is negative.
 #[test]
 fn angular_predictions_beyond_a_right_angle() {
     assert_eq!(points_of_a_tilted_box(0.0), 1, "the lower corner");

@@ -48,8 +48,8 @@ fn each_method(call: impl Fn(&str, &dyn Fn(&Control<'_>) -> Result<(), BatchErro
     call("cast", &|control| rays.cast(control, HitColumns::default()));
 }
 
-/// Runs a batch whose callback cancels it in call number `call`. Returns the result, and the
-/// progress reported until then.
+/// Runs a batch whose callback cancels it in call number `call`, counted from 1; `usize::MAX` never
+/// cancels. Returns the result, and the progress reported until then.
 fn cancelled_at(
     call: usize,
     run: &dyn Fn(&Control<'_>) -> Result<(), BatchError>,

@@ -1,4 +1,4 @@
-//! Compares the minimum over a batch with the minimum over single calls.
+//! Compares the nearest pair of a batch and its distance with the least distance of single calls.
 
 use impinge::batch::{Control, OnePose, PairBatch, Shapes, Side};
 use impinge::math::{AbstractRotation, Pose, Space, Vector};
@@ -25,8 +25,8 @@ fn least<N: Space<D>, R: AbstractRotation<N, D> + Sync, const D: usize>(
     least
 }
 
-/// Keeps the pairs that are more than 0.5 apart, and repeats them, so that each distance occurs
-/// twice and the index decides.
+/// Keeps the pairs that are more than 0.5 apart, and repeats them in reverse order. So each
+/// distance occurs twice, and the lower index must win.
 fn apart<N: Space<D>, R: AbstractRotation<N, D> + Copy + Sync, const D: usize>(
     scene: Scene<N, R, D>,
 ) -> Scene<N, R, D> {

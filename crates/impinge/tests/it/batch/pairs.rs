@@ -1,4 +1,4 @@
-//! Compares each query of pairs with the single call.
+//! Compares the results of each batch query of pairs with those of single calls.
 
 use impinge::batch::{
     ClosestColumns, ContactColumns, Control, ImpactColumns, NO_FEATURE, WitnessColumns,
@@ -15,8 +15,8 @@ use super::scene::{Scene, assert_number, assert_point, on_threads, scene2, scene
 /// Limits at which some pairs of a scene have a result and others have none.
 const LIMITS: [f64; 4] = [0.0, 0.5, f64::INFINITY, -0.25];
 
-/// Calls a generic function with scenes of both dimensions and scalars, near the origin and 1e6
-/// away from it.
+/// Calls a generic function with scenes of both dimensions and scalars near the origin, and with
+/// `f64` scenes 1e6 away from it.
 macro_rules! everywhere {
     ($check:ident) => {
         $check(&scene2::<f32>(0.0));

@@ -1,4 +1,4 @@
-//! Compares queries of points with single calls.
+//! Compares the results of batches of point queries with those of single calls.
 
 use impinge::batch::{Control, NO_FEATURE, OnePose, PointBatch, ProjectionColumns, Shapes, Side};
 use impinge::math::{AbstractRotation, Isometry, Point, Space};

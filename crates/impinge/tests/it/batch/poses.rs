@@ -83,7 +83,7 @@ fn forms_of_poses_and_arrangements_of_shapes() {
     check(scene3::<f64>(1e6));
 }
 
-/// A single shape or pose gives the same bits as a list of copies of it.
+/// Asserts that a single shape or pose gives the same bits as a list of copies of it.
 fn ones<N: Space<D>, R: AbstractRotation<N, D> + Copy + Sync, const D: usize>(
     scene: &Scene<N, R, D>,
 ) {
@@ -115,7 +115,8 @@ fn one_stands_for_as_many_as_are_needed() {
     ones(&scene3::<f32>(0.0));
 }
 
-/// An element whose pose has a number that is not finite has no result, for a ball and for a box.
+/// Asserts for a ball and a box that an element of a batch has no result if a number of its pose is
+/// not finite.
 #[test]
 fn broken_poses_have_no_answers() {
     let shapes: [ShapeHandle<f32, 3>; 2] = [

@@ -48,7 +48,8 @@ fn sides_of_different_lengths_are_no_batch() {
     assert_eq!(refused, Some(length("directions", 5, 3)), "directions");
 }
 
-/// Columns that are too short are refused before anything is computed.
+/// Asserts for each method that output columns shorter than the batch are refused, with an error
+/// that has the column's name and both lengths.
 #[test]
 fn columns_need_a_slot_for_each() {
     let (ball, poses): (_, Poses) = (Ball::new(1.0), vec![Pose::identity(); 3]);

@@ -8,7 +8,7 @@ use impinge::shape::ShapeHandle;
 use crate::support::query_support::random::Random;
 use crate::support::shape_table;
 
-/// Pairs of shapes taken from a list, with poses.
+/// A batch of pairs: indices of their shapes in a list, and their poses.
 pub(super) struct Scene<N: Real, R, const D: usize> {
     pub(super) shapes: Vec<ShapeHandle<N, D>>,
     pub(super) picks: [Vec<u32>; 2],

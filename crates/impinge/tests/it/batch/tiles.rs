@@ -11,7 +11,7 @@ use impinge::shape::{Ball, Cuboid, Plane, ShapeHandle};
 
 use crate::support::query_support::random::Random;
 
-/// Placed shapes with ids, which are in no order.
+/// Placed shapes, each with an id; the ids are distinct, but not sorted.
 struct Heap<N: Space<D>, const D: usize> {
     shapes: Vec<ShapeHandle<N, D>>,
     picks: Vec<u32>,
@@ -40,8 +40,8 @@ impl<N: Space<D>, const D: usize> Heap<N, D> {
         self.ids.push(count.wrapping_mul(0x9E37_79B9_7F4A_7C15));
     }
 
-    /// Creates balls and boxes in three clusters, each 10 times as wide as the one before with as
-    /// many objects. If `odd`, also adds four balls with equal centres, a huge object, half-spaces,
+    /// Creates balls and boxes in three clusters of equally many objects and of the half widths 7,
+    /// 70 and 700. If `odd`, also adds four balls with equal centres, a huge object, half-spaces,
     /// and a ball at NaN.
     fn uneven(count: usize, odd: bool) -> Self {
         let (mut heap, mut random) = (Self::new(), Random(5, false));

@@ -99,8 +99,8 @@ fn pairs_are_those_that_single_calls_find() {
     check(&scene3::<f64>(1e6), [97, 13]);
 }
 
-/// Balls of radius 1 on a grid of spacing 3: neighbours are exactly 1 apart, and the maximum
-/// distance is inclusive.
+/// Tests balls of radius 1 on a grid of spacing 3, whose neighbours are exactly 1 apart. Asserts
+/// that the maximum distance is inclusive.
 #[test]
 fn touching_at_exactly_the_distance_counts() {
     for away in [0.0, 1048576.0] {

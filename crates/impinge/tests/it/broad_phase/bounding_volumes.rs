@@ -39,7 +39,7 @@ enum Piece<const D: usize> {
 }
 
 impl<const D: usize> Piece<D> {
-    /// Returns the extent along a direction.
+    /// Returns the largest scalar product of a point of the piece with a direction.
     fn reach(&self, direction: &Exact<D>) -> Quad {
         match self {
             Self::Ball(center, radius) => {

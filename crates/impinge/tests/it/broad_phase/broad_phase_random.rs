@@ -5,8 +5,8 @@ use crate::support::broad_phase_model;
 use broad_phase_model::{Plan, Reached, run};
 use impinge::math::Space;
 
-/// Compares the broad phase with the model in random plans of several sizes, and asserts that
-/// enough happened. All coordinates lie on a grid, so that touching is common.
+/// Compares the broad phase with the model in random plans of several sizes. Asserts that enough
+/// pairs began, ended and were refused. All coordinates lie on a grid, so that touching is common.
 fn check<N: Space<D>, const D: usize>(size: u32) {
     let small = (0..6).map(|seed| Plan {
         seed,

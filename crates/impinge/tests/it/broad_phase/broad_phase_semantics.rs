@@ -15,7 +15,8 @@ fn yes<T>(_: &T, _: &T) -> bool {
     true
 }
 
-/// Updates the broad phase and returns the events.
+/// Updates the broad phase and returns the events: the data of both objects, and `true` if the pair
+/// started.
 fn events<N: Real, BV: BoundingVolume<N>>(
     broad_phase: &mut impl BroadPhase<N, BV, u32>,
     filter: impl Fn(&u32, &u32) -> bool,
@@ -233,8 +234,8 @@ fn a_filter_that_panics_is_asked_again() {
     broad_phase.validate().expect("sound");
 }
 
-/// A bar over a row of 5000 balls moves to and fro by half the row, so that 2500 pairs begin or end
-/// at once.
+/// Moves a bar over a row of 5000 balls to and fro by half the length of the row. Asserts that 2500
+/// pairs begin or end at once.
 #[test]
 fn an_object_with_five_thousand_pairs() {
     let mut broad_phase = DBVTBroadPhase::new(0.125);
@@ -269,8 +270,8 @@ fn an_object_with_five_thousand_pairs() {
     broad_phase.validate().expect("sound");
 }
 
-/// 20000 points in groups of ten along a line: all centres are equal on two axes, and ten are equal
-/// on the third. The work must grow only with the number of pairs found.
+/// Asserts the number of pairs of 20000 points in groups of ten along a line, and of 1500 points at
+/// one position. Work that is quadratic in the number of objects would make the test very slow.
 #[test]
 fn twenty_thousand_objects_at_one_point() {
     let mut broad_phase = DBVTBroadPhase::new(0.0);

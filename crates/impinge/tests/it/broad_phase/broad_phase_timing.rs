@@ -18,8 +18,8 @@ impl Random {
     }
 }
 
-/// Boxes of half extents 0.35 to 0.65, each with about three neighbours, that fly straight within a
-/// room.
+/// Boxes of half extents 0.35 to 0.65, each of which overlaps about three others. They move in
+/// straight lines and are reflected at the walls of a room of width `side`.
 struct Scene<N: Space<D>, const D: usize> {
     centers: Vec<Vector<f64, D>>,
     velocities: Vec<Vector<f64, D>>,
@@ -32,8 +32,8 @@ struct Scene<N: Space<D>, const D: usize> {
 impl<N: Space<D>, const D: usize> Scene<N, D> {
     fn new(count: u32, step: f64) -> Self {
         let mut random = Random(5);
-        // A box overlaps the boxes whose centres lie within 2^D times its volume. The side of the
-        // room is chosen so that these are three.
+        // A box overlaps another of its size if the centre of the other lies in a concentric box of
+        // 2^D times the volume. The side of the room is chosen so that on average three centres do.
         let per_neighbour = 2_f64.powi(i32::try_from(D).expect("2 or 3")) / 3.0;
         let side = (f64::from(count) * per_neighbour).powf(1.0 / if D > 2 { 3.0 } else { 2.0 });
         let mut scene = Self {

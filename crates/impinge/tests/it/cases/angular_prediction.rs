@@ -78,7 +78,8 @@ fn place2<N: Real>(random: &mut Random) -> Isometry2<N> {
 /// A pose, and the shape that it places.
 type Placed<N, const D: usize> = (<N as Space<D>>::Isometry, ShapeHandle<N, D>);
 
-/// Returns the number of contacts in a world of two shapes with these predictions.
+/// Returns the number of contact points of two shapes in a world; zero if they are no pair. Each
+/// has half of `prediction` as its linear prediction, and `angle` as its angular prediction.
 fn contacts_of<N: Space<D>, const D: usize>(
     pair: [&Placed<N, D>; 2],
     prediction: N,
@@ -92,8 +93,9 @@ fn contacts_of<N: Space<D>, const D: usize>(
     world.contact_pair(a, b).map_or(0, |pair| pair.num_contacts())
 }
 
-/// Tests many pairs of disjoint solids, with predictions of 1.02 and 0.98 times their distance. The
-/// larger prediction must give contacts and the smaller none.
+/// Tests many pairs of a solid and a surface that are more than 0.01 apart, with predictions of
+/// 1.02 and 0.98 times their distance. The larger prediction must give contacts and the smaller
+/// none.
 fn ask_all<N: Space<D>, const D: usize>(
     seed: u64,
     make: impl Fn(&mut Random) -> [Placed<N, D>; 2],

@@ -37,8 +37,8 @@ fn boxes_at_no_place_are_those_of_everything() {
     }
 }
 
-/// With this rotation, sums such as 3e38 - 3e38 - 3e38 overflow before they reach a representable
-/// number.
+/// Asserts that no box is inverted or NaN at a position near the limit of `f32`. With this
+/// rotation, sums such as 3e38 - 3e38 - 3e38 overflow before they reach a representable number.
 #[test]
 fn boxes_of_corners_at_the_end_of_all_numbers_are_boxes() {
     let far = Isometry::new(Vector::new(3e38, 3e38, 3e38), Vector::new(0.0, 1.0, 2.0));
@@ -48,7 +48,8 @@ fn boxes_of_corners_at_the_end_of_all_numbers_are_boxes() {
     }
 }
 
-/// The search for pairs of parts of two composites needs the boxes of parts at any pose.
+/// Asserts that two composites have no contacts, and no panic occurs, at poses that are not finite
+/// or overflow. The search for pairs of parts needs the boxes of parts at such poses, too.
 #[test]
 fn manifolds_of_composites_at_poses_beyond_all_numbers() {
     let mesh = TriMesh::new(corners().to_vec(), vec![[0, 1, 2]]);

@@ -1,5 +1,5 @@
 //! Found by fuzzing: a convex child of a compound must have the same contacts whether or not
-//! another child has a surface.
+//! another child is a mesh.
 
 use impinge::math::{Isometry, Isometry2, Isometry3, Point, Vector};
 use impinge::query::contact;
@@ -30,8 +30,8 @@ fn contacts_of_a_child_beside_a_mesh_in_the_plane() {
     }
 }
 
-/// The centre of the triangle lies above the centre of the bar, but the shortest way out of the bar
-/// points down.
+/// Tests a triangle whose centre lies above the centre of a bar, although the shortest translation
+/// out of the bar points down.
 #[test]
 fn contacts_away_from_the_middle_of_the_other() {
     let mesh = TriMesh::new(far_corners::<2>(), vec![[0, 1, 2]]);

@@ -5,7 +5,7 @@ use impinge::dim3::shape::{Ball, Cone, Shape};
 use impinge::query::{Proximity, contact, distance, proximity};
 
 /// Returns the signed distance between a cone and a ball of radius 1; `center` is in the frame of
-/// the cone.
+/// the cone. Asserts that contact, distance and proximity agree.
 fn of_ball(cone: &Cone<f64>, center: [f64; 3]) -> f64 {
     let (ball, here) = (Ball::new(1.0), Isometry::identity());
     let place = Isometry::translation(center[0], center[1], center[2]);

@@ -7,7 +7,7 @@ use impinge::query::{Proximity, contact, distance, proximity};
 const HERE: [f64; 2] = [4.875, 0.0];
 
 /// Returns the distance between a flat solid and a small solid that lies on the line of the flat
-/// solid, beyond its end.
+/// solid, beyond its end. Asserts that contact and proximity agree with the distance.
 fn beyond(flat: &dyn Shape<f64, 2>, solid: &dyn Shape<f64, 2>) -> f64 {
     let (origin, place) = (Isometry::identity(), Isometry::translation(HERE[0], HERE[1]));
     let found = distance(&origin, flat, &place, solid);
@@ -45,7 +45,8 @@ fn triangles_of_one_point_are_points() {
     assert_eq!(beyond(&triangle, &Segment::new(Point::new(-2.0, 0.0), o)), 2.875, "towards it");
 }
 
-/// Boxes with a half extent of zero have coinciding corners too.
+/// Asserts that boxes with a half extent of zero, which have coinciding corners too, end at these
+/// corners.
 #[test]
 fn flat_boxes_end_at_their_corners() {
     let flat = Cuboid::new(Vector::new(2.0, 0.0));

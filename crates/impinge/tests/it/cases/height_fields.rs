@@ -1,4 +1,4 @@
-//! Bugs of other libraries in height fields.
+//! Tests height fields with inputs that exposed bugs in other libraries.
 
 use impinge::math::na::Isometry3;
 use impinge::math::{Point, Real, Vector};

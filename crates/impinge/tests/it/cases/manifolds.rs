@@ -92,8 +92,8 @@ fn area(outline: &[[f64; 2]]) -> f64 {
     outline.windows(2).map(|side| turn(first, side[0], side[1])).sum::<f64>() / 2.0
 }
 
-/// Returns the intersection of two outlines (I. E. Sutherland and G. W. Hodgman, 1974), without
-/// coinciding corners.
+/// Returns the intersection of two outlines (I. E. Sutherland and G. W. Hodgman, 1974). Consecutive
+/// corners that coincide are merged; the last corner may still coincide with the first.
 fn overlap(one: &[[f64; 2]], other: &[[f64; 2]]) -> Outline {
     let mut rest = one.to_vec();
     for (at, &from) in other.iter().enumerate() {
@@ -116,8 +116,8 @@ fn overlap(one: &[[f64; 2]], other: &[[f64; 2]]) -> Outline {
     rest
 }
 
-/// Returns the largest area of four corners of an outline. With `given`, the four must include that
-/// corner.
+/// Returns the largest area of a quadrilateral with four corners of an outline; the area of the
+/// outline if it has fewer. With `given`, the four must include that corner.
 fn best_four(outline: &[[f64; 2]], given: Option<usize>) -> f64 {
     let count = outline.len();
     if count < 4 {
@@ -316,15 +316,15 @@ fn points_span_the_overlap<N: Space<3, Isometry = Isometry<N, UnitQuaternion<N>,
     }
 }
 
-/// The points span at least 90 % of the area of the best four corners. If a single corner is the
-/// deepest, the four must include it.
+/// Asserts that the points span at least 90 % of the area of the best four corners. If a single
+/// corner is the deepest, only choices of four that include it count.
 #[test]
 fn four_points_span_the_overlap_of_two_faces() {
     points_span_the_overlap::<f32>();
     points_span_the_overlap::<f64>();
 }
 
-/// In 2D the points are the two ends of the overlap interval of two sides.
+/// Asserts that in 2D the contact points are the two ends of the overlap interval of two sides.
 #[test]
 fn two_points_span_the_overlap_of_two_sides() {
     let random = &mut Random(8, false);

@@ -50,7 +50,7 @@ fn what_overlaps_a_sliver_touches_it() {
         for prediction in [0.0, 100.0] {
             let found = contact(&place, &*shape, &origin, &solid, prediction);
             let found = found.expect("overlapping shapes have a contact");
-            // The depth for the tetrahedron and the sliver alone.
+            // The depth of the tetrahedron in the sliver without the other triangles of the field.
             assert!((found.depth - 0.6468).abs() < 1e-3, "{found:?} within {prediction}");
         }
     }

@@ -9,8 +9,8 @@ use impinge::query::{ConstantVelocities, ImpactOptions, RigidMotion, nonlinear_t
 use query_support::corpus::{number, placed2, regression};
 use serde_json::Value;
 
-/// box2d#115: a sweep that only came near another body was reported as a hit, and a sweep that
-/// started after many turns did not end.
+/// Tests the case of box2d#115, where a sweep that only came near another body was reported as a
+/// hit, and a sweep that started after many turns did not end.
 fn sweep<N: Real>(case: &Value, tolerance: f64) {
     let (params, expected) = (&case["params"], &case["expected"]);
     let one = placed2::<N>(&case["shape1"], &case["pose1"]).expect("a box");

@@ -34,8 +34,8 @@ fn slider<N: Space<D>, const D: usize>(radius: f64) -> Checker<N, D> {
     checker
 }
 
-/// A body that touches an obstacle exactly is not free; a body that is a rounding error away is
-/// free.
+/// Asserts that a body that touches an obstacle exactly is not free, and that a body at a distance
+/// of one epsilon is free.
 fn touches<N: Space<D>, const D: usize>() {
     for radius in [0.5, 0.0] {
         let checker = slider::<N, D>(radius);

@@ -9,7 +9,7 @@ use super::robots::Robot;
 
 /// All pairs of one configuration with their distances, in ascending order of the pairs.
 pub(super) struct Brute<N> {
-    /// Whether the poses of all frames are finite.
+    /// Whether the poses of all frames are finite; otherwise the configuration has no result.
     pub(super) is_finite: bool,
     pairs: Vec<[u32; 2]>,
     distances: Vec<N>,
@@ -58,8 +58,9 @@ impl<N: Real> Brute<N> {
         found.filter(|_| self.is_finite).map_or(NO_PAIR, |index| self.pairs[index])
     }
 
-    /// Returns the least distance up to a limit, and the first pair at that distance: infinity and
-    /// [`NO_PAIR`] if there is none, NaN and [`NO_PAIR`] if a pose is not finite.
+    /// Returns the least distance that is at most `limit`, and the first pair at that distance.
+    /// Returns infinity and [`NO_PAIR`] if there is none, NaN and [`NO_PAIR`] if a pose is not
+    /// finite. A limit below zero counts as zero.
     pub(super) fn nearest(&self, limit: N) -> (N, [u32; 2]) {
         if !self.is_finite {
             return (N::lit(f64::NAN), NO_PAIR);

@@ -1,4 +1,5 @@
-//! Tests which inputs are refused, and with which error.
+//! Tests which trees, bodies, pairs, configurations and columns the checker refuses, and with which
+//! error.
 
 use impinge::batch::{BatchError, Control};
 use impinge::checker::{Body, Checker, CheckerError, Frame, FrameTree, Joint, Obstacle};

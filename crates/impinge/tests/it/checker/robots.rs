@@ -9,7 +9,8 @@ use impinge::shape::{Ball, ShapeHandle};
 use crate::support::query_support::random::Random;
 use crate::support::shape_table;
 
-/// A checker, the ignored pairs, and configurations row by row.
+/// A checker of a random robot, its ignored pairs of a body and an obstacle, and configurations row
+/// by row.
 pub(super) struct Robot<N: Real, const D: usize> {
     pub(super) checker: Checker<N, D>,
     pub(super) ignored: Vec<[u32; 2]>,

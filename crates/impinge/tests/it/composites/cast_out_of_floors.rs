@@ -54,7 +54,8 @@ fn leave<N: Space<3, Isometry = Isometry3<N>>>(floor: &dyn Shape<N, 3>, label: &
                 assert_eq!(hit.toi, N::ZERO, "{what}");
                 assert_eq!(hit.status, ImpactStatus::PenetratingAtStart, "{what}");
                 assert!(hit.normal.y > N::lit(1.0 - 1e-5), "{what}: {:?}", hit.normal);
-                // Clipping at an inner edge may omit the vertex beyond that edge.
+                // The distance between both points is the depth up to 1 %: clipping at an inner
+                // edge may omit the deepest vertex, which is beyond that edge.
                 let reach = (hit.world2 - hit.world1).norm().as_f64();
                 assert!((reach - depth).abs() < 0.01 * depth + 1e-5, "{what}: {reach} deep");
             }
@@ -120,7 +121,8 @@ fn solids_leave_lines() {
     check::<f64>();
 }
 
-/// A body that leaves the floor still hits the wall, even a wall that it touches at the start.
+/// Asserts that a body that leaves the floor still hits the wall, even a wall that it touches at
+/// the start.
 #[test]
 fn what_leaves_the_floor_meets_the_wall() {
     let p = |x: f64, y: f64| Point::<f64, 2>::new(x, y);
@@ -140,7 +142,8 @@ fn what_leaves_the_floor_meets_the_wall() {
     assert_eq!((hit.toi, hit.normal.x), (0.0, -1.0));
 }
 
-/// Solids cast in a world leave the floor without a hit, and hit it at time zero when cast into it.
+/// Asserts that solids cast in a world leave the floor without a hit, and hit it at time zero if
+/// they are cast into it.
 #[test]
 fn worlds_cast_out_of_floors() {
     let mut world = CollisionWorld::<f32, 3, ()>::new(0.02);

@@ -207,8 +207,8 @@ fn to_box(at: [f64; 3], low: &[f64; 3], high: &[f64; 3]) -> f64 {
     beyond.iter().map(|x| f64::max(*x, 0.0).powi(2)).sum::<f64>().sqrt()
 }
 
-/// Returns the signed distance from a point to the nearer of the surfaces of two bodies, of which
-/// the signed distances are given: negative if the point is in one of them.
+/// Combines the signed distances `a` and `b` of a point from two surfaces. The result has the
+/// smaller magnitude, and is negative if the point is in at least one of the bodies.
 fn nearer(a: f64, b: f64) -> f64 {
     let size = f64::min(a.abs(), b.abs());
     if a < 0.0 || b < 0.0 { -size } else { size }

@@ -69,8 +69,8 @@ impl<N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Two<'_, N, R, D> {
     }
 }
 
-/// Asserts that the part of the composite that a witness names has, on its own, the distance of the
-/// witness from the other shape.
+/// Asserts that the part with the witness's index `part1` has, without the other parts, the
+/// witness's distance from the other shape.
 fn check_parts<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     found: &Witness<N, D>,
     two: (&Scene<N, R, D>, &Isometry<N, R, D>),
@@ -208,8 +208,8 @@ fn against_half_spaces() {
     against_planes(&space);
 }
 
-/// Tests that a composite of one part, in the frame of that part, has the distance of the part up
-/// to rounding.
+/// Tests that a composite of one part, whose pose in the composite is the identity, has the
+/// distance of that part up to rounding.
 fn wrapped<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(maker: &Maker<N, R, D>) {
     for seed in 0..60 {
         let random = &mut Random(seed, false);

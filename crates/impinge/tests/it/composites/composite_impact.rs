@@ -1,4 +1,4 @@
-//! Compares the first impact of moving composites with the first impact of any two of their parts.
+//! Compares the impact of moving composites with the earliest impact of any two of their parts.
 //! Swapping the composites must give the same bits.
 
 use crate::support::composite_support;
@@ -30,7 +30,8 @@ fn hit<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     impact(&Moving::new(one.0, &one.1, one.2), &Moving::new(two.0, &two.1, two.2), options)
 }
 
-/// Returns the time of the first impact of any part with a solid, by a query of each part.
+/// Returns the earliest time of impact of any part with a solid, by a query of each part; infinity
+/// if no part has an impact.
 fn brute<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     scene: &Scene<N, R, D>,
     (m1, velocity): (&Isometry<N, R, D>, Vector<N, D>),
@@ -339,8 +340,9 @@ impl Shape<f64, 3> for Asked {
     }
 }
 
-/// A screw in its nut advances to the impact with a few searches over all parts, not with one
-/// search for each step of the touching parts.
+/// Asserts a bound for the impact of a screw in its nut: the requests for parts of a shape, divided
+/// by the number of parts of both shapes, are at most `most`. One search over all parts for each
+/// small step of the sliding flanks would exceed this.
 #[test]
 fn screws_are_looked_at_a_few_times() {
     let [screw, nut] =
@@ -359,9 +361,9 @@ fn screws_are_looked_at_a_few_times() {
     }
 }
 
-/// Asserts that the impact of two composites has the time, within 1/1000, of the first impact of
-/// any two parts, each advanced as a separate solid. All parts have the identity as their pose.
-/// Returns `true` if there is an impact.
+/// Asserts that the time of impact of two composites equals, within 1/1000, the earliest time of
+/// impact of any two parts, each advanced as a separate solid. All parts have the identity as their
+/// pose. Returns `true` if there is an impact.
 fn both_turn<N: Space<D>, const D: usize>(
     motions: &[ConstantVelocities<N, D>; 2],
     shapes: &[Pieces<N, D>; 2],

@@ -96,8 +96,8 @@ fn common_motion_changes_nothing() {
     }
 }
 
-/// A compound of meshes and solids has the results of a flat list of its parts, and reports the
-/// path to each part.
+/// Asserts that a nested compound of meshes and solids has the results of a flat list of its parts,
+/// and reports the path to each part.
 #[test]
 fn nested_is_as_flat() {
     let (mesh, _) = ball_mesh::<f64>(4);
@@ -152,8 +152,8 @@ fn nested_is_as_flat() {
         let hit =
             |shape: &dyn Shape<f64, 3>| impact(&Moving::still(&here, shape), &moving, &options);
         let hits = [hit(&outer), hit(&flat)];
-        // Whether there is a contact at the start depends on internal edges of the meshes, which
-        // the flat parts do not have.
+        // The contacts of a mesh at the start are filtered at its internal edges. `flat` is a plain
+        // list of parts that knows no internal edges, so an impact at time zero may differ.
         if !hits.iter().flatten().any(|hit| hit.status.is_at_start()) {
             assert_eq!(hits[0], hits[1], "impacts");
         }

@@ -26,9 +26,9 @@ fn dot<N: Real, const D: usize, const K: usize>(
     Point::from(sum)
 }
 
-/// Returns the point with given barycentric weights, in the frame of the part. Returns `None` for a
-/// part with a shape; asserts that its weights are defined if and only if the shape is a triangle
-/// or a segment.
+/// Returns the point with these barycentric weights, in the frame of the part. Returns `None` for a
+/// part that is a [`Shape`]; asserts that its weights are defined if and only if the shape is a
+/// triangle or a segment.
 fn weighed<N: Real, const D: usize>(
     solid: &PartSolid<'_, N, D>,
     barycentric: &Barycentric<N>,
@@ -64,7 +64,8 @@ fn check<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
         for shot in 0..20 {
             let mut local = Point::from(random.vector::<N, D>() * (scale * N::lit(6.0)));
             if shot % 4 == 0 {
-                // Moves the point onto a part.
+                // Moves the point onto the surface of the nearest part, to test points on
+                // boundaries.
                 local = scene.fast.project_local_point(&local).0.point;
             }
             let point = m.transform_point(&local);

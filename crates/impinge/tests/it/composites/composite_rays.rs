@@ -47,8 +47,8 @@ fn on_side<N: Real>(random: &mut Random, corners: &[Point<N, 3>; 3]) -> Point<N,
     a + (b - a) * share
 }
 
-/// Casts rays from within a closed surface, and back from outside through its centre, exactly at
-/// edges and corners. Asserts that the surface stops each ray from within and that rays from
+/// Casts rays at points of edges and at corners of closed surfaces: from within, and from outside
+/// through the centre. Asserts that the surface stops each ray from within and that rays from
 /// outside enter and leave; returns the number of rays.
 fn through_closed<N: Real>(world: f64) -> usize {
     let mut shots = 0;
@@ -100,7 +100,8 @@ fn grid<N: Real>() -> HeightField<N, 3> {
     )
 }
 
-/// Returns the field as a mesh, moved by `by`.
+/// Returns a mesh of the triangles of the field, translated by `by`; each triangle has its own
+/// vertices.
 fn meshed<N: Real>(field: &HeightField<N, 3>, by: &Vector<N, 3>) -> TriMesh<N, 3> {
     let (mut points, mut triangles) = (Vec::new(), Vec::new());
     for part in 0..field.num_parts() {
@@ -201,7 +202,8 @@ fn no_ray_slips_through_a_closed_line() {
     }
 }
 
-/// Returns the hits of all parts, each tested on its own.
+/// Returns the hits of all parts up to `max_time`, each part tested on its own, sorted by time and
+/// then by part.
 fn brute<N: Space<D>, const D: usize>(
     parts: &Pieces<N, D>,
     ray: &Ray<N, D>,

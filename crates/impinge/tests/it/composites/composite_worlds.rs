@@ -126,7 +126,8 @@ fn names_last_while_parts_and_features_do() {
     let mut stage = Stage::<f64, 3>::new();
     let floor = grid::<f64>(10, 1.0, [0.0; 3], Pattern::Slash, |_, _| 0.0);
     let floor = stage.add(at(0.0, 0.0, 0.0), ShapeHandle::new(floor));
-    // At this position all four corners stay within their triangles.
+    // From this position on, none of the four lower corners of the cube leaves its triangle of the
+    // floor.
     let cube = stage.add(at(0.35, 0.49, 0.12), cube(0.9));
     stage.world.set_position(cube, at(0.35, 0.89, 0.12));
     stage.update();

@@ -148,7 +148,8 @@ fn searches_of_nested_compounds_miss_nothing() {
     check_searches::<f64>(1e6);
 }
 
-/// If no child is a composite, a search finds exactly the children that a scan finds.
+/// Asserts that a search of a compound finds exactly the children that a scan of all children
+/// finds, if no child is a composite.
 #[test]
 fn searches_of_flat_compounds_find_what_looking_at_all_children_finds() {
     let mut random = Random::new(33);
@@ -224,8 +225,8 @@ fn unbounded_children_are_found_everywhere() {
     assert_eq!(compound.aabb(&Pose::identity()), Aabb::unbounded(), "placed");
 }
 
-/// The box of a placed compound is the union of its children's boxes at their placed poses, and not
-/// the box around a rotated box.
+/// Asserts that the box of a rotated compound is the union of the boxes of its rotated children,
+/// which is smaller than the box around its rotated local box.
 #[test]
 fn placed_boxes_are_tight() {
     let capsule = ShapeHandle::new(Capsule::<f64, 2>::new(2.0, 0.5));
@@ -286,8 +287,8 @@ fn cornered<N: Real, const D: usize>(random: &mut Poses) -> (ShapeHandle<N, D>, 
     }
 }
 
-/// Returns a compound with a rotated child, possibly nested, one corner of which is near the
-/// origin.
+/// Returns a compound of one rotated child, nested in `depth` further compounds, such that a corner
+/// of the child is at the origin up to rounding.
 fn with_corner_at_origin<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     random: &mut Poses,
     turn: fn(&mut Poses) -> R,
@@ -349,8 +350,8 @@ fn check_corners<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     assert!((600..2700).contains(&touching), "{touching} of 3000 touch");
 }
 
-/// Tests rotated children with a corner at the origin up to rounding, which is also a corner of the
-/// other solid.
+/// Asserts that all queries agree on touching for a rotated child and another solid that have a
+/// common corner, at the origin up to rounding.
 #[test]
 fn touching_a_turned_child_is_one_fact() {
     check_corners::<f32, _, 2>(quarter_or_any2);

@@ -1,5 +1,5 @@
 //! Tests that parts that are listed twice, or lie on other parts, do not change the depth of
-//! contacts: many meshes in use have duplicates.
+//! contacts. Meshes from modelling tools often have such duplicates.
 
 use crate::support::{query_support, slides};
 
@@ -104,7 +104,8 @@ fn the_rim_of_a_doubled_sheet_by_its_report() {
     assert!((found.normal.x - 0.969).abs() < 1e-3, "{found:?}");
 }
 
-/// If the mesh has a floor, too, the deepest contact is the contact at the rim.
+/// Asserts that the deepest contact is at the rim of the sheet, even if the same mesh also has a
+/// floor below it.
 #[test]
 fn the_rim_above_a_floor_is_touched() {
     let mut corners = SQUARE.map(|[x, _, z]| [x, 1.0, z]).to_vec();
@@ -232,8 +233,8 @@ fn triangles_without_area_are_met_where_they_stick_out() {
     sticking_out::<f64>();
 }
 
-/// Filled meshes in 2D whose triangles are listed twice have contacts of the same depth as a mesh
-/// that lists each triangle once.
+/// Asserts that filled meshes in 2D whose triangles are listed twice have contacts of the same
+/// depth as a mesh that lists each triangle once.
 #[test]
 fn filled_triangles_that_are_listed_twice_are_there_once() {
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(Point::<f64, 2>::from);

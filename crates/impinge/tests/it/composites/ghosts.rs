@@ -10,7 +10,8 @@ use impinge::shape::{
     HeightField, MeshError, Shape, ShapeHandle, TriMesh, Triangle,
 };
 
-/// Number of cells of a tile along each axis, and width of the tile.
+/// Number of cells of a tile along each axis. Cells have the width 1, so this is also the width of
+/// the tile.
 const CELLS: usize = 4;
 
 type Height = fn(f64, f64) -> f64;
@@ -107,7 +108,8 @@ fn normals<N: Real>(
     contacts.map(|tracked| *tracked.contact.normal).collect()
 }
 
-/// Returns the upward normals of the triangles in the cells around a position.
+/// Returns the normals, directed upwards, of the triangles in the up to nine cells around a
+/// position.
 fn fronts<N: Real>(field: &HeightField<N, 3>, x: f64, z: f64) -> Vec<Vector<N, 3>> {
     let around = |at: f64| (0..2 * CELLS).filter(move |cell| (*cell as f64 - 3.5 - at).abs() < 1.5);
     let cells = around(z).flat_map(|row| around(x).map(move |column| (row, column)));
@@ -121,7 +123,8 @@ fn fronts<N: Real>(field: &HeightField<N, 3>, x: f64, z: f64) -> Vec<Vector<N, 3
 }
 
 /// Slides each solid over the seams. Returns the number of contact normals on the tiles that are
-/// not normals of the whole field.
+/// neither contact normals of the undivided field at the same pose nor close to the normals of its
+/// faces there.
 fn bumps<N: Real>(border: usize, height: Height, is_mesh: bool, as_one: bool) -> usize {
     let whole = field::<N>([-4.0, -4.0], 2 * CELLS, 0, height);
     let tiles = tiles::<N>(border, height, is_mesh);

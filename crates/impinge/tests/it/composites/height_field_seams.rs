@@ -23,7 +23,7 @@ fn folded(rows: [f64; 3]) -> Field {
     Field::new(3, 3, heights, Vector::<f64, 3>::new(2.0, 1.0, 2.0))
 }
 
-/// Returns the parts that have a side between two points, each with that side.
+/// Returns the parts, except holes, of which a side connects the two points, each with that side.
 fn sides(field: &Field, a: Point<f64, 3>, b: Point<f64, 3>) -> Vec<(u32, FeatureId)> {
     let mut found = Vec::new();
     for part in (0..field.num_parts()).filter(|part| !field.is_hole(*part)) {
@@ -206,7 +206,7 @@ fn check_against_meshes<N: Real>() {
                     continue;
                 };
                 let snapped = surface1.snapped(part, &normal).expect("an area");
-                // Also tests the normal of another face, and a normal between the two.
+                // Also tests the normal of another face, and the normalised sum of both normals.
                 let other = numbers[random.below(numbers.len())];
                 let other = surface1.snapped(other, &snapped).expect("an area");
                 let between = (snapped + other).try_normalize(N::lit(1e-3)).unwrap_or(normal);

@@ -90,8 +90,8 @@ fn points_lie_where_the_scale_puts_them() {
     }
 }
 
-/// The two triangles of a cell cover it once, are counter-clockwise seen from the front, and share
-/// the diagonal.
+/// Asserts that the two triangles of a cell cover it once, are counter-clockwise seen from the
+/// front, and share the diagonal, also if a scale is negative.
 #[test]
 fn triangles_cover_their_cell_under_every_scale() {
     let signs = [1.0, -1.0];
@@ -126,7 +126,7 @@ fn triangles_cover_their_cell_under_every_scale() {
                         "diagonal of {part}"
                     );
                 }
-                // Triangle 0 has the cell's side in the lower column.
+                // The first triangle of a cell contains the side of the cell on the lower column.
                 for row in [row, row + 1] {
                     assert!(
                         corners(&field, 2 * cell).contains(&field.point(row, column)),
@@ -224,8 +224,8 @@ fn searches_in_the_plane_find_what_looking_at_all_parts_finds() {
     check_in_plane::<f64>();
 }
 
-/// Boxes with infinite faces, such as those of half-spaces, find parts. Boxes without a finite
-/// point find none.
+/// Asserts that searches with boxes that have infinite faces, such as those of half-spaces, find
+/// parts, and that boxes without a finite point find none.
 #[test]
 fn unbounded_probes_meet_and_infinite_ones_do_not() {
     let field = HeightField::<f32, 3>::new(2, 2, vec![0.0, 0.0, 0.0, 1.0], scale3(2.0, 1.0, 2.0));
@@ -357,7 +357,8 @@ fn a_large_field_is_made_and_searched_at_once() {
     let start = std::time::Instant::now();
     let field = HeightField::<f32, 3>::new(count, count, heights, scale3(1000.0, 0.01, 1000.0));
     let made = start.elapsed();
-    // A box over ten by ten cells visits few other cells.
+    // A search with a box over ten by ten cells, which have 200 triangles, visits at most 100
+    // others.
     let aabb =
         Aabb::new(Point::<f32, 3>::new(20.0, -1.0, 20.0), Point::<f32, 3>::new(30.0, 3.0, 30.0));
     let found = part_search::overlapping(field.search(), &aabb);

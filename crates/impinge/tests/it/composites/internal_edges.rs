@@ -8,7 +8,8 @@ use impinge::math::{Isometry3, Real, Space, Vector};
 use impinge::shape::Shape;
 use slides::{Expected, PATTERNS, Random, field, grid, lowest, slide, solids3};
 
-/// Returns poses of the floor in the world.
+/// Returns two poses of the floor in the world: the identity, and an oblique one away from the
+/// origin.
 fn frames<N: Real>() -> Vec<Isometry3<N>> {
     let lit = |x: f64| N::lit(x);
     let axis = |x: f64, y: f64, z: f64| Vector::<N, 3>::new(lit(x), lit(y), lit(z));

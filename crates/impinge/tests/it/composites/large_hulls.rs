@@ -1,7 +1,8 @@
 //! Tests that the contacts of a hull with a surface do not depend on features that are far from it.
 //!
-//! Two prisms, one of them with a dome of many vertices on its far end, touch a surface with equal
-//! faces. The first is computed in lanes; the second has too many features for them.
+//! Two prisms touch a surface with equal faces; the second has a dome of many vertices at the
+//! opposite end. The contacts of the first are computed with SIMD; the second has too many features
+//! for that.
 
 use impinge::dim3::math::{Isometry, Point, Vector};
 use impinge::dim3::query::{ContactManifold, ContactPrediction, contact_manifolds};
@@ -11,9 +12,8 @@ use impinge::math::Real;
 use crate::support::samples::samples;
 use crate::support::slides::Random;
 
-/// Returns a prism with eight sides between the heights -1 and 0, under a frustum up to the height 1.
-/// With `is_domed` a dome of 300 vertices takes the place of the frustum; the bounding box is the
-/// same.
+/// Returns a prism with eight sides between the heights -1 and 0, under a frustum up to the height
+/// 1. `is_domed` adds a dome of 300 vertices around the frustum, within the same bounding box.
 fn prism(is_domed: bool) -> ConvexHull<f64> {
     let ring = |count: u32, radius: f64, height: f64| {
         (0..count).map(move |k| {
@@ -40,7 +40,8 @@ fn terraces() -> TriMesh<f64> {
     let mut vertices = Vec::new();
     let mut x = -3.5;
     for column in 0..columns {
-        // A wall where the next column is at the same place.
+        // After every second column the next one is only 0.02 away, so that the step in height
+        // becomes a wall.
         x += if column % 2 == 0 { 0.5 } else { 0.02 };
         for row in 0..rows {
             let height = 0.2 * f64::from(column / 2 % 2);

@@ -14,7 +14,7 @@ use impinge_reference::precise::vector::{
 };
 use impinge_reference::random::Random;
 
-/// Greatest error allowed, in units.
+/// Greatest error allowed, in units of epsilon times the size of the scene.
 const UNITS: f64 = 16.0;
 
 fn fraction<const D: usize>([a, b]: [&Vector<D>; 2], p: &Vector<D>) -> Quad {
@@ -141,7 +141,8 @@ fn asked(
     }
 }
 
-/// The worst error of each kind, in units, with a description of its case.
+/// The worst error of each kind of query, in units of epsilon times the size of the scene, with a
+/// description of its case.
 #[derive(Default)]
 struct Worst(BTreeMap<&'static str, (f64, String)>);
 
@@ -277,8 +278,9 @@ fn volume([a, b, c, d]: [&Vector<3>; 4]) -> Quad {
     minor(1, 2) * w[0] + minor(2, 0) * w[1] + minor(0, 1) * w[2]
 }
 
-/// Compares the signed distances of tetrahedra with a thin triangle as a face, as solids, as hulls
-/// and as closed meshes, with the exact distance. For meshes only the magnitude counts.
+/// Compares signed distances of points from tetrahedra that have a thin triangle as a face with the
+/// exact distance. Each tetrahedron is tested as a solid, as a hull and as a closed mesh; for the
+/// mesh only the magnitude of the distance is compared.
 fn tetrahedra<N: Space<3>>(seed: u64) {
     let (mut random, mut worst, mut count) = (Random::new(seed), Worst::default(), 0);
     for _ in 0..2000 {

@@ -3,7 +3,7 @@
 //! pairs are cylinders and cones whose axes almost coincide; their parameters are changed in small
 //! steps toward larger errors.
 //!
-//! `bench/accuracy.md` has the full table, of all kinds and with another library.
+//! `bench/accuracy.md` has a table of the errors for all kinds of solids, also for another library.
 
 use crate::support::samples::samples;
 use impinge::math::na::{Quaternion, Translation, UnitQuaternion};

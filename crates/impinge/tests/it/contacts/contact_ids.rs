@@ -125,7 +125,7 @@ fn names_outlast_a_thousand_steps() {
     names_last::<f64, 2>(sliding);
     names_last::<f32, 3>(sliding);
     names_last::<f64, 3>(sliding);
-    // Rocks by half a degree to both sides.
+    // Rocks the cube by half a degree to both sides.
     let rocking = |step: f64| (ACROSS, 0.0045 * ((step / 50.0) % 4.0 - 2.0).abs() - 0.0045);
     names_last::<f32, 2>(rocking);
     names_last::<f64, 2>(rocking);
@@ -160,8 +160,8 @@ fn names_outlast_shapes<N: Play<D>, const D: usize>() {
     assert!(!first.contains(&round[0]), "which is no corner");
 }
 
-/// Asserts that contacts that begin again have new ids, even if other queries of the pair ran in
-/// between.
+/// Asserts that contacts that begin again have new ids, whether or not the broad phase kept the
+/// pair in between.
 fn names_end_with_contacts<N: Play<D>, const D: usize>() {
     let [floor, _] = floors::<N, D>();
     let mut scene = Floor::<N, D>::new(&floor, false);
@@ -169,7 +169,8 @@ fn names_end_with_contacts<N: Play<D>, const D: usize>() {
     let pair = (floor.min(cube), floor.max(cube));
     let mut seen = scene.ids();
     let near = pose::<N, D>(0.0, 0.49, (ACROSS, 0.0));
-    // The cube is raised slightly, so that the broad phase keeps the pair; far; and very far.
+    // The first height is so small that the broad phase keeps the pair; at the other two it drops
+    // the pair.
     for height in [0.7, 3.0, 1e6] {
         scene.world.set_position(cube, pose::<N, D>(0.0, height, (ACROSS, 0.0)));
         scene.world.update();
@@ -214,7 +215,7 @@ fn names_follow_features_and_touch() {
 
 type Pair = (CollisionObjectHandle, CollisionObjectHandle);
 
-/// Asserts that a contact id belongs to one pair and never returns after its contact ended.
+/// Asserts that a contact id belongs to one pair and is never used again after its contact ended.
 fn names_are_unique<N: Play<D>, const D: usize>() {
     for scene in [spawn_and_despawn(400), mixed_shapes(300), pile(100)] {
         let mut player = Player::<N, D>::new(scene, 1.0);
@@ -398,8 +399,8 @@ fn kinematics_of_flat_and_round_solids_are_exact() {
     kinematics_predict::<f64, 3>();
 }
 
-/// Asserts in 3D that predictions for crossing edges are exact, that predictions for crossed
-/// cylinders are exact to half of the digits, and that the errors for rims are of second order.
+/// Asserts in 3D that predictions are exact up to rounding for crossing edges and up to half of the
+/// digits for crossed cylinders, and that errors for rims are of second order in time.
 fn kinematics_predict_in_space<N: Move<3>>() {
     let cylinder = SceneShape::Cylinder { half_height: 0.5, radius: 0.25 };
     let (cube, cylinder) = (cuboid::<N, 3>([0.5; 3]), shape_of::<N, 3>(&cylinder, 1.0));

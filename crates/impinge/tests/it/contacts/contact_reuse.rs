@@ -19,11 +19,12 @@ use scene_stage::{Digest, Play, Player, assert_views_agree, digest_state};
 
 /// Sum of the linear predictions of two objects of size 1.
 const PREDICTION: f64 = 0.02;
-/// Movement up to which the contacts of a pair are reused.
+/// Movement of a pair, as a length, up to which its contacts are reused.
 const TOLERANCE: f64 = 0.002;
 
-/// Slows a scene down, so that the fastest objects need ten to a hundred steps to move by the
-/// tolerance.
+/// Returns the scene with a hundredth of its speeds, so that the fastest objects need ten to a
+/// hundred steps to move by [`TOLERANCE`]. All objects get contact queries with half of
+/// [`PREDICTION`].
 fn slow<const D: usize>(mut scene: Scene<D>) -> Scene<D> {
     for object in &mut scene.objects {
         object.query = SceneQuery::Contacts { linear: PREDICTION / 2.0, angular: 0.0 };
@@ -55,9 +56,9 @@ fn depths<N: Play<D>, const D: usize>(player: &Player<N, D>) -> BTreeMap<(usize,
     depths
 }
 
-/// Plays a scene in a world that computes all contacts anew and in a world that reuses them.
-/// Returns the number of differing depths and of all depths; depths differ only if contacts were
-/// reused.
+/// Runs a scene in a world that computes all contacts anew and in a world that reuses them. Asserts
+/// that depths agree up to the tolerance. Returns the number of depths that differ, which proves
+/// that contacts were reused, and the number of all compared depths.
 fn compare<N: Play<D>, const D: usize>(scene: &Scene<D>, steps: u32) -> (usize, usize) {
     let mut exact = Player::<N, D>::new(scene.clone(), 1.0);
     let mut kept = reusing::<N, D>(scene.clone(), TOLERANCE);
@@ -216,8 +217,9 @@ fn solids<N: Real>() -> Vec<ShapeHandle<N, 3>> {
     ]
 }
 
-/// Lowers and slightly rotates solids on a floor, near the origin or far from it. Depths measured
-/// along the old normal are exact as long as the normal stays the same.
+/// Lowers and slightly rotates solids on a floor, near the origin or far from it. Asserts that all
+/// contacts remain and that reused depths are exact up to `noise`: they are measured along the old
+/// normal, which stays the same. Larger motions must compute the contacts anew.
 fn sinks<N: Real>(ground: &ShapeHandle<N, 3>, height: f64, far: f64, noise: f64) {
     for solid in solids::<N>() {
         let place = |depth: f64| [far, height + 0.5 - depth, -far];
@@ -231,7 +233,7 @@ fn sinks<N: Real>(ground: &ShapeHandle<N, 3>, height: f64, far: f64, noise: f64)
             let off = found.iter().map(|x| (x - depth).abs()).fold(0.0, f64::max);
             assert!(off <= noise, "{off} off a depth of {depth}, {far} away");
         }
-        // Beyond the tolerance all contacts are computed anew, also when the solid is lifted off.
+        // A motion beyond the tolerance, such as lifting the solid off, computes all contacts anew.
         assert!(stage.moved(place(-0.5), 0.0).is_empty(), "nothing is kept of what is gone");
         assert_eq!(stage.moved(place(0.001), 0.7).len(), before, "turned");
     }
@@ -334,9 +336,9 @@ fn what_was_fast_and_slows_down_is_kept_again() {
     assert!(kept >= 10, "kept {kept} times");
 }
 
-/// Returns, for each step, the contact depths of capsules that lie on capsules. The tilt of the
-/// upper ones decreases until both of their ends are within the prediction. Every third step moves
-/// all of them, the other steps only one.
+/// Returns, for each step, the contact depths of pairs of capsules that lie on each other. The tilt
+/// of the upper capsules decreases until both of their ends are within the prediction. Every third
+/// step moves all upper capsules, the other steps only one.
 fn capsules(narrow_phase: DefaultNarrowPhase<f64, 3>) -> Vec<Vec<f64>> {
     let capsule = ShapeHandle::<f64, 3>::new(Capsule::new(0.5, 0.3));
     let (mut world, groups) = (World::<f64>::new(0.05), CollisionGroups::new());

@@ -16,9 +16,9 @@ use impinge_reference::random::Random;
 /// A solid for the library and for the reference.
 type Solids<N> = (ShapeHandle<N, 3>, Solid<3>);
 
-/// Sizes that are zero or small.
+/// The sizes, before scaling, of needles, disks and other thin solids.
 const THIN: [f64; 10] = [0.0, 1e-14, 1e-10, 1e-8, 1e-7, 1e-5, 1e-4, 1e-3, 1e-2, 0.1];
-/// Number of kinds: segments, capsules, triangles, boxes, hulls.
+/// Number of kinds of the first solid: segments, capsules, triangles, boxes, hulls.
 const KINDS: usize = 5;
 
 /// Number of pairs that are tested.

@@ -97,7 +97,7 @@ fn asking_for_both<const D: usize>(mut scene: Scene<D>) -> Scene<D> {
     scene
 }
 
-/// Plays a scene with pairs handled in batches and one by one, and asserts equal digests. Returns
+/// Runs a scene with pairs handled in batches and one by one, and asserts equal digests. Returns
 /// the number of contact and proximity events.
 fn compare<N: Play<D>, const D: usize>(scene: &Scene<D>, steps: u32) -> usize {
     let mut together = Player::<N, D>::new(scene.clone(), 1.0);

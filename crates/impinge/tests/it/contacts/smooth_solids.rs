@@ -100,7 +100,7 @@ fn ellipsoids_are_as_far_apart_as_the_best_normal_says() {
     assert!(deep > 400 && apart > 200, "{deep} overlap, {apart} do not");
 }
 
-/// Returns the least distance along a segment by ternary search; the distance is convex along it.
+/// Returns the least value of a convex function on the interval from 0 to 1, by ternary search.
 fn least(distance: impl Fn(f64) -> f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..120 {
@@ -144,8 +144,8 @@ fn segments_are_as_far_as_their_nearest_point() {
     assert!(apart > 2000, "{apart} of 6000 are apart");
 }
 
-/// Returns the distance of a point from an ellipse: the best of many angles, refined by ternary
-/// search.
+/// Returns the distance from an ellipse of a point with coordinates of at least zero: the least
+/// over many angles of the first quadrant, refined by ternary search.
 fn nearest_by_angle(half_axes: &Vector2<f64>, point: &Vector2<f64>) -> f64 {
     const PARTS: i32 = 720;
     let step = core::f64::consts::FRAC_PI_2 / f64::from(PARTS);
@@ -175,7 +175,7 @@ fn points_of_ellipses<N: Real>() {
         let half_axes = Vector2::new(1.0, ratio).map(|x| N::lit(x).as_f64());
         let near = [2.0, 1.0, ratio, ratio * 0.1][case / 4 % 4];
         let place = Vector2::new(random.within(0.0, 1.5), random.within(0.0, 1.0) * near);
-        // Some positions lie on an axis or in the middle.
+        // Some positions lie on an axis or at the centre of the ellipse.
         let place = match case % 7 {
             0 => Vector2::new(0.0, place.y),
             1 => Vector2::new(place.x, 0.0),

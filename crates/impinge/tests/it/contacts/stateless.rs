@@ -18,7 +18,7 @@ use impinge::world::{CollisionGroups, CollisionWorld};
 struct Setting<'a, N: Space<D>, const D: usize> {
     places: [N::Isometry; 2],
     shapes: [&'a ShapeHandle<N, D>; 2],
-    /// Contact query of each of the two objects.
+    /// Contact query that both objects have; the prediction of the pair is the sum of both.
     query: ContactQuery<N>,
     max_points: Option<usize>,
 }

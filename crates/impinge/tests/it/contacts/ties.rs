@@ -1,7 +1,9 @@
 //! Tests searches with many ties. Among candidates at equal distance, or hit at the same time, the
 //! result is the one with the least index, in whatever order the search visits them.
 //!
-//! The expected results come from scans of all candidates with the same test for each.
+//! The expected results for boxes and objects come from brute force: the query for a single box or
+//! object is called for every candidate. The expected triangle for a vertex is the one with the
+//! lowest index that contains the vertex.
 
 use impinge::bounding_volume::{Aabb, Ray};
 use impinge::dim3;
@@ -91,7 +93,8 @@ fn of_equal_boxes_the_first_by_index_answers() {
 
 type World = dim3::world::CollisionWorld<f32, usize>;
 
-/// Creates a world of balls and cubes of one size at random cells. They interact with nothing.
+/// Creates a world of balls and cubes of one size at random cells. The collision groups of the
+/// objects forbid all pairs.
 fn world(random: &mut Random, count: usize) -> World {
     let mut world = World::new(0.02);
     let mut nobody = CollisionGroups::new();
@@ -194,8 +197,8 @@ fn of_equal_objects_the_first_by_handle_answers() {
     assert!(ties > 500, "{ties} ties");
 }
 
-/// Triangles of a regular grid, in random order. Up to six triangles have the vertex that is
-/// nearest to a point above it; the one with the least index is the result.
+/// Asserts for the triangles of a regular grid, in random order, which triangle is nearest to a
+/// point above a vertex: of up to six triangles with that vertex, the one with the least index.
 #[test]
 fn of_equal_triangles_the_first_by_number_answers() {
     let side = 12_u32;

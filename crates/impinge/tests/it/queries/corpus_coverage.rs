@@ -61,7 +61,7 @@ fn names_are_given_once() {
     }
 }
 
-/// Each listed file contains the name of its kind of query.
+/// Asserts that each listed file contains the name of its kind of query as a string.
 #[test]
 fn files_ask_what_they_are_said_to() {
     for (query, file, _) in RUN {

@@ -192,7 +192,7 @@ fn refusals_change_nothing<N: Stage<D>, const D: usize>() {
     assert_eq!(state(&world), calm, "and after another update");
 }
 
-/// Queries with NaN or infinite coordinates find nothing and change nothing.
+/// Asserts that queries with NaN or infinite coordinates find nothing.
 fn questions_that_are_none<N: Stage<D>, const D: usize>() {
     let (world, [first, ..]) = busy::<N, D>();
     let all = CollisionGroups::new();
@@ -260,7 +260,7 @@ fn sizes_of_zero<N: Stage<D>, const D: usize>() {
         world.set_position(handle, N::on_x(10.0 * f64::from(u32::try_from(index).expect("few"))));
     }
     let stopped = step(&mut world);
-    // All of them still lie on the half-space.
+    // Only the contacts with the half-space remain, since all shapes still lie on it.
     assert_eq!(stopped.len(), (count - 1) * (count - 2) / 2, "all but those of the half-space");
     assert!(stopped.iter().all(|event| matches!(event, ContactEvent::Stopped(..))), "stopped");
 }
@@ -290,8 +290,9 @@ fn enormous<N: Stage<D>, const D: usize>() {
     assert!(hits > 0, "the enormous ones");
 }
 
-/// Adds many objects with the same centre, half of them sensors. Any two of them have a contact or
-/// a proximity event; the removal of all but one ends all contacts and proximities.
+/// Adds many objects with the same centre, half of them sensors. Asserts that every two of them
+/// have a contact or a proximity event, and that the removal of all but one ends all contacts and
+/// proximities.
 fn coincident<N: Stage<D>, const D: usize>(count: usize) {
     let mut world = World::<N, D>::new(N::lit(0.02));
     let shape = ball(0.5);

@@ -200,8 +200,8 @@ fn what_is_not_finite_never_hits() {
     assert_eq!(impact(&moving1, &moving2, &ImpactOptions::new()), None, "no difference");
 }
 
-/// Asserts that the unit of time does not matter, for speeds from the least to the greatest
-/// numbers.
+/// Asserts that the impact is at the right time for speeds near the smallest and near the largest
+/// number. At the smallest number of all, the time would overflow, so there is no impact.
 #[test]
 fn speeds_of_every_size() {
     let ball = Ball::new(1.0);
@@ -216,7 +216,8 @@ fn speeds_of_every_size() {
     assert_eq!(onto(&ball, at(0.0, 6.0), V2::new(least, 0.0), &ball), None, "sideways");
 }
 
-/// Neither a fast common motion nor a position far from the origin changes the impact.
+/// Asserts that neither a fast common motion nor a position far from the origin changes the time of
+/// impact.
 #[test]
 fn only_differences_count() {
     let (cuboid, cylinder) =
@@ -250,8 +251,9 @@ fn grazing_passes() {
     }
 }
 
-/// Tests all pairs of kinds, overlapping at the start: a motion along the normal separates them or
-/// is an impact at time 0.
+/// Tests all pairs of kinds that overlap at the start. A motion of the second solid along the
+/// normal separates them, so there is no impact; a motion against the normal, or none, is an impact
+/// at time 0 with the data of the contact. With `contact_at_start` all three are.
 fn overlapping_starts<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     kinds: &[ShapeKind],
     sample: Sample<N, D>,

@@ -17,7 +17,8 @@ use query_support::samples::{PLANE, SPACE, Sample, sample2, sample3};
 /// Number of pairs tested for each two kinds.
 const SEEDS: u64 = 6;
 
-/// Number of times on the path at which the distance is computed.
+/// Number of steps into which a path is divided; each step gives times at which the distance is
+/// computed.
 const LOOKS: u32 = 48;
 
 /// Functions that make random solids, rotations and motions of one dimension.
@@ -42,7 +43,7 @@ struct Scene<N: Space<D>, const D: usize> {
 struct Setting {
     kinds: [ShapeKind; 2],
     seed: u64,
-    /// Angle in radians by which the bodies rotate on the path between them.
+    /// Scale of the random angular velocities, in radians per unit of time.
     turn: f64,
 }
 
@@ -170,8 +171,8 @@ where
         max(N::EPSILON * N::lit(1024.0), N::lit(1e-9)) * self.extent()
     }
 
-    /// Tests the laws for bodies that also rotate; `told` converts their motions. Returns the
-    /// status of the impact, if there is one.
+    /// Tests the laws for bodies that also rotate; `told` boxes their motions. Returns the status
+    /// of the impact; `None` without an impact.
     fn turning(&self, setting: &Setting, told: Told<N, D>) -> Option<ImpactStatus> {
         let [one, two] = self.motions.map(told);
         let [shape1, shape2] = &self.shapes;
@@ -192,10 +193,11 @@ where
     }
 }
 
-/// A conversion of a motion into the form in which a test passes it.
+/// A function that boxes a motion, either as it is or wrapped in [`Opaque`].
 type Told<N, const D: usize> = fn(ConstantVelocities<N, D>) -> Box<dyn RigidMotion<N, D>>;
 
-/// A motion that gives only its positions and bounds.
+/// A motion reduced to the required methods of the trait, its positions and bounds. So no closed
+/// form for its type can be used.
 struct Opaque<M>(M);
 
 impl<N: Space<D>, M: RigidMotion<N, D>, const D: usize> RigidMotion<N, D> for Opaque<M> {

@@ -38,7 +38,8 @@ fn spins(place: Isometry2<f64>, angular: f64) -> Turning2<f64> {
     Turning2::<f64>::new(place, V2::zeros(), angular)
 }
 
-/// Returns the half-plane opposite to the normal (x, y), with its boundary through its origin.
+/// Returns the half-plane with the outward normal (x, y), whose boundary contains the origin of its
+/// frame.
 fn half_plane(x: f64, y: f64) -> Plane<f64, 2> {
     Plane::new(Unit::new_unchecked(V2::new(x, y)))
 }
@@ -447,7 +448,8 @@ fn sizes_and_times_of_every_order() {
     assert_eq!(far, scaled::<f32>(1.0, 1.0, 0.0), "far from the origin it is the same");
 }
 
-/// box2d#115: a sweep that only comes near another body reported a hit.
+/// Tests the case of box2d#115, where a sweep that only comes near another body was reported as a
+/// hit.
 #[test]
 fn box2d_115_sweep() {
     let corpus = regression();
@@ -476,7 +478,8 @@ fn box2d_115_sweep() {
     assert!(near(least + 1e-6).expect("so near") > 0.999, "at the end");
 }
 
-/// The impact of a composite is that of the part hit first, whose index the result reports.
+/// Asserts that the impact of a composite is the earliest impact of its parts, and that the result
+/// reports the index of that part.
 #[test]
 fn composites() {
     let parts = [
@@ -511,7 +514,8 @@ fn composites() {
     assert!(named.iter().filter(|&&named| named).count() > 1, "{named:?}");
 }
 
-/// Half-spaces make a composite unbounded, and it can still move and rotate.
+/// Asserts the impacts of a composite of half-planes, which is unbounded, as it rotates and as it
+/// moves.
 #[test]
 fn unbounded_composites() {
     let half = |x, y| ShapeHandle::new(half_plane(x, y));
@@ -525,7 +529,8 @@ fn unbounded_composites() {
     assert_eq!((found.toi, found.part1), (5.5, 1));
 }
 
-/// The default `pose_about` follows `position_at`.
+/// Asserts that the default `pose_about` returns the pose of `position_at` relative to its first
+/// argument.
 #[test]
 fn poses_follow_positions() {
     let falls = Falls { height: 10.0, gravity: 2.0 };
@@ -563,8 +568,9 @@ fn within_the_tolerance_bodies_count_as_touching() {
     assert_eq!(cast(V2::y()), None, "separating");
 }
 
-/// The end of a segment passes a half-plane at a tiny distance, and only bounds of its speed are
-/// known. With the default tolerance, of about a millionth of the size, it counts as touching.
+/// Asserts that the end of a segment that passes a half-plane at a tiny distance counts as
+/// touching, with the default tolerance of about a millionth of the size. Only bounds of the speed
+/// are known.
 #[test]
 fn what_grazes_within_a_millionth_touches() {
     let (rod, wall) = (rod(0.0, 2.0), half_plane(0.0, -1.0));
@@ -576,8 +582,8 @@ fn what_grazes_within_a_millionth_touches() {
     }
 }
 
-/// Tests equal bodies at one pose with different motions: for maximum times so short that the
-/// motions are equal up to rounding, and for a longer one, both orders give the same result.
+/// Asserts that exchanging two equal bodies at one pose with different motions flips the result:
+/// for maximum times so short that the motions are equal up to rounding, and for a longer one.
 #[test]
 fn equal_bodies_that_part_after_the_longest_time_have_one_order() {
     let triangle = Triangle::new(

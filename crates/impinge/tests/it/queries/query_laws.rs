@@ -50,7 +50,7 @@ struct Setting {
     seed: u64,
     /// Size of the second solid relative to the first.
     ratio: f64,
-    /// Distance from the world's origin.
+    /// Scale of the random distance of the pair from the world's origin.
     offset: f64,
     /// Factor of all lengths.
     scale: f64,
@@ -210,8 +210,8 @@ fn check_geometry<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize
     }
 }
 
-/// Asserts that the solids touch after a move of slightly less than the depth, and not after
-/// slightly more.
+/// Asserts that the solids touch after a motion along the normal by slightly less than the depth,
+/// and are apart after slightly more.
 fn check_toggle<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     setting: &Setting,
     pair: &[Placed<N, R, D>; 2],
@@ -238,7 +238,7 @@ fn check_toggle<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     assert!(sharp > 2 || together <= slack, "{together} not together {setting:?}");
 }
 
-/// Scaling all lengths by a power of two scales the results exactly.
+/// Asserts that scaling all lengths by a power of two scales the results exactly.
 fn check_scaled<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     maker: &Maker<N, R, D>,
     setting: &Setting,
@@ -271,7 +271,8 @@ fn impact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     time_of_impact(&solid1.pose, v1, &*solid1.shape, &solid2.pose, v2, &*solid2.shape)
 }
 
-/// Moving both solids together changes the distance by rounding only.
+/// Asserts that a common rotation and translation of both solids changes the signed distance by
+/// rounding only.
 fn check_moved<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     maker: &Maker<N, R, D>,
     setting: &Setting,
@@ -300,7 +301,7 @@ fn check_impact<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
 ) -> bool {
     let random = &mut Random(setting.seed ^ 7, false);
     let mut v = [random.vector::<N, D>(), random.vector::<N, D>()];
-    // Half of the movers are sent at the other solid.
+    // In half of the cases the first solid moves towards the second.
     if setting.seed.is_multiple_of(2) {
         v[0] = (pair[1].pose.translation.vector - pair[0].pose.translation.vector) + v[0];
     }

@@ -1,4 +1,5 @@
-//! Tests the public functions with results computed by hand.
+//! Compares distances, contacts, proximities and times of impact of two solids with results
+//! computed by hand.
 
 use impinge::math::na::UnitQuaternion;
 use impinge::math::{Isometry2, Isometry3, Point, Unit, Vector};

@@ -1,5 +1,5 @@
-//! Tests that batches of rays, with the tests that cull triangles early, give the bits of single
-//! calls and of a scan of all parts.
+//! Tests that batches of rays, which cull triangles early, give the same bits as single calls and
+//! as a scan of all parts.
 
 use crate::support::query_support;
 
@@ -51,8 +51,8 @@ fn aimed<N: Real>(random: &mut Random, mesh: &TriMesh<N, 3>, size: f64) -> Ray<N
     }
 }
 
-/// Returns the first hit, from a cast at each part alone; of several parts hit first, that with the
-/// lowest index.
+/// Returns the earliest hit, from a separate cast at each part. At equal times the part with the
+/// lowest index wins.
 fn slow<N: Space<D>, const D: usize>(
     shape: &impl CompositeShape<N, D>,
     batch: &RayBatch<'_, N, D>,

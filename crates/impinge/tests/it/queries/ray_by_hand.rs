@@ -387,7 +387,8 @@ fn rays_that_are_not_finite_hit_nothing() {
     }
 }
 
-/// Rounding may place the crossing of a ray that starts on a segment before the start of the ray.
+/// Asserts that a ray that starts on a rotated segment hits it at once, although rounding may place
+/// the crossing before the start of the ray.
 #[test]
 fn a_ray_that_starts_on_a_turned_segment_hits_it() {
     let capsule = Capsule::<f32, 2>::new(1.0, 0.0);

@@ -1,4 +1,5 @@
-//! Runs cases of rays and points that other libraries got wrong.
+//! Runs the ray and point queries of the corpus, which other libraries got wrong, and compares the
+//! results with those of the corpus.
 
 use impinge::bounding_volume::Aabb;
 use impinge::math::na::{Quaternion, UnitQuaternion};

@@ -84,7 +84,7 @@ fn check_kind<N: Space<D>, const D: usize>(shape: &ShapeHandle<N, D>) {
     }
 }
 
-/// Returns the identity as an isometry, whose rotation type exists in every dimension.
+/// Returns the identity. Its rotation is a matrix, a type that exists in every dimension.
 fn no_pose<N: Real, const D: usize>()
 -> impinge::math::Isometry<N, impinge::math::na::Rotation<N, D>, D>
 where

@@ -1,5 +1,5 @@
-//! Compares rays with a slow oracle that searches the convex level function of each solid along the
-//! ray.
+//! Compares ray casts with a slow oracle, which searches along the ray for the zeros of the convex
+//! level function of each solid.
 
 use crate::support::solids;
 
@@ -23,8 +23,8 @@ impl<N: Real, const D: usize> Shot<N, D> {
     }
 }
 
-/// Returns a random ray from up to two sizes away, with a direction of any length. Some rays aim at
-/// the centre, more of them in 3D.
+/// Returns a random ray that starts up to two sizes from the local origin, with a direction of any
+/// length. Some rays aim near the centre, more of them in 3D.
 fn shoot<N: Real, R: AbstractRotation<N, D>, const D: usize>(
     rng: &mut Rng,
     m: &Isometry<N, R, D>,
@@ -78,7 +78,8 @@ fn crossing<N: Real, const D: usize>(
 struct Expected {
     hit: bool,
     solid: f64,
-    /// `None` if the ray misses the solid, or starts inside and does not leave.
+    /// Time of the hit of the hollow shape; `None` if the ray misses the shape, or starts inside
+    /// and never leaves.
     hollow: Option<f64>,
 }
 
@@ -355,8 +356,8 @@ fn triangles_of_space_agree_with_cramer() {
     triangles_of_space::<f32>();
 }
 
-/// A ray at the common side or the common corner of triangles around a point hits at least one of
-/// them.
+/// Asserts that a ray at the common side or the common corner of triangles around a point hits at
+/// least one of them.
 fn no_gap<N: Real>() {
     let mut rng = Rng::new(13);
     for _ in 0..300 {
@@ -387,7 +388,7 @@ fn rays_do_not_slip_between_triangles() {
     no_gap::<f64>();
 }
 
-/// Scaling all lengths by a power of two scales the results exactly.
+/// Asserts that scaling all lengths by a power of two scales the results exactly.
 fn scaling<N: Space<D>, const D: usize>(solids: impl Fn(&mut Rng) -> Vec<Solid<N, D>>, power: i32) {
     let factor = N::lit(2_f64.powi(power));
     let plain = solids(&mut Rng::new(3));

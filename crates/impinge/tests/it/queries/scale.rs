@@ -30,7 +30,8 @@ fn check_lengths<N: Real>(lengths: &[N], scaled: &[N], scale: N, place: &str) {
     }
 }
 
-/// Asserts that all lengths of two manifolds are in proportion, and that everything else is equal.
+/// Asserts that all lengths of `scaled` are those of `usual` times `scale`, to the bit, and that
+/// everything else is equal.
 fn check_manifolds<N: Real, const D: usize>(
     usual: &ContactManifold<N, D>,
     scaled: &ContactManifold<N, D>,
@@ -84,7 +85,7 @@ fn check_worlds<N: Play<D>, const D: usize>(
 }
 
 /// Asserts that rays, points and boxes find the same objects in both worlds, and that the times of
-/// rays are in proportion. Returns the number of ray hits.
+/// ray hits differ by the factor `scale`. Returns the number of ray hits.
 fn check_queries<N: Play<D>, const D: usize>(
     usual: &World<N, D>,
     scaled: &World<N, D>,

@@ -11,7 +11,7 @@ use impinge::shape::{
 };
 use query_support::random::Random;
 
-/// Exponents of the factors.
+/// Exponents of the factors by which shapes are scaled.
 const POWERS: [i32; 5] = [-20, -7, 5, 9, 20];
 
 /// Returns a random corner on a grid of spacing 0.25.
@@ -143,7 +143,8 @@ fn answers3<N: Space<3, Isometry = Isometry3<N>>>(
     (lengths, plain, words)
 }
 
-/// Returns `true` if all numbers are in proportion to the bit, up to the sign of zero.
+/// Returns `true` if the numbers of `scaled` are those of `usual` times `scale`, to the bit, up to
+/// the sign of zero.
 fn are_scaled<N: Real>(usual: &[N], scaled: &[N], scale: N) -> bool {
     let is_scaled =
         |(a, b): (&N, &N)| (*a * scale).bits() == b.bits() || *a == N::ZERO && *b == N::ZERO;

@@ -34,8 +34,8 @@ fn reaches<N: Real, const D: usize>(shape: &Handle<N, D>, direction: &Vector<N, 
     (0..composite.num_parts()).map(part).collect()
 }
 
-/// Asserts that the extent of a scaled solid along a direction equals the extent of the solid along
-/// the scaled direction.
+/// Asserts that the extent of a scaled solid along a direction equals, up to rounding, the extent
+/// of the unscaled solid along the direction multiplied by `factors`.
 fn check<N: Real, const D: usize>(shape: &Handle<N, D>, factors: [f64; D], random: &mut Random) {
     let scale = Vector::<N, D>::from_fn(|axis, _| N::lit(factors[axis]));
     let scaled =
@@ -196,7 +196,8 @@ fn faces_of_mirrored_polytopes_point_out() {
     }
 }
 
-/// The front of a scaled one-sided surface is on the side of the scaled front.
+/// Asserts that the front of a scaled one-sided surface is on the side to which scaling moves the
+/// points in front of the surface.
 #[test]
 fn fronts_are_scaled_too() {
     let p = [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]].map(Point::<f64, 3>::from);

@@ -82,7 +82,8 @@ fn shapes3<N: Space<3>>(p: &[Point<N, 3>]) -> Vec<ShapeHandle<N, 3>> {
     shapes
 }
 
-/// Whether each of four queries reports that two shapes touch.
+/// Returns for each of four queries whether it reports that two shapes touch: distance, proximity,
+/// contact and witness.
 macro_rules! touch {
     ($isometry:ident, $one:expr, $other:expr, $zero:expr) => {{
         let (here, one, other) = ($isometry::identity(), &**$one, &**$other);
@@ -114,9 +115,9 @@ fn corners2<N: Space<2, Isometry = Isometry2<N>>>() {
     }
 }
 
-/// Returns `true` if a shape contains the common corner of two lists of points, of which `points`
-/// is the other one. A segment contains it if one of its ends is among these points; all other
-/// shapes contain it.
+/// Returns `true` if a shape made from one of two lists of points contains the corner that both
+/// lists have; `points` is the other list. A segment contains the corner if one of its ends is
+/// among `points`; every other shape contains it.
 fn is_in<N: Space<D>, const D: usize>(shape: &ShapeHandle<N, D>, points: &[Point<N, D>]) -> bool {
     shape
         .as_shape::<Segment<N, D>>()
@@ -162,14 +163,14 @@ fn sides(piece: &Piece) -> Vec<[[i64; 2]; 2]> {
     (0..count).map(|at| [piece[at], piece[(at + 1) % piece.len()]]).collect()
 }
 
-/// Whether a point is on a segment, exactly.
+/// Returns `true` if a point is on a segment, by exact integer arithmetic.
 fn is_on([a, b]: [[i64; 2]; 2], p: [i64; 2]) -> bool {
     let is_within =
         |axis: usize| a[axis].min(b[axis]) <= p[axis] && p[axis] <= a[axis].max(b[axis]);
     turn(a, b, p) == 0 && is_within(0) && is_within(1)
 }
 
-/// Whether two segments have a point in common, exactly.
+/// Returns `true` if two segments have a point in common, by exact integer arithmetic.
 fn cross(one: [[i64; 2]; 2], other: [[i64; 2]; 2]) -> bool {
     let parted = |[a, b]: [[i64; 2]; 2], [c, d]: [[i64; 2]; 2]| {
         turn(a, b, c).signum() * turn(a, b, d).signum() < 0
@@ -185,7 +186,7 @@ fn holds(triangle: &Piece, p: [i64; 2]) -> bool {
     triangle.len() == 3 && !(signs.contains(&1) && signs.contains(&-1))
 }
 
-/// Returns whether two pieces have a point in common, exactly.
+/// Returns `true` if two pieces have a point in common, by exact integer arithmetic.
 fn meet(one: &Piece, other: &Piece) -> bool {
     let mut pairs =
         sides(one).into_iter().flat_map(|a| sides(other).into_iter().map(move |b| (a, b)));

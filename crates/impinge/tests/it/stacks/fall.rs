@@ -4,7 +4,8 @@ use impinge_stacks::{Choices, Kind, Stack, Stage, stacks2, stacks3};
 
 use super::{above, assert_none, played};
 
-/// Ten seconds. Energy is measured in the last two, contacts in the second half.
+/// Number of steps, which take ten seconds. Energy is measured in the last two seconds, contacts in
+/// the second half.
 const STEPS: usize = 600;
 /// Greatest kinetic energy per unit of mass: 1/10000 of the energy that lifts a solid by its size.
 const AT_REST: f64 = 1e-3;

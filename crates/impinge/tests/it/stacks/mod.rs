@@ -9,7 +9,7 @@ mod slide;
 
 use impinge_stacks::{Choices, Impinge, Memory, Outcome, Solver, Stack, Stage, play};
 
-/// Plays a scene with a solver that looks up the impulses of the last step by contact ids only.
+/// Runs a scene with a solver that looks up the impulses of the last step by contact ids only.
 fn played<N: Stage<D>, const D: usize>(
     stack: &Stack<D>,
     choices: Choices,

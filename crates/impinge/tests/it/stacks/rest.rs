@@ -4,7 +4,8 @@ use impinge_stacks::{Choices, Kind, Outcome, Stack, Stage, stacks2, stacks3};
 
 use super::{above, assert_none, played};
 
-/// Five seconds. Energy is measured in the last two, contacts in the second half.
+/// Number of steps, which take five seconds. Energy is measured in the last two seconds, contacts
+/// in the second half.
 const STEPS: usize = 300;
 /// Greatest kinetic energy per unit of mass: 1/10000 of the energy that lifts a solid by its size,
 /// since high stacks still sway.
@@ -14,7 +15,7 @@ const DRIFT: f64 = 0.1;
 /// Greatest sinking: the solver leaves an overlap of 0.005 per contact, so 0.05 in a stack of ten,
 /// plus a margin.
 const SINKING: f64 = 0.06;
-/// Greatest share of contacts with new ids.
+/// Greatest share of contacts with new ids, and of contacts that lost their ids or jumped.
 const NEW: f64 = 0.005;
 
 fn faults<const D: usize>(stack: &Stack<D>, outcome: &Outcome, mass: f64) -> Vec<String> {

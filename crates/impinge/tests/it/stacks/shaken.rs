@@ -5,7 +5,7 @@ use impinge_stacks::{Choices, Impinge, Stack, Stage, pairs2, pairs3, shake};
 
 use super::{above, assert_none};
 
-/// Number of times a solid is shaken.
+/// Number of random displacements of a solid.
 const STEPS: usize = 250;
 
 fn shaken<N: Stage<D>, const D: usize>(pairs: &[Stack<D>], choices: Choices) {

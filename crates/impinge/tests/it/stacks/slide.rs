@@ -5,7 +5,8 @@ use impinge_stacks::{Choices, Kind, Stack, Stage, stacks2, stacks3};
 
 use super::{above, assert_none, played};
 
-/// Ten seconds at five units per second: a hundred cells.
+/// Number of steps, which take ten seconds. At five units per second a solid passes a hundred
+/// cells.
 const STEPS: usize = 600;
 /// Greatest change of velocity: a thousandth of the speed, so bumps and braking are detected.
 const BUMP: f64 = 5e-3;

@@ -1,7 +1,7 @@
-//! Number of samples of a test, decided here for all tests.
+//! The number of samples of random tests, which an environment variable multiplies for all tests.
 
-/// `some` samples, times the value of the variable `IMPINGE_SAMPLES`: 10 in `.ci/run`, 1000 for a
-/// run overnight.
+/// Returns `some` times the value of the environment variable `IMPINGE_SAMPLES`, or `some` if it is
+/// not set. The value is 10 in `.ci/run`, and 1000 for a run overnight.
 ///
 /// # Panics
 /// If the variable is not a whole number.

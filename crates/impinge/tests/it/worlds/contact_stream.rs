@@ -15,7 +15,8 @@ use impinge_scenes::{Scene, mixed_shapes, pile, shaken, spawn_and_despawn};
 use scene_stage::{Play, Player, assert_stream_agrees};
 use world_stage::{Stage, add, contacts, cube};
 
-/// A stream, and the indices that the points of the next fill must refer to.
+/// A stream, and for each contact of the last fill the index to which its point in the next fill
+/// must refer.
 struct Checked<N: Space<D>, const D: usize> {
     stream: ContactStream<N, D>,
     /// The index of each contact in the points of the last fill.
@@ -61,7 +62,8 @@ fn follows_scenes<N: Play<D>, const D: usize>() {
         let (mut player, mut checked) = (Player::<N, D>::new(make(150), 1.0), Checked::new());
         for step in 0..12 {
             player.step();
-            // The stream is not filled after every update.
+            // Skips the fill after every fifth update, so that the previous fill is sometimes two
+            // updates old.
             if step % 5 != 3 {
                 checked.fill(&player.world);
             }
@@ -113,8 +115,8 @@ fn finds_pairs_that_moved_in_memory<N: Stage<D>, const D: usize>() {
     assert_eq!(checked.kept, kept, "nothing is known after clearing");
 }
 
-/// Tests a box that slides over a zigzag, in the second half with a skin. The pair has several
-/// manifolds in at least one fill.
+/// Fills a stream after each step of a box that slides over a zigzag, with a skin in the second
+/// half. Asserts that the pair has several manifolds in at least one fill.
 fn follows_patches<N: Stage<D>, const D: usize>(zigzag: ShapeHandle<N, D>) {
     let mut world = CollisionWorld::<N, D, ()>::new(N::lit(0.01));
     add(&mut world, 0.0, &zigzag, contacts(0.0));

@@ -53,7 +53,8 @@ fn far_from_the_origin<N: Play<D>, const D: usize>() {
         there.step();
         let (near, far) = (contacts_seen(&here), contacts_seen(&there));
         assert_eq!(near, far, "step {step}");
-        // Compared as text: the handles of two worlds differ, but print alike.
+        // Compared as text: handles of two worlds are never equal, but handles with the same index
+        // have the same text.
         let events = [&here.world, &there.world]
             .map(|world| format!("{:?} {:?}", world.contact_events(), world.proximity_events()));
         assert_eq!(events[0], events[1], "step {step}");
@@ -78,7 +79,7 @@ fn a_million_units_away() {
     far_from_the_origin::<f64, 3>();
 }
 
-/// An object far away changes nothing for the other objects.
+/// Asserts that an object far away changes no event and no bit of a manifold of the other objects.
 fn one_far_object<N: Stage<D>, const D: usize>() {
     let fill = |world: &mut World<N, D>| {
         for n in 0..60 {
@@ -91,7 +92,8 @@ fn one_far_object<N: Stage<D>, const D: usize>() {
     fill(&mut with);
     let far = add(&mut with, 1e6, &ball(1.0), contacts(0.1));
     for round in 0..4 {
-        // Handles of two worlds are never equal, but print alike.
+        // Compared as text: handles of two worlds are never equal, but handles with the same index
+        // have the same text.
         let [alone_events, with_events] =
             [&mut alone, &mut with].map(|world| format!("{:?}", step(world)));
         assert_eq!(alone_events, with_events, "round {round}");
@@ -143,7 +145,7 @@ fn a_hundred_thousand_come_and_go() {
     mass_arrival::<f64, 3>(100_000);
 }
 
-/// An object added and removed between two updates causes no events.
+/// Asserts that an object added and removed between two updates causes no events.
 fn between_two_updates<N: Stage<D>, const D: usize>() {
     let mut world = World::<N, D>::new(N::lit(0.02));
     let shape = ball(1.0);
@@ -168,8 +170,8 @@ fn between_two_updates<N: Stage<D>, const D: usize>() {
     assert!(world.is_empty(), "empty");
 }
 
-/// An object is removed during contact, and another one takes its index in the same step: the old
-/// pair stops first, then the new one starts with other contact ids.
+/// Removes an object in contact and adds an object that takes its index in the same step. Asserts
+/// that the old pair stops first and that the new pair then starts with new contact ids.
 fn removal_and_reuse_at_once<N: Stage<D>, const D: usize>() {
     let mut world = World::<N, D>::new(N::lit(0.02));
     let floor = add(&mut world, 0.0, &cube(1.0), contacts(0.0));
@@ -199,7 +201,8 @@ fn removal_and_reuse_at_once<N: Stage<D>, const D: usize>() {
     assert!(world.contains(area), "still there");
 }
 
-/// Worlds without objects, before and after they had some.
+/// Asserts that queries and updates of a world without objects find and report nothing, before its
+/// first object and after the removal of all objects.
 fn empty_worlds<N: Stage<D>, const D: usize>() {
     let mut world = World::<N, D>::new(N::ZERO);
     for round in 0..3 {

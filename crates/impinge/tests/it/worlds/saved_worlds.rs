@@ -16,7 +16,7 @@ use impinge_scenes::Scene;
 use crate::support::scene_stage::{Digest, Play, Player, digest_state};
 use crate::support::world_stage::{Stage, ball, contacts};
 
-/// Plays `steps` steps; returns the digest of their results, and the number of manifolds.
+/// Runs `steps` steps; returns the digest of their results, and the number of manifolds.
 fn play<N: Play<D>, const D: usize>(player: &mut Player<N, D>, steps: u32) -> (u64, usize) {
     let (mut digest, mut found) = (Digest::new(), 0);
     for _ in 0..steps {

@@ -21,7 +21,7 @@ use world_stage::{Stage, ball, contacts, half_space, step, vector};
 
 const CASES: &str = include_str!("../../data/regression_cases.json");
 
-/// Scripts with steps in words; each has its own test below.
+/// Scripts whose steps are described in prose, so they cannot be run; each has its own test below.
 const IN_WORDS: [&str; 2] = ["parry-409-remove-to-single-leaf", "melonjs-1580-octree-depth"];
 
 /// Parent of an object, in the one script that filters by it; `None` for an object without a
@@ -55,7 +55,8 @@ fn shape<N: Real, const D: usize>(value: &Value) -> ShapeHandle<N, D> {
     }
 }
 
-/// Returns groups from masks; the filter of the corpus is a whitelist.
+/// Returns the collision groups that a step of a script describes by bit masks; the mask `filter`
+/// becomes the whitelist.
 fn groups(step: &Value) -> CollisionGroups {
     let list = |key: &str| {
         let mask = step[key].as_u64()?;
@@ -273,8 +274,8 @@ fn world_scenarios_f64() {
     assert_eq!(run_all::<f64>(), 12, "all scripts in operations");
 }
 
-/// Removes the balls of a world in this order. After each removal the others are still found, and
-/// finally a ball can be added again.
+/// Removes the balls of a world in the order `order`. Asserts after each removal that queries still
+/// find the other balls, and finally that a ball can be added again.
 fn remove_in_order<N: Stage<3>>(world: &mut CollisionWorld<N, 3, ()>, order: &[u32]) {
     let add = |world: &mut CollisionWorld<N, 3, ()>, place: u32| {
         let position = <N as Stage<3>>::on_x(f64::from(place) * 1.5);
@@ -298,7 +299,7 @@ fn remove_in_order<N: Stage<3>>(world: &mut CollisionWorld<N, 3, ()>, order: &[u
     world.remove(&[again]);
 }
 
-/// Visits all permutations (Heap's algorithm).
+/// Visits all orders of the first `count` elements (Heap's algorithm).
 fn each_order(order: &mut Vec<u32>, count: usize, visit: &mut dyn FnMut(&[u32])) {
     if count <= 1 {
         return visit(order);
@@ -323,7 +324,7 @@ fn parry_409_remove_to_single_leaf() {
         });
     }
     assert_eq!(orders, 1 + 2 + 6 + 24 + 120 + 720 + 5040, "all orders");
-    // Some of the 362880 orders of nine.
+    // 500 random orders of the 362880 orders of nine balls.
     let (mut order, random) = ((0..9).collect::<Vec<_>>(), &mut Random(9, false));
     for _ in 0..500 {
         order.sort_by_cached_key(|_| random.bits());

@@ -74,7 +74,7 @@ fn queries_and_phases_do_not_mind_fixed_objects<N: Stage<D>, const D: usize>() {
     assert_eq!(step(&mut world), [], "a new broad phase");
     world.set_narrow_phase(Box::new(DefaultNarrowPhase::<N, D>::new()));
     assert_eq!(step(&mut world), [], "a new narrow phase");
-    // The fixed mark belongs to the object, not to its index.
+    // A new object that reuses the index of a fixed object is not fixed.
     world.remove(&[fixed[1]]);
     let other = add(&mut world, 0.5, &ball(1.0), contacts(0.0));
     assert_eq!(other.uid(), fixed[1].uid(), "the index is used again");
@@ -124,7 +124,7 @@ fn a_prediction_pairs_what_may_meet_on_the_way<N: Stage<D>, const D: usize>() {
     assert_eq!(step(&mut world), [], "no contact");
     assert_eq!(partners(&world, left), [right], "what is not on the way has no pair");
 
-    // Queries use the position only, not the prediction.
+    // Queries find an object at its position, and ignore its predicted position.
     let shape = ball::<N, D>(1.0);
     let filter = QueryFilter::new();
     let hit = |world: &World<N, D>, x| {
@@ -272,7 +272,7 @@ fn events_of_two_updates_are_kept_in_their_order<N: Stage<D>, const D: usize>() 
     assert!(world.proximity_events().is_empty(), "of all events");
 }
 
-/// A world whose data show when they are dropped.
+/// A world whose data are counted references, so that a test can see when the world drops them.
 type Counted<N, const D: usize> = CollisionWorld<N, D, Rc<u8>>;
 
 fn removed_objects_stay_beside_their_events<N: Stage<D>, const D: usize>() {

@@ -188,8 +188,8 @@ fn changes_in_place_are_followed<N: Stage<D>, const D: usize>() {
     assert_eq!(step(&mut world), [Stopped(both.0, both.1)], "changed and partner removed");
 }
 
-/// Replacing a solid by one of the same kind has an effect, although the narrow phase keeps copies
-/// of small solids.
+/// Asserts that replacing a solid by one of the same kind changes its contacts, although the narrow
+/// phase keeps copies of small solids.
 fn another_solid_of_the_same_kind_is_seen<N: Stage<D>, const D: usize>() {
     let kinds: [fn(f64) -> ShapeHandle<N, D>; 2] = [ball, cube];
     for (kind, partner) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
@@ -289,7 +289,8 @@ fn half_spaces_overlap_without_points<N: Stage<D>, const D: usize>() {
     assert_eq!(step(&mut world), [Started(ground, ceiling)], "antiparallel ones do touch");
 }
 
-/// The open pairs according to the events: each must start and stop in turn.
+/// The pairs that touch or are near according to the events so far, with which new events must be
+/// consistent.
 #[derive(Default)]
 struct Ledger {
     touching: Vec<(CollisionObjectHandle, CollisionObjectHandle)>,
@@ -328,8 +329,8 @@ impl Ledger {
     }
 }
 
-/// Clears worlds partly and completely, many times. Each contact that started stops once, also for
-/// objects that were removed and whose index was reused between two updates.
+/// Clears a world partly and completely, many times. Asserts that each contact that started stops
+/// once, also for objects that were removed and whose index was reused between two updates.
 fn clearing_and_retaining_end_every_pair_once<N: Stage<D>, const D: usize>() {
     let (mut random, mut world) = (Random::new(3), World::<N, D>::default());
     let (mut ledger, mut handles) = (Ledger::default(), Vec::new());

@@ -80,8 +80,8 @@ fn stale_handles_are_refused<N: Stage<D>, const D: usize>() {
     check_unchanged(&mut world, handles);
 }
 
-/// Worlds side by side with equal contents, as on a server and its clients: a handle of one is
-/// refused by the others.
+/// Asserts that each of four worlds with equal contents, as on a server and its clients, refuses
+/// the handles of the others.
 fn handles_of_other_worlds_are_refused<N: Stage<D>, const D: usize>() {
     let mut worlds: Vec<_> = (0..4).map(|_| pair::<N, D>()).collect();
     for round in 0..2 {

@@ -29,7 +29,7 @@ fn groups(membership: &[usize], whitelist: &[usize], blacklist: &[usize]) -> Col
     groups
 }
 
-/// Adds a unit ball at the origin.
+/// Adds a ball of radius 1 at the origin with the given groups.
 fn add<N: Stage<D>, const D: usize>(
     world: &mut World<N, D>,
     groups: CollisionGroups,
@@ -131,7 +131,8 @@ fn filters_hear_of_new_pairs_that_the_groups_allow() {
 
 type Log = Vec<(Vec<ContactEvent>, Vec<ProximityEvent>, usize)>;
 
-/// Plays random walks of a swarm; returns the log of all events and contacts.
+/// Simulates a swarm on random walks. Returns the events and the number of contact points of each
+/// update.
 fn swarm<N: Stage<D>, const D: usize>(margin: f64) -> Log {
     let mut random = Random::new(11);
     let mut world = World::<N, D>::new(N::lit(margin));
@@ -192,8 +193,8 @@ fn order_is_canonical<N: Stage<D>, const D: usize>() {
     assert_eq!(world.contact_manifolds().count(), pairs.len(), "each with a contact");
 }
 
-/// The contacts of an object equal the contacts of all pairs that contain it, with the object as
-/// the first solid. Stale handles, and objects that no update has seen, have none.
+/// Asserts that `contacts_with` returns the contacts of all pairs that contain the object, with the
+/// object as the first solid. Stale handles, and objects that no update has seen, have none.
 fn an_object_sees_its_pairs_from_its_side<N: Stage<D>, const D: usize>() {
     let (mut random, mut world) = (Random::new(5), World::<N, D>::new(N::lit(0.02)));
     for number in 0..60 {
@@ -254,7 +255,7 @@ in_tests! {
     an_object_sees_its_pairs_from_its_side,
 }
 
-/// A world is `Send` and `Sync` if its data are.
+/// Asserts that a world is `Send` and `Sync` if its data are.
 #[test]
 fn worlds_are_sent_and_shared_with_their_data() {
     fn is_send_and_sync<S: Send + Sync>(_: &S) {}

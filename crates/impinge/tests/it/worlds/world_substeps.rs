@@ -1,5 +1,5 @@
 //! Tests that a pair computed between updates has the result of an update, and that contacts with
-//! skins are those of grown shapes.
+//! skins equal those of shapes rounded by the same radii.
 
 use crate::support::world_stage;
 
@@ -18,7 +18,7 @@ use ContactEvent::{Started, Stopped};
 
 type World<N, const D: usize> = CollisionWorld<N, D, ()>;
 
-/// Returns two cubes side by side, with a gap.
+/// Returns a compound of two cubes of half width 1, with a gap of 1 between them.
 fn table<N: Stage<D>, const D: usize>() -> ShapeHandle<N, D> {
     let legs = [-1.5, 1.5].map(|x| (N::on_x(x), cube(1.0)));
     ShapeHandle::new(Compound::new(legs.to_vec()))
@@ -28,7 +28,7 @@ fn capsule<N: Real, const D: usize>() -> ShapeHandle<N, D> {
     ShapeHandle::new(Capsule::<N, D>::new(N::ONE, N::HALF))
 }
 
-/// Returns a ball, a box, another convex shape and a composite.
+/// Returns a ball, a box, a capsule and a compound.
 fn shapes<N: Stage<D>, const D: usize>() -> [ShapeHandle<N, D>; 4] {
     [ball(1.0), cube(1.0), capsule(), table()]
 }
@@ -82,8 +82,8 @@ fn check_readers<N: Space<D>, const D: usize>(
     assert_eq!(seen.collect::<Vec<_>>(), all, "seen from the second");
 }
 
-/// A pair computed between updates has the contacts that an update would give it, and the contacts
-/// of other pairs are unchanged.
+/// Asserts that a pair computed between updates has the contacts that an update would give it, and
+/// that the contacts of other pairs are unchanged.
 fn a_pair_is_computed_as_an_update_would<N: Stage<D>, const D: usize>() {
     for reuses in [false, true] {
         for (index, shape) in shapes::<N, D>().into_iter().enumerate() {
@@ -145,7 +145,7 @@ fn check_substep<N: Stage<D>, const D: usize>(
 }
 
 /// Computes the pair of `moving` and the first of two objects twice, with the handles in both
-/// orders: the second time changes nothing.
+/// orders. Asserts that the second call changes no contact.
 fn break_off<N: Stage<D>, const D: usize>(
     world: &mut World<N, D>,
     moving: CollisionObjectHandle,
@@ -245,8 +245,8 @@ fn two<N: Stage<D>, const D: usize>(
     (world, [one, other])
 }
 
-/// The deepest contact of shapes with skins equals, up to rounding, that of shapes rounded by the
-/// same radii.
+/// Asserts that the deepest contact of shapes with skins equals, up to rounding, the deepest
+/// contact of shapes rounded by the same radii.
 fn skins_round_shapes<N: Stage<D>, const D: usize>() {
     let (skins, slack) = ([0.25, 0.125], N::lit(64.0) * N::EPSILON);
     let rounded = |shape: &ShapeHandle<N, D>, radius: f64| -> ShapeHandle<N, D> {
@@ -396,7 +396,7 @@ fn skins_change_in_place<N: Stage<D>, const D: usize>() {
     assert!(world.contains(area), "it was there all along");
 }
 
-/// The skin of a distant object changes no bit of the pairs of other objects.
+/// Asserts that the skin of a distant object changes no bit of the pairs of other objects.
 fn worlds_without_skins_are_as_before<N: Stage<D>, const D: usize>() {
     let mut worlds = [0, 1].map(|_| World::<N, D>::new(N::lit(0.125)));
     for world in &mut worlds {

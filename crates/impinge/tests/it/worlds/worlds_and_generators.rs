@@ -2,7 +2,8 @@
 //! generator for each single pair. They are equal to the bit in every step, even when both reuse
 //! contacts. The pairs are of hulls, boxes and meshes.
 //!
-//! The generator of a pair has the same history, but only gets poses and shapes.
+//! Each generator computes its pair in the same steps as the world, but knows only the poses and
+//! the shapes.
 
 use impinge::math::na::{Translation3, UnitQuaternion};
 use impinge::math::{Isometry3, Point, Real, Space, Vector};
@@ -30,7 +31,8 @@ impl Noise {
     }
 }
 
-/// Pose of a solid in `f64`; the world gets it rounded.
+/// Pose of a solid in `f64`. Its position is scaled and both are rounded for the world and the
+/// generator.
 #[derive(Clone, Copy)]
 struct Place {
     at: [f64; 3],

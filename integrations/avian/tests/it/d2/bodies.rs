@@ -1,4 +1,4 @@
-//! Events, sensors, removal, scale and queries.
+//! Tests of events, sensors, removal, scale and queries.
 
 use avian_impinge::d2;
 use avian2d::prelude::*;

@@ -1,4 +1,5 @@
-//! Scenes that must stay stable.
+//! Tests that stacks, pyramids and chains stay stable, that contacts keep their ids, and that runs
+//! repeat.
 
 use avian2d::prelude::*;
 use bevy_math::Vec2;
@@ -66,7 +67,8 @@ fn a_chain_of_capsules_holds() {
     chain_holds::<Impinge>();
 }
 
-/// Contact points keep their feature ids from step to step, so that the solver is warm-started.
+/// Asserts that contact points keep their feature ids from step to step, so that the solver is
+/// warm-started.
 #[test]
 fn contacts_keep_their_names() {
     let mut app = app::<Impinge>();
@@ -87,7 +89,7 @@ fn contacts_keep_their_names() {
     assert_eq!(bare(names(&app)), bare(before));
 }
 
-/// Two runs give equal bits.
+/// Asserts that two runs of a pile end at the same positions, to the bit.
 #[test]
 fn runs_repeat() {
     let run = || {

@@ -75,8 +75,8 @@ fn solids_weigh_what_they_should() {
     weighs(&tall, 2.0, 5.0 / 12.0);
 }
 
-/// A capsule whose ends would be elliptic becomes a hull: its area is slightly less than that of
-/// the exact shape.
+/// Asserts that a capsule whose scale would make its ends elliptic becomes a hull, with an area
+/// slightly below the area of the exact shape, and that shapes without an extent have an error.
 #[test]
 fn what_has_no_exact_scale_is_approximated() {
     let mut capsule = Collider::capsule(0.5, 1.0);

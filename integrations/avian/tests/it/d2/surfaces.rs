@@ -1,4 +1,4 @@
-//! Bodies on polylines and areas of triangles have no bumps at inner corners.
+//! Tests that bodies do not bump at the inner corners of polylines and of areas of triangles.
 
 use avian_impinge::d2;
 use avian2d::prelude::*;
@@ -9,8 +9,9 @@ use bevy_transform::prelude::*;
 
 use crate::scenes2::{Backend, Impinge, app, dynamic, fixed, line, place, steps, strip, velocity};
 
-/// Moves a body along a flat floor. Returns the largest vertical speed, the largest vertical displacement, and the
-/// final speed along x.
+/// Moves a body along a flat floor. Returns the largest vertical speed, the largest vertical
+/// displacement, and the final speed along x. The 16 steps in which friction turns sliding into
+/// rolling do not count.
 fn bump<B: Backend>(floor: B::Collider, body: B::Collider, height: f32, friction: f32) -> [f32; 3] {
     let mut app = app::<B>();
     fixed::<B>(&mut app, floor, Vec2::ZERO);

@@ -139,7 +139,8 @@ fn hooks_filter_and_modify() {
     assert!(carried.x.abs() > 1.0 && (carried.y - 0.5).abs() < 0.02, "a conveyor: {carried}");
 }
 
-/// Two boxes are children of one body, on either side of it.
+/// Tests a body with two scaled boxes as children, one on either side: asserts its height at rest
+/// and its mass.
 #[test]
 fn colliders_of_children_carry_their_body() {
     let mut app = app::<Impinge>();
@@ -172,8 +173,8 @@ fn a_shape_may_be_replaced() {
     assert!((mass - 4.0 / 3.0 * core::f32::consts::PI).abs() < 1e-4, "{mass}");
 }
 
-/// Ended pairs are removed: the number of stored pairs does not grow with all pairs that ever
-/// existed.
+/// Asserts that ended pairs are removed: after 400 bodies, ten at a time, fewer than 100 pairs are
+/// stored.
 #[test]
 fn pairs_are_forgotten() {
     let mut app = app::<Impinge>();
@@ -189,7 +190,8 @@ fn pairs_are_forgotten() {
     assert!((10..100).contains(&kept.len()), "{kept:?} of 400");
 }
 
-/// A clone has the pairs of the resource, and clearing the resource is safe.
+/// Asserts that a clone of the resource has its pairs, and that bodies stay at rest if the resource
+/// is cleared or replaced.
 #[test]
 fn pairs_may_be_cleared() {
     let mut app = app::<Impinge>();
@@ -208,7 +210,8 @@ fn pairs_may_be_cleared() {
     assert!((place(&app, body) - Vec3::Y * 0.5).length() < 0.02);
 }
 
-/// Invalid sizes and indices do not panic, and the app continues.
+/// Asserts that colliders with invalid sizes or indices have an error, cause no panic, and do not
+/// stop the app.
 #[test]
 fn nothing_panics() {
     let mut app = app::<Impinge>();

@@ -70,7 +70,7 @@ fn what_encloses_nothing_has_no_mass() {
     }
 }
 
-/// The mass properties include the scale.
+/// Asserts that the mass properties of a collider include its scale.
 #[test]
 fn scaled_shapes_weigh_as_such() {
     let mut ball = Collider::sphere(1.0);

@@ -1,4 +1,4 @@
-//! Rays, casts, overlaps and nearest points.
+//! Compares ray casts, shape casts, overlaps and nearest points with results computed by hand.
 
 use avian_impinge::d3::{Collider, ShapeCastConfig, SpatialQuery};
 use avian3d::prelude::{CollisionLayers, SpatialQueryFilter};

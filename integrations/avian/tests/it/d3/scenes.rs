@@ -1,4 +1,5 @@
-//! Scenes that must stay stable.
+//! Tests that stacks, pyramids and chains stay stable, that contacts keep their ids, and that runs
+//! repeat.
 
 use avian3d::prelude::*;
 use bevy_math::Vec3;
@@ -70,7 +71,8 @@ fn a_chain_of_capsules_holds() {
     chain_holds::<Impinge>();
 }
 
-/// Contact points keep their feature ids from step to step, so that the solver is warm-started.
+/// Asserts that contact points keep their feature ids from step to step, so that the solver is
+/// warm-started.
 #[test]
 fn contacts_keep_their_names() {
     let mut app = app::<Impinge>();
@@ -98,7 +100,7 @@ fn contacts_keep_their_names() {
     assert!(velocity(&app, cubes[2]).length() < 1e-2);
 }
 
-/// Two runs give equal bits.
+/// Asserts that two runs of a pile end at the same positions, to the bit.
 #[test]
 fn runs_repeat() {
     let run = || {

@@ -34,8 +34,8 @@ fn all() -> Vec<Collider> {
     ]
 }
 
-/// Each shape, far from the global origin, overlaps the box below it by 0.125. Asserts the depth,
-/// the normal and the positions of the points.
+/// Places each shape far from the global origin, so that it overlaps the box below it by 0.125.
+/// Asserts the depth, the normal and the positions of the points.
 #[test]
 fn every_shape_meets_a_box() {
     let slab = Collider::cuboid(10.0, 2.0, 10.0);
@@ -76,7 +76,8 @@ fn boxes_hold_their_shapes() {
     assert!(aabb.size().is_finite() && aabb.max.y < 1.001 && aabb.max.x > 1e30, "{aabb:?}");
 }
 
-/// Tests the height at the end of the x axis, on a field of two columns.
+/// Asserts that the outer list of heights runs along x: of two lists, the first has the heights at
+/// the lower end of the x axis, the second those at the upper end.
 #[test]
 fn heights_are_given_along_x_first() {
     let field = Collider::heightfield(
@@ -94,7 +95,8 @@ fn heights_are_given_along_x_first() {
     assert!(Collider::heightfield(vec![vec![0.0; 3], vec![0.0; 2]], Vec3::ONE).error().is_some());
 }
 
-/// A shape that cannot be scaled exactly becomes a hull; a scale of zero is rejected.
+/// Asserts that a shape that cannot be scaled exactly becomes a hull, and that a scale of zero is
+/// rejected.
 #[test]
 fn scales() {
     let mut cylinder = Collider::cylinder(0.5, 1.0);

@@ -1,4 +1,4 @@
-//! Bodies on meshes have no bumps at inner edges.
+//! Tests that bodies do not bump at the inner edges of meshes.
 
 use avian3d::prelude::*;
 use bevy_app::App;
@@ -10,8 +10,9 @@ use avian_impinge::d3;
 
 use crate::scenes3::{Backend, Impinge, app, dynamic, fixed, place, sheet, steps, velocity};
 
-/// Moves a body along a flat floor, not parallel to its edges. Returns the largest vertical speed, the largest vertical
-/// displacement, and the final speed along x.
+/// Moves a body along a flat floor, not parallel to the edges of its cells. Returns the largest
+/// vertical speed, the largest vertical displacement, and the final speed along x. The 16 steps in
+/// which friction turns sliding into rolling do not count.
 fn bump<B: Backend>(floor: B::Collider, body: B::Collider, height: f32, friction: f32) -> [f32; 3] {
     let mut app = app::<B>();
     fixed::<B>(&mut app, floor, Vec3::ZERO);
@@ -123,7 +124,8 @@ fn a_character_walks_up_a_mesh() {
     assert!(last.x > 3.5, "{last}");
 }
 
-/// A kinematic capsule pushes a dynamic box over a mesh.
+/// Asserts that a kinematic capsule pushes a dynamic box over a mesh, and that the box stays on the
+/// mesh.
 #[test]
 fn a_kinematic_body_pushes_a_box() {
     let mut app: App = app::<Impinge>();
@@ -139,8 +141,9 @@ fn a_kinematic_body_pushes_a_box() {
     assert!(parcel.x > 3.4 && (parcel.y - 0.25).abs() < 0.02, "{parcel}");
 }
 
-/// Three balls are one body, each in a groove of its own slope, with six normals in all. Avian
-/// matches the points of at most four manifolds, the back end those of pairs with more.
+/// Tests a body of three balls, each of which lies in a groove with a different slope, so that the
+/// contacts have six normals. Avian matches the points of successive steps for pairs with at most
+/// four manifolds; for pairs with more, the back end does.
 #[test]
 fn many_manifolds_start_from_their_impulses() {
     let slopes = [0.5_f32, 0.8, 1.2];

@@ -50,15 +50,17 @@ pub(super) struct Limits<V> {
     pub(super) prediction: V,
     /// Sine of the angle by which the boxes may rotate.
     pub(super) sine: V,
-    /// Lengths up to this count as rounding errors.
+    /// Largest length that counts as a rounding error.
     pub(super) tolerance: V,
 }
 
-/// State of the admission while slots are filled.
+/// The rule that admits candidates, and the sums that it needs, collected while the slots are
+/// filled.
 ///
-/// A candidate is admitted if its height is within the prediction, or if a rotation brings it
-/// within. The boxes rotate about the pivot: the mean position of the candidates whose height is
-/// the gap, up to rounding.
+/// A candidate is admitted if its height is at most the prediction, up to the tolerance, or if a
+/// rotation of the boxes by the angle of [`Limits::sine`] can bring it within the prediction. The
+/// pivot of this rotation is the mean position of the level candidates: those whose height is the
+/// gap, up to rounding.
 ///
 /// ```text
 ///     other box     .-o   height <= prediction + sine * arm
@@ -132,8 +134,9 @@ impl<V> Admission<V> {
         (self.lowest - self.limits.gap).abs().simd_le(self.limits.tolerance)
     }
 
-    /// Clears the slots whose candidates are not admitted; computes `points1` and `distances` of
-    /// the admitted candidates. `point1` maps coordinates and height to the point on the first box.
+    /// Clears the bits of `valid` whose candidates are not admitted, and computes `points1` and
+    /// `distances` of the others. `point1` maps coordinates and height to the point on the first
+    /// box.
     #[inline(always)]
     pub(super) fn admit<S: Simd, N: Real, const D: usize, const COUNT: usize, const L: usize>(
         &self,

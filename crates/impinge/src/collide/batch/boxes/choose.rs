@@ -6,7 +6,7 @@
 //!                     [1 | faces | parts       | slot   ]   middle bits: `SlotFeatures::code`
 //! ```
 //!
-//! Bit 31 is set in every code, so that no code is 0, which marks points without a slot
+//! Bit 31 is set in every code, because the code 0 marks a point without a slot
 //! (`raw_manifold.rs`).
 
 use super::admit::Slots;
@@ -32,7 +32,7 @@ pub(super) struct SlotChoice<'a, N: Real, const D: usize, const COUNT: usize, co
     /// Signed distance of the boxes. The slot that [`Self::deepest`] returns gets exactly this
     /// distance.
     pub(super) gap: N,
-    /// Lengths up to this count as rounding errors.
+    /// Largest length that counts as a rounding error.
     pub(super) tolerance: N,
     /// Length scale of the pair, as `collide::size` defines it.
     pub(super) size: N,
@@ -196,8 +196,8 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         is_same_point([old.feature1, old.feature2], &(position - old.point1), || self.size)
     }
 
-    /// Passes the ids of the old points in `kept.left` to slots in `some` that have no id, by
-    /// position.
+    /// Passes the ids of the old points in `kept.left` to slots in `some` that have no id: each to
+    /// the nearest slot within the near length ([`each_near`]).
     #[inline(never)]
     fn match_positions(
         &self,
@@ -328,7 +328,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         self.lowest(preferred.into_iter().find(|&slots| slots != 0).unwrap_or(slots))
     }
 
-    /// Returns the slot with the smallest distance; the lowest index wins a tie.
+    /// Returns the slot of `slots` with the smallest distance; the lowest index wins a tie.
     #[inline(always)]
     fn lowest(&self, slots: u32) -> usize {
         let (mut lowest, mut distance) = (slots.trailing_zeros() as usize, N::INFINITY);

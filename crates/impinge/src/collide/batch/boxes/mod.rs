@@ -60,7 +60,7 @@ pub(super) struct Boxes<V, const D: usize> {
 
 /// Returns the axes and the centre of the other box in the frame of one box: of the second box in
 /// the frame of the first or, in the lanes of `is_second`, of the first box in the frame of the
-/// second. The latter are rounded as by `Pose::inverse`.
+/// second. The centre of the first box is rounded as by `Pose::inverse`.
 #[inline(always)]
 pub(super) fn other<S: Simd, V: Wide<S>, const D: usize>(
     boxes: &Boxes<V, D>,

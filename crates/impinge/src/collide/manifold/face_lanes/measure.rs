@@ -23,7 +23,7 @@ use crate::math::simd::{Run, Simd, SimdMask};
 use crate::math::{Real, Vector, Wide};
 use crate::shape::{CLEARLY_LARGER, FACING_SINE_SQUARED, FaceRing, THIN_SQUARED};
 
-/// Largest number of corners of a face.
+/// Largest number of corners of a ring; faces with more corners are not clipped in lanes.
 const MAX: usize = FaceRing::<f32>::MAX;
 
 /// Signed distances of the corners of one outline from the sides of the other, by corner and side,
@@ -71,8 +71,8 @@ impl<N: Real, const CORNERS: usize, const SIDES: usize> SideHeights<N, CORNERS, 
         !(self.within[corner][side] | self.beyond[corner][side])
     }
 
-    /// Returns the lanes where two corners lie on different sides of a side's line, both farther
-    /// from it than the tolerance.
+    /// Returns the lanes where the line of a side separates two corners that are both farther from
+    /// it than the tolerance.
     fn parted(&self, [from, to]: [usize; 2], side: usize) -> u8 {
         self.within[from][side] & self.beyond[to][side]
             | self.beyond[from][side] & self.within[to][side]
@@ -190,8 +190,8 @@ impl<N: Real> FaceClip<N> {
         }
     }
 
-    /// Finds the crossings: two sides cross if each has its ends on different sides of the other's
-    /// line.
+    /// Finds the lanes where a supporting side of the triangle crosses a side of the ring: the line
+    /// of each separates the ends of the other, all farther from the line than the tolerance.
     fn find_crossings(&mut self) {
         let (count, sides) = (self.ring.count, self.sides());
         for (side, crossed) in self.crossed.iter_mut().enumerate() {

@@ -42,8 +42,8 @@ pub(in crate::collide) struct ClipRequest<N: Real> {
     /// gets a distance below this value. The lane is undecided if no point has this distance up to
     /// rounding.
     pub(in crate::collide) nearest: Option<N>,
-    /// Points nearer than this by more than rounding are dropped; the distances of the other points
-    /// are raised to at least this.
+    /// Least distance of a contact point. Points that are nearer by more than rounding are dropped;
+    /// the distances of the others are raised to at least `least`.
     pub(in crate::collide) least: N,
 }
 
@@ -67,7 +67,7 @@ pub(in crate::collide) struct FaceSolid<'a, N: Real> {
     pub(in crate::collide) turn: &'a Matrix<N, 3>,
     /// Origin of the solid in the frame of the triangles.
     pub(in crate::collide) origin: Vector<N, 3>,
-    /// Points farther than this are dropped.
+    /// Largest distance of a contact point; farther points are dropped.
     pub(in crate::collide) prediction: N,
 }
 

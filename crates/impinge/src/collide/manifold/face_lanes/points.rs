@@ -40,7 +40,8 @@ impl<N: Real> FaceClip<N> {
 /// Points of one triangle found so far.
 struct FoundPoints<'a, N: Real> {
     request: &'a ClipRequest<N>,
-    /// Points farther than this by more than the tolerance are dropped.
+    /// Largest distance of a contact point; points that are farther by more than the tolerance are
+    /// dropped.
     prediction: N,
     tolerance: N,
     points: &'a mut RawPoints<N, 3>,
@@ -49,13 +50,14 @@ struct FoundPoints<'a, N: Real> {
 }
 
 impl<N: Real> FoundPoints<'_, N> {
-    /// Returns the smallest distance; infinite without points. If `nearest` is known, the deepest
-    /// point gets that distance; `None` if no point is that near, up to the tolerance.
+    /// Returns the smallest distance; infinite without points. If the request has a distance
+    /// `nearest`, the deepest point gets that distance, and the result is `None` if there is no
+    /// point or if none is that near, up to the tolerance.
     fn lowest(&mut self) -> Option<N> {
         let new = &mut self.points[self.first..];
         let lowest = new.iter().fold(N::INFINITY, |lowest, point| min(point.distance, lowest));
         let Some(nearest) = self.request.nearest else { return Some(lowest) };
-        // False for NaN.
+        // The comparison is false for NaN.
         let is_reached = lowest <= nearest + self.tolerance;
         let deepest = new.iter_mut().find(|point| point.distance == lowest)?;
         deepest.distance = nearest;
@@ -63,11 +65,13 @@ impl<N: Real> FoundPoints<'_, N> {
     }
 
     /// Adds the point `point` of the triangle, at the signed `distance` from the solid's feature
-    /// along the normal, unless it is beyond the prediction, below `least`, or already added.
+    /// along the normal, unless it is beyond the prediction or below `least` by more than the
+    /// tolerance, or already added. Clamps the stored distance to these bounds and to `nearest`, if
+    /// known.
     fn push(&mut self, point: &Vector<N, 3>, distance: N, [feature1, feature2]: [FeatureId; 2]) {
         let ClipRequest { normal, nearest, least, .. } = self.request;
         let mut distance = max(distance, nearest.unwrap_or(distance));
-        // False for NaN.
+        // The comparison is false for NaN.
         let is_near = distance <= self.prediction + self.tolerance;
         if !is_near || distance < *least - self.tolerance {
             return;
@@ -107,8 +111,9 @@ impl<N: Real> LaneClip<'_, N> {
         Vector::<N, 3>::new(x[self.lane], y[self.lane], z[self.lane])
     }
 
-    /// Adds the corners of the triangle's supporting feature that lie within the face. `None` if
-    /// the solid's supporting feature is an edge and a corner of the triangle is on its line.
+    /// If the solid's supporting feature is a face, adds the corners of the triangle's supporting
+    /// feature that lie within it. `None` if the solid's feature is an edge and a corner of the
+    /// triangle is on the edge's line.
     fn corners(&self, found: &mut FoundPoints<'_, N>) -> Option<()> {
         let FaceClip { ring, in_face, supporting, depths, .. } = self.clip;
         if ring.count < 3 {
@@ -126,9 +131,9 @@ impl<N: Real> LaneClip<'_, N> {
         Some(())
     }
 
-    /// Adds the corners of the ring that lie within the triangle. `None` if the triangle's
-    /// supporting feature is not its face and a corner of the ring is on the line of a supporting
-    /// side.
+    /// If the triangle's supporting feature is its face, adds the corners of the ring that lie
+    /// within the triangle. Otherwise adds none, and returns `None` if a corner of the ring is on
+    /// the line of a supporting side.
     fn vertices(&self, found: &mut FoundPoints<'_, N>) -> Option<()> {
         let FaceClip { ring, in_triangle, supporting, vertex_depths, .. } = self.clip;
         let face = FeatureId::Face(u32::from(self.has(supporting.back)));
@@ -196,8 +201,9 @@ impl<N: Real> LaneClip<'_, N> {
     }
 
     /// Returns the side or corner of an outline that the point `at`, on the lines of `sides`,
-    /// projects to; the last of `sides` that contains it decides. `ends` returns the two corners of
-    /// a side, each with its id and the id of the side that begins there.
+    /// projects to. If several of `sides` contain the projected point, the last one decides; `None`
+    /// if none does. `ends` returns the two corners of a side, each with its id and the id of the
+    /// side that begins there.
     fn part_with(
         &self,
         at: &Vector<N, 3>,

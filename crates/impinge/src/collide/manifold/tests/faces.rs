@@ -1,6 +1,7 @@
 //! Tests the contacts of a solid's face and triangles, which are computed 8 at a time in SIMD
-//! lanes: they must span the exact overlap of both outlines, at every SIMD level. Also tests edges
-//! and corners of the solid, and bounds of the distance.
+//! lanes. Asserts that they span the overlap of both outlines, up to rounding, and that all SIMD
+//! levels give the same bits. Also tests edges and corners of the solid, and the bounds `nearest`
+//! and `least` of the distance.
 
 use super::clip::{Outline, common, prism, regular};
 use crate::collide::manifold::face_lanes::{ClipRequest, FaceClip, FaceSolid};

@@ -1,4 +1,5 @@
-//! Tests that ids persist while solids slide and spin slowly.
+//! Tests that ids of contacts persist while boxes slide, spin slowly or rest on each other, and
+//! that an id is not used again for a contact that begins later.
 
 use std::collections::BTreeMap;
 

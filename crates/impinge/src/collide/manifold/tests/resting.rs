@@ -1,4 +1,5 @@
-//! Compares the numbers of contact points of solids at rest with numbers counted by hand.
+//! Compares the numbers of contact points of solids at rest, and for some of them positions,
+//! features and distances, with values determined by hand.
 
 use super::scene::{Scene, fact, manifold, request};
 use crate::collide::{ManifoldRequest, Pair, RawManifold};

@@ -9,7 +9,8 @@ use crate::shape::{
     Segment, Shape, Triangle,
 };
 
-/// A scalar and dimension that manifolds are tested in.
+/// A scalar type, for the dimension `D`, with the functions that tests of manifolds need in both
+/// dimensions.
 pub(crate) trait Scene<const D: usize>: Simplicial<D> {
     fn build(
         pair: &Pair<'_, Self, D>,
@@ -180,8 +181,8 @@ pub(crate) fn near_pose<N: Scene<D>, const D: usize>(
 }
 
 /// Calls `check` with every pair of kinds, for `count` sets of random solids, each pair at a random
-/// pose. The distance of each pair is at most `0.1 * scale`, or approximately this if the solids
-/// overlap. The half-space is always second.
+/// pose. The signed distance of each pair is between -0.1 and 0.1 times `scale`, approximately if
+/// the solids overlap. The half-space is always second.
 pub(crate) fn for_all_pairs<N: Scene<D>, const D: usize>(
     count: u64,
     scale: f64,

@@ -1,5 +1,5 @@
-//! Tests that the contacts of flat-sided 2D solids span the overlap interval of their supporting
-//! sides.
+//! Tests the contacts of flat-sided 2D solids: they are the ends of the overlap interval of the
+//! supporting sides, lie on both surfaces, and the deepest has the distance of the separation.
 
 use super::scene::{Random, Scene, describe, near_pose, off_surface, solids};
 use crate::collide::separation::separation_2d;

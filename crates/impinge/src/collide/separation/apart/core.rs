@@ -35,8 +35,8 @@ pub(super) struct LaneTies<V> {
 }
 
 impl<N: Real, V> LaneCore<'_, N, V> {
-    /// Returns the vertex farthest along `direction`. In a tie, the first vertex of a list wins,
-    /// and the positive side of a box.
+    /// Returns the vertex farthest along `direction`. In a tie, returns the first of the tied
+    /// vertices or, for a box, the vertex on the positive side.
     #[inline(always)]
     pub(super) fn support<S: Simd>(&self, simd: S, direction: &[V; 3]) -> [V; 3]
     where
@@ -61,8 +61,9 @@ impl<N: Real, V> LaneCore<'_, N, V> {
         }
     }
 
-    /// Counts the vertices whose height along the unit vector `direction` is within `tolerance` of
-    /// the largest height.
+    /// Returns the number of vertices whose height along the unit vector `direction` is within
+    /// `tolerance` of the largest height and, for two such vertices, the direction of the line
+    /// through them.
     #[inline(always)]
     pub(super) fn ties<S: Simd>(&self, simd: S, direction: &[V; 3], tolerance: V) -> LaneTies<V>
     where

@@ -140,7 +140,7 @@ enum GapResult<N: Real> {
     Apart(Separation<N, 3>),
     /// The cores certainly overlap.
     Overlap,
-    /// The search found no proof.
+    /// The search found no proof, or [`FlatPair::of`] rejects the pair.
     Unproved,
 }
 
@@ -191,7 +191,7 @@ fn result<N: Real>(pair: &Pair<'_, N, 3>, limit: N, with_overlap: bool) -> GapRe
 /// Two triangles, boxes or hulls, and the unit of length of the search.
 struct FlatPair<'a, N: Real> {
     solids: [FlatCore<'a, N, 3>; 2],
-    /// Radii around both cores; zero, because these kinds have none.
+    /// Radii of both solids; zero for triangles, boxes and hulls.
     radii: [N; 2],
     /// Unit of length: the sum of both bounding radii and the distance of the origins is 1 to 2
     /// units.
@@ -202,7 +202,7 @@ struct FlatPair<'a, N: Real> {
 
 impl<'a, N: Real> FlatPair<'a, N> {
     /// Makes the pair; `None` for other kinds, for hulls of more than [`MAX_VERTICES`] vertices,
-    /// and if the unit of the pair is not finite.
+    /// and if the unit of the pair or its reciprocal is not finite.
     #[inline]
     fn of(pair: &Pair<'a, N, 3>) -> Option<Self> {
         if !(is_faceted(&pair.first) && is_faceted(&pair.second)) {
@@ -248,8 +248,9 @@ impl<'a, N: Real> FlatPair<'a, N> {
         }
     }
 
-    /// Returns the result for the solids. `core` computes the separation of the cores in units of
-    /// the pair; it is called only if they are apart.
+    /// Converts the outcome of the search into the result for the solids. The first flag that is
+    /// `true` decides; without one the pair is unproved. `core` computes the separation of the
+    /// cores in units of the pair; it is called only for a pair that is apart.
     #[inline]
     fn result(
         &self,

@@ -1,4 +1,4 @@
-//! Eight pairs side by side, gathered for the search.
+//! Inputs and results of the search for 8 pairs, one pair in each lane.
 //!
 //! ```text
 //!                 lane 0  lane 1  ...  lane 7
@@ -110,7 +110,7 @@ impl<N: Real> PacketGap<N> {
 }
 
 impl<'a, N: Real> Packet<'a, N> {
-    /// Gathers up to [`LANES`] pairs; more are ignored.
+    /// Gathers the first [`LANES`] pairs; further pairs are ignored.
     fn new<'p>(given: impl Iterator<Item = &'p Pair<'a, N, 3>>, limit: N) -> Self
     where
         'a: 'p,

@@ -46,7 +46,8 @@ impl<V> LaneCorner<V> {
 /// Up to three corners and the point of their hull nearest to the origin.
 #[derive(Clone, Copy)]
 pub(super) struct LaneSimplex<V> {
-    /// Corners; in lanes with fewer corners, the last is repeated with weight zero.
+    /// Corners. If fewer than three corners span the feature, the others have weight zero and may
+    /// be copies.
     pub(super) corners: [LaneCorner<V>; 3],
     /// Barycentric weights of the corners; their sum is 1.
     pub(super) weights: [V; 3],
@@ -56,8 +57,8 @@ pub(super) struct LaneSimplex<V> {
     pub(super) squared: V,
 }
 
-/// The nearest point to the origin on the candidate features so far, and the old corners of its
-/// feature.
+/// The nearest point to the origin on the candidate features so far, and the old corners of the
+/// feature that this point lies on.
 struct BestFeature<V> {
     nearest: [V; 3],
     squared: V,
@@ -68,7 +69,8 @@ struct BestFeature<V> {
 }
 
 impl<V> BestFeature<V> {
-    /// Selects `other` in the lanes where it is nearer and admitted.
+    /// Returns the nearer feature in each lane: `other` if it is admitted and nearer to the origin,
+    /// else `self`.
     #[inline(always)]
     fn or_nearer<S: Simd>(self, (other, is_admitted): (Self, V::Mask)) -> Self
     where
@@ -228,7 +230,7 @@ impl<'a, V: Copy> Fan<'a, V> {
         holds
     }
 
-    /// Returns the simplex reduced to the corners of a feature.
+    /// Returns the simplex of the newest corner and the old corners of the feature `best`.
     #[inline(always)]
     fn reduced<S: Simd, N: Real>(&self, simd: S, best: &BestFeature<V>) -> LaneSimplex<V>
     where

@@ -18,7 +18,7 @@ fn solids<N: Real>(random: &mut Random) -> Vec<Box<dyn Shape<N, 3>>> {
 }
 
 /// Returns poses of the second solid: rotated at random or aligned with the axes, at coordinates up
-/// to 0.5, 1.5, 3 and 50, so that pairs overlap, nearly touch or are apart.
+/// to 0.5, 1.5, 3 and 50, so that some pairs overlap and others are near each other or far apart.
 fn poses<N: Real>(random: &mut Random, count: usize) -> Vec<Pose<N, 3>> {
     let pose = |round: usize| {
         let mut pose = random.turn::<N>();
@@ -32,8 +32,8 @@ fn poses<N: Real>(random: &mut Random, count: usize) -> Vec<Pose<N, 3>> {
     (0..count).map(pose).collect()
 }
 
-/// Calls `visit` once for each two solids whose kinds are in canonical order, with a list of this
-/// pair at all poses.
+/// Calls `visit` for each pair of solids whose kinds are in canonical order, with a list of one
+/// [`Pair`] for each pose.
 fn each_pair<N: Real>(mut visit: impl FnMut(&[Pair<'_, N, 3>])) {
     let random = &mut Random(9);
     let solids = solids::<N>(random);

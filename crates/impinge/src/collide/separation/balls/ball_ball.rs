@@ -9,8 +9,8 @@ use crate::shape::Kind;
 
 /// Returns the separation of two balls.
 ///
-/// If the centres coincide, the normal is the first axis of the world, because the frame of a ball
-/// has the axes of the world.
+/// If the centres coincide, the normal is the first axis of the world: the rotation of the first
+/// ball is ignored, so its frame has the axes of the world.
 pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,

@@ -10,9 +10,9 @@ use crate::shape::{Cylinder, Kind};
 
 /// Returns the separation of a ball from a cylinder.
 ///
-/// If the centre is inside the cylinder, the ball is pushed out through the nearer of cap and side;
-/// in a tie, through the cap. A centre on the axis that is nearer to the side is pushed towards
-/// positive x.
+/// If the centre is inside the cylinder, the ball is pushed out through the side or a cap,
+/// whichever is nearest. In a tie, caps come before the side, and the upper cap before the lower. A
+/// centre on the axis that is nearest to the side is pushed towards positive x.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,

@@ -54,7 +54,8 @@ pub(crate) fn project<N: Real, const D: usize>(
     }
 }
 
-/// Projects a point so far away that only its direction matters, or onto an ellipsoid of size zero.
+/// Projects a point that is so far away that only its direction matters, or any point onto an
+/// ellipsoid of size zero.
 fn from_afar<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     point: &Point<N, D>,
@@ -112,7 +113,8 @@ impl<N: Real, const D: usize> ScaledEllipsoid<N, D> {
     }
 
     /// Returns f(t) = Σ (eᵢ pᵢ / (t + excessᵢ))² and −f′(t) / 2, where e are the half axes and p
-    /// the point. The candidate for `t` lies on the surface if f(t) = 1, outside if f(t) > 1.
+    /// the point. The candidate for the nearest point that belongs to `t` lies on the surface if
+    /// f(t) = 1, and outside the ellipsoid if f(t) > 1.
     fn level(&self, t: N) -> (N, N) {
         let (mut level, mut fall) = (N::ZERO, N::ZERO);
         for axis in 0..D {

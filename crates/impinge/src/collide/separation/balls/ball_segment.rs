@@ -70,15 +70,17 @@ impl<N: Real, const D: usize> Foot<N, D> {
         Self { ends, point, offset, distance: offset.norm(), is_inside }
     }
 
-    /// Returns the projection. Its direction costs more to compute than all other values.
+    /// Returns the projection of the point. The direction costs more to compute than all other
+    /// values, so callers that need only the distance read the field.
     pub(in crate::collide::separation) fn projection(&self) -> Projection<N, D> {
         Projection { distance: self.distance, outward: self.outward(), point: self.point }
     }
 
-    /// Returns the unit direction from the segment to the projected point. Between the ends it is
-    /// the part of the offset perpendicular to the segment, beyond them the offset. If that is zero
-    /// or mostly rounding error, it is a fixed perpendicular of the segment, or the first axis for
-    /// a segment without length.
+    /// Returns the unit direction from the segment to the projected point. If the nearest point
+    /// lies between the ends, this is the direction of the part of the offset perpendicular to the
+    /// segment, else the direction of the offset. If that part or offset is zero or mostly rounding
+    /// error, returns a fixed perpendicular of the segment, or the first axis for a segment without
+    /// length.
     fn outward(&self) -> Vector<N, D> {
         let direct = if self.is_inside { None } else { unit(&self.offset) };
         if let Some((outward, _)) = direct {

@@ -45,7 +45,7 @@ pub(in crate::collide::separation) fn project<N: Real>(
     projected
 }
 
-/// Returns the distance of [`project`].
+/// Returns the distance of [`project`], without computing a direction.
 pub(in crate::collide::separation) fn distance_from<N: Real>(
     corners: &[Point<N, 3>; 3],
     center: &Point<N, 3>,
@@ -55,8 +55,9 @@ pub(in crate::collide::separation) fn distance_from<N: Real>(
     over.map_or_else(|| on_nearest_side(corners, center).distance, |(distance, _)| distance)
 }
 
-/// Returns the distance of a point that projects into the triangle, and the normal towards it.
-/// `front` is the triangle's front normal. `None` if the point projects elsewhere.
+/// Returns the distance of a point that projects into the triangle, and the unit normal of the
+/// triangle on the side of the point. `front` is the triangle's front normal. `None` if the point
+/// projects elsewhere.
 fn height_over<N: Real>(
     corners: &[Point<N, 3>; 3],
     front: &Vector<N, 3>,
@@ -77,8 +78,8 @@ fn on_longest_side<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) ->
 /// Returns the unit normal on the side from which the corners run counter-clockwise; `None` for a
 /// triangle that is a segment up to rounding.
 ///
-/// It is computed from the longest side and the perpendicular to it: however thin the triangle, the
-/// normal is inexact only in the direction in which the triangle is thin.
+/// It is computed from the longest side and the perpendicular to it, so that rounding can tilt the
+/// normal of a thin triangle only about the longest side.
 fn front<N: Real>(corners: &[Point<N, 3>; 3]) -> Option<Vector<N, 3>> {
     let side = |at: usize| corners[(at + 1) % 3] - corners[at % 3];
     let longest = longest_side(corners);
@@ -109,7 +110,7 @@ fn on_nearest_side<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) ->
     best
 }
 
-/// Returns `normal` or its opposite, whichever does not point away from `direction`.
+/// Returns `normal`, negated if its dot product with `direction` is negative.
 fn toward<N: Real>(normal: &Vector<N, 3>, direction: &Vector<N, 3>) -> Vector<N, 3> {
     if normal.dot(direction) < N::ZERO { -normal } else { *normal }
 }

@@ -94,10 +94,10 @@ impl<N: Real> BoxPair<N> {
     ///
     /// The length of the cross product of two axes is the sine of their angle. Dividing a negative
     /// gap by the sine can only lower it. So a pair of edges is skipped without a square root if
-    /// its undivided gap is not positive and not above the largest gap so far. The product's
-    /// components on the axes of the second box are differences of two products, which are small if
-    /// the sine is small. They equal entries of the rotation only up to rounding, and that error
-    /// would be divided by the sine as well; so the differences are used.
+    /// its undivided gap is not positive and not above the largest gap so far. The components of
+    /// the cross product on the axes of the second box are differences of two products, which are
+    /// small if the sine is small. They equal entries of the rotation only up to rounding, and that
+    /// error would be divided by the sine as well; so the differences are used.
     fn best_edges(&self, abs_rotation: &Matrix<N, 3>, least: N) -> Option<(AxisKind, N)> {
         let (r, t) = (&self.pose12.rotation, &self.pose12.translation);
         let (mut best, mut bound) = (None, least);
@@ -125,7 +125,8 @@ impl<N: Real> BoxPair<N> {
         best.map(|edges| (edges, bound))
     }
 
-    /// Returns an axis with its unit vector, pointing from the first box to the second.
+    /// Adds the unit vector to an axis of the given kind and gap; it points from the first box to
+    /// the second.
     fn axis(&self, kind: AxisKind, gap: N) -> BoxAxis<N> {
         let direction = match kind {
             AxisKind::Face1(axis) => Vector::<N, 3>::ith(axis, N::ONE),

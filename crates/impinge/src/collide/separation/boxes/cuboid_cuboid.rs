@@ -13,9 +13,9 @@ use crate::shape::Kind;
 /// Returns the separation of two boxes.
 ///
 /// For overlapping boxes the separating axis test is exact. For boxes that are apart the test gives
-/// a lower bound. The bound is the distance if a nearest point lies inside a face, or both inside
-/// edges that are not parallel. In other cases, such as two corners or a corner and an edge, the
-/// general algorithm is used.
+/// a lower bound. The bound equals the distance if one of the two nearest points lies inside a
+/// face, or if both lie inside edges that are not parallel. In other cases, such as two corners or
+/// a corner and an edge, the general algorithm is used.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -24,8 +24,9 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     along_best(pair, limit, &boxes, &boxes.best_axis())
 }
 
-/// Returns the result of [`separation`] if the axes decide it: the boxes overlap, or their gap
-/// exceeds `limit` (`Some(None)`). `None` if the axes do not decide it.
+/// Returns the result of [`separation`] if the axes decide it, because the boxes overlap or the
+/// largest gap exceeds `limit`; the inner `None` is a distance above `limit`. The outer `None`
+/// means that the axes do not decide it.
 pub(in crate::collide::separation) fn decided_by_axes<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -58,7 +59,8 @@ fn of_pair<N: Real>(pair: &Pair<'_, N, 3>) -> BoxPair<N> {
     BoxPair { half1, half2, pose12: pair.pose12 }
 }
 
-/// Returns the separation, computed from `best`, the axis of the largest gap; `None` above `limit`.
+/// Returns the separation computed from `best`, the axis of the largest gap, or by the general
+/// algorithm if the nearest points do not lie along this axis; `None` above `limit`.
 fn along_best<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -180,7 +182,8 @@ impl<N: Real> BoxReferenceFace<N> {
 
     /// Clips the other box's face that faces this one to the side planes of this face, and returns
     /// the mean of the lowest corners of the result. If nothing is left, returns the mean of the
-    /// lowest corners of the unclipped face. `other` are the half extents of the other box, `pose`
+    /// lowest corners of the unclipped face. If the boxes are apart and a single corner is lowest,
+    /// returns this corner without clipping. `other` are the half extents of the other box, `pose`
     /// is its pose in the frame of this box, and `distance` its known signed height above this
     /// face.
     fn deepest(&self, other: &Vector<N, 3>, pose: &Pose<N, 3>, distance: N) -> Point<N, 3> {

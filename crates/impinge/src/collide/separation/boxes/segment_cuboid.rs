@@ -4,8 +4,8 @@
 //! this sum is piecewise linear, with breaks where the segment crosses the planes of faces, so the
 //! nearest point is found between two breaks. If segment and box overlap, the separating axis test
 //! over three faces and three pairs of edges is exact. If the distance of the points found differs
-//! from that of the two supporting planes, the pair falls back to the general algorithm. This
-//! closed form takes half the time of the separating axis test in
+//! from the distance of the supporting planes perpendicular to their direction, the pair falls back
+//! to the general algorithm. This closed form takes half the time of the separating axis test in
 //! [`hulls`](crate::collide::separation::hulls).
 //!
 //! ```text

@@ -9,8 +9,8 @@ use crate::math::simd::{Level, Simd};
 use crate::math::{Real, Wide, min};
 use crate::shape::{Ball, Kind, Segment};
 
-/// Computes the separations of a ball from the segments; `None` if a length is close to underflow
-/// or overflow.
+/// Adds the separations of the ball from the segments within the limit to `links`; `None` if a
+/// length is close to underflow or overflow.
 pub(super) fn links<N: Real>(
     level: Level,
     question: &ChainQuestion<'_, N>,

@@ -10,8 +10,9 @@ use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Real, Vector, Wide, min};
 use crate::shape::Segment;
 
-/// Computes the separations of the segments from the solid. `None` unless the solid is a polygon of
-/// at most 8 vertices, with or without a radius, and if some lane has no result.
+/// Adds the separations of the segments within the limit from the solid to `links`. `None` unless
+/// the solid is a polygon of at most 8 vertices, with or without a radius, and if some lane has no
+/// result.
 pub(super) fn links<N: Real>(
     level: Level,
     question: &ChainQuestion<'_, N>,
@@ -20,7 +21,9 @@ pub(super) fn links<N: Real>(
     with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, question, links))
 }
 
-/// Culls 8 segments at a time by their best axis; computes the others one by one along that axis.
+/// Finds the best axes of 8 segments at a time, culls the segments beyond the limit, and computes
+/// the separation of each remaining segment along its axis. `None` in the cases listed at
+/// [`links`].
 #[inline(always)]
 fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -159,7 +162,8 @@ impl<N: Real> SegmentAxes<N> {
     }
 }
 
-/// Returns the best of the segments' own directions: both normals and both tips.
+/// Returns for each lane the direction with the largest gap among the segment's own directions:
+/// both normals, and both tips, which are the directions along the segment.
 #[inline(always)]
 fn of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

@@ -11,8 +11,8 @@ use crate::math::simd::{Level, Simd};
 use crate::math::{Point, Real, Vector, Wide, min};
 use crate::shape::{Kind, Segment};
 
-/// Computes the separations of the segments from `core`, a segment with a radius; `None` if a
-/// length in some lane is close to underflow or overflow.
+/// Adds the separations of the segments within the limit from `core`, a segment with a radius, to
+/// `links`; `None` if a length in some lane is close to underflow or overflow.
 pub(super) fn links<N: Real>(
     level: Level,
     question: &ChainQuestion<'_, N>,
@@ -41,7 +41,8 @@ pub(super) fn links<N: Real>(
     Some(())
 }
 
-/// Computes the separation of one segment whose [`SegmentGap`] is not known.
+/// Computes the separation of one segment for which [`SegmentGaps`] has no valid lane; `None` above
+/// the limit.
 #[inline(never)]
 fn alone<N: Real>(
     question: &ChainQuestion<'_, N>,

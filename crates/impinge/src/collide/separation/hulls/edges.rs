@@ -75,7 +75,7 @@ impl<N: Real> EdgeBlock<N> {
     }
 }
 
-/// Indices of edges, ascending.
+/// Indices of the edges of one solid that an edge query compares, ascending.
 pub(super) struct CandidateEdges {
     indices: [u8; MAX_EDGES],
     len: usize,
@@ -258,7 +258,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         self.proved::<S, V>(simd, &normal_between(&points, &across)?, points)
     }
 
-    /// Returns the nearest points of two edges, and a vector perpendicular to both, of either sign.
+    /// Returns the nearest points of two edges, and a vector perpendicular to both, of any length
+    /// and either sign; zero for parallel edges.
     fn nearest_points(&self, [edge1, edge2]: [usize; 2]) -> ([Vector<N, 3>; 2], Vector<N, 3>) {
         let ends1 = self.own.solid.ends(self.own.vertices, edge1);
         let ends2 = self.other.solid.ends(self.other.vertices, edge2);
@@ -280,7 +281,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     }
 }
 
-/// Returns the nearest points of two edges, and a vector perpendicular to both, of either sign.
+/// Returns the nearest points of two edges, and a vector perpendicular to both, of any length and
+/// either sign; zero for parallel edges.
 pub(super) fn nearest_points<N: Real>(
     ends1: &[Vector<N, 3>; 2],
     ends2: &[Vector<N, 3>; 2],

@@ -1,4 +1,5 @@
-//! Reference face of the test, and the part of the other solid over it.
+//! Reference face of the separating axis test, and the search for the lowest point of the other
+//! solid over this face.
 
 use core::ops::ControlFlow;
 
@@ -177,8 +178,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         Separation { distance, normal: self.normal, point1, point2 }
     }
 
-    /// Returns the first vertex in the mask `lowest` that projects into the face. If an edge or a
-    /// face is lowest, the result may be another of its points. [`LowestPoint::Beside`] if no
+    /// Returns the first vertex in the mask `lowest` that projects into the face or, if there is
+    /// none, another lowest point, computed by [`Self::point_among`]. [`LowestPoint::Beside`] if no
     /// lowest point projects into the face.
     fn lowest_point(&self, lowest: u32) -> LowestPoint<N> {
         let (mut max_distance, mut rest) = (N::INFINITY, lowest);

@@ -6,7 +6,7 @@
 //!
 //! 1. The faces of both solids are queried for the reference face: the face that the other solid
 //!    lies farthest above, or least deep below ([`vertices`]).
-//! 2. If the lowest vertex of the other solid lies over that face and above its plane, it
+//! 2. If a lowest point of the other solid lies over that face and above its plane, it
 //!    determines the result ([`face`]).
 //! 3. Otherwise edges are queried ([`edges`]), but only those with an end near enough to the plane
 //!    of the reference face. If the solids overlap, these are the pairs of edges that form a face
@@ -96,7 +96,7 @@ pub(super) enum SatResult<N: Real> {
     Beyond,
     /// The proved separation of the solids, or of their cores.
     Found(Separation<N, 3>),
-    /// No result is proved.
+    /// No result is proved; the caller has to fall back.
     Unproved,
 }
 
@@ -181,8 +181,9 @@ fn sat_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     SatResult::Found(if is_second { in_first_frame(&found, pose12) } else { found })
 }
 
-/// Transforms a separation from the frame of the second solid, with the second solid as its first,
-/// into the frame of the first solid; `pose12` is the pose of the second solid.
+/// Converts a separation in the frame of the second solid, whose `point1` belongs to the second
+/// solid, into a separation in the frame of the first solid. `pose12` is the pose of the second
+/// solid in the frame of the first.
 pub(super) fn in_first_frame<N: Real>(
     found: &Separation<N, 3>,
     pose12: &Pose<N, 3>,

@@ -40,7 +40,7 @@ enum Rings<'a, N: Real> {
 
 impl<'a, N: Real> Polyhedral<'a, N> {
     /// Makes the polyhedron of a hull, or of another solid from its `features`. `None` for a hull
-    /// with more features than the lanes hold, and for another solid without features.
+    /// with more features than the lanes hold, and for another solid if `features` is `None`.
     pub(in crate::collide::separation) fn of(
         kind: Kind<'a, N, 3>,
         features: Option<&'a LocalFeatures<N>>,
@@ -268,8 +268,9 @@ mod tests {
     use super::*;
     use crate::math::Point;
 
-    /// Asserts that edges lie between their faces, and that rings with an area are
-    /// counter-clockwise.
+    /// Asserts that the ends of each edge and the vertices of each ring lie on their faces, that
+    /// each edge runs in the direction of the cross product of the normals of its faces, and that
+    /// rings with an area are counter-clockwise.
     fn check(solid: &Polyhedral<'_, f64>) {
         let is_zero = |height: &f64| height.abs() < 1e-14;
         let at = |vertex: u32| {

@@ -1,5 +1,5 @@
-//! Asserts that the results that the test proves are right up to rounding, measured against the
-//! general algorithm, and that all instruction sets give the same bits.
+//! Asserts that results proved by the separating axis test agree with the general algorithm up to
+//! rounding, and that all instruction sets give the same bits.
 
 use super::{SatResult, result, segment};
 use crate::collide::Pair;

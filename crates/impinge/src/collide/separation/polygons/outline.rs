@@ -250,7 +250,8 @@ impl<N: Real> PolygonOutline<N> {
         let mut most = V::all(simd, -N::INFINITY);
         for (number, block) in self.blocks.iter().enumerate() {
             let [xs, ys] = &block.vertices;
-            // Copies of the last vertex fill the block, so half a block may be skipped.
+            // The lanes after the last vertex hold copies of it, so the second half of a block with
+            // at most four vertices is skipped.
             let halves = if self.count - number * LANES > LANES / 2 { 2 } else { 1 };
             for half in 0..halves {
                 for lane in 0..LANES / 2 {

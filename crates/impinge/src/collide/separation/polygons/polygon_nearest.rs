@@ -139,7 +139,8 @@ impl<'a, N: Real> OutlinePair<'a, N> {
         Some(Separation { distance, normal, point1, point2 })
     }
 
-    /// Returns the separation of outlines that touch or overlap.
+    /// Returns the separation of outlines that touch or overlap along the axis. Its points are at
+    /// the middle of the overlap interval of both features at the tops.
     #[inline(always)]
     fn overlapping(&self) -> Separation<N, 2> {
         let tangent = perp(&self.axis.normal);

@@ -145,8 +145,8 @@ pub(in crate::collide::separation) fn of_axis<S: Simd, N: Real, V: Wide<S, Scala
     Some(cores.rounded(outlines[0].rounding, outlines[1].rounding))
 }
 
-/// Returns the normal of a side with the largest gap; sides of the first outline come first. For
-/// two points, the direction between them, or the x axis if they coincide.
+/// Returns the normal of a side with the largest gap; in a tie, the side of the first outline wins.
+/// For two points, the direction between them, or the x axis if they coincide.
 #[inline(always)]
 fn best_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -188,7 +188,8 @@ fn best_side_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     best
 }
 
-/// Returns the direction with the largest gap: `best`, the best normal of a side, or a tip.
+/// Returns the direction with the largest gap among `best`, which is the best normal of a side, and
+/// the tips of both outlines; `best` wins a tie.
 #[inline(always)]
 fn best_axis<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

@@ -38,8 +38,8 @@ impl<N: Real> ChordSearch<N> {
         (length > still()).then_some(Self { ends, along, length, bounds, is_known, halvings: 0 })
     }
 
-    /// Returns the parameter of the point of the chord nearest to the origin, the middle of the
-    /// solid.
+    /// Returns the parameter of the point of the chord nearest to the origin, which is the centre
+    /// of the round solid.
     fn start(&self) -> N {
         let share = -self.ends[0].dot(&self.along) / (self.length * self.length);
         max(min(share, N::ONE), N::ZERO)
@@ -54,7 +54,8 @@ impl<N: Real> ChordSearch<N> {
         }
     }
 
-    /// Records the slope at a parameter.
+    /// Moves a bound to a parameter with a known slope: the upper bound if the distance rises
+    /// there, else the lower bound.
     fn note(&mut self, share: N, slope: N) {
         let rises = usize::from(slope > N::ZERO);
         (self.bounds[rises], self.is_known[rises]) = (share, true);

@@ -48,7 +48,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     found.filter(|found| found.distance <= limit)
 }
 
-/// Source of the overlap normals of two solids, which are known if the solids are coaxial.
+/// Gives the general algorithm the normal of an overlap, by [`peak`], if the solids are coaxial.
 struct CoaxialPeaks<'a, 'b, N: Real> {
     pair: &'b Pair<'a, N, 3>,
 }
@@ -86,8 +86,8 @@ struct AxialOutline<N: Real> {
 
 impl<N: Real> AxialOutline<N> {
     /// Returns the outline of a cylinder, cone, segment or capsule, without a capsule's radius.
-    /// `None` for other kinds, if the half height or radius of a cylinder or cone is within
-    /// rounding error, and if half the length of a segment is.
+    /// `None` for other kinds, and for cylinders, cones and segments whose half height, radius or
+    /// half length is within rounding error.
     fn of(kind: Kind<'_, N, 3>, pose: &Pose<N, 3>, shrink: N) -> Option<Self> {
         let position = pose.translation * shrink;
         if let Some(round) = Round::new(&kind, shrink) {
@@ -161,7 +161,7 @@ struct Coaxial<N: Real> {
     second: AxialOutline<N>,
     /// Offset of the second centre from the first, perpendicular to the axis.
     offset: Vector<N, 3>,
-    /// Bound of the distance of the solids from a common axis.
+    /// Upper bound of the distance of the solids from a common axis.
     apart: N,
 }
 
@@ -190,8 +190,8 @@ impl<N: Real> Coaxial<N> {
         beside.map_or_else(|| perpendicular_to(&self.first.axis), |(aside, _)| aside)
     }
 
-    /// Returns the exit along the normal of a cap or side; `normal` is in the half-plane of the
-    /// solid `whose`.
+    /// Returns the exit (a direction and the depth along it) along the normal of a cap or side;
+    /// `normal` is in the half-plane of the solid `whose`.
     fn direction(
         &self,
         normal: Vector<N, 2>,

@@ -1,12 +1,13 @@
 //! Separation of two cylinders.
 //!
 //! Tries the directions that can be the normal, each with a cheap proof: normals of caps, the
-//! common perpendicular of both axes, from an axis to the other rim, and from rim to rim. If the
-//! solids are apart, the proof is two points as far apart as a pair of supporting planes. If they
-//! overlap, the proof is a ball: if a ball centred at a point of one solid lies within the other,
-//! no separating translation is shorter than its radius. A point below a cap is the centre of such
-//! a ball if its distance from the side is at least its depth; for a side, the distance from the
-//! caps counts. Other cases, such as two overlapping rims, fall back to the general algorithm.
+//! common perpendicular of both axes, the direction from an axis to the rim of the other solid, and
+//! the direction from rim to rim. If the solids are apart, the proof is two points as far apart as
+//! a pair of supporting planes. If they overlap, the proof is a ball: if a ball centred at a point
+//! of one solid lies within the other, no separating translation is shorter than its radius. A
+//! point below a cap is the centre of such a ball if its distance from the side is at least its
+//! depth; for a side, the distance from the caps counts. Other cases, such as two overlapping rims,
+//! fall back to the general algorithm.
 
 use super::coaxial;
 use crate::collide::Pair;
@@ -53,7 +54,8 @@ pub(in crate::collide::separation) enum RevolvedResult<N: Real> {
 
 impl<N: Real> RevolvedResult<N> {
     /// Tries directions until one gives the separation, or separates the solids by more than
-    /// `beyond`. The flag of each direction is `true` if it is in the frame of the second solid.
+    /// `beyond`; `Undecided` if none does. The flag of each direction is `true` if it is in the
+    /// frame of the second solid.
     fn of(tries: &[(Attempt<'_, N>, bool)], beyond: N) -> Self {
         for (attempt, is_second) in tries {
             let Some(tried) = attempt() else { continue };
@@ -131,8 +133,7 @@ struct Tried<N: Real> {
     found: Option<RevolvedFound<N>>,
 }
 
-/// Function that computes a direction when it is tried; it returns `None` if there is no such
-/// direction.
+/// Function that computes the result for one direction; `None` if there is no such direction.
 type Attempt<'a, N> = &'a dyn Fn() -> Option<Tried<N>>;
 
 /// Two cylinders, each in the frame of the other.

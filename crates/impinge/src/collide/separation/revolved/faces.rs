@@ -47,7 +47,8 @@ impl<N: Real> RevolvedPair<'_, N> {
 
     /// Tries the vertex of the flat solid that is lowest along the normal of a cap, for each cap of
     /// the round solid. Returns the separation at the first such vertex that is also lowest along
-    /// the direction of its own distance.
+    /// `outward`, the direction of its distance from the round solid; `None` if there is none or
+    /// the separation is not proved.
     fn by_cap(&self) -> Option<RevolvedFound<N>> {
         self.profile.round.caps().iter().find_map(|&up| {
             let vertex = self.lowest(&(Vector::<N, 3>::y() * N::lit(up)));

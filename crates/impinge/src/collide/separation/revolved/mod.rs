@@ -77,8 +77,9 @@ pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     }
 }
 
-/// Returns the separation if the search decides. An inner `None` is a pair beyond `limit`; an outer
-/// `None` is an undecided pair.
+/// Returns the separation if the search decides. An inner `None` is a pair beyond `limit`, or with
+/// a pose that is not finite; an outer `None` is an undecided pair, or one for which [`Round::new`]
+/// returns `None`.
 fn attempt<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Option<Separation<N, 3>>> {
     let (first, second) = (Geometry(pair.first), Geometry(pair.second));
     let (Some(map1), Some(map2)) = (first.as_support_map(), second.as_support_map()) else {

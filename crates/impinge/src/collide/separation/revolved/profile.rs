@@ -135,7 +135,7 @@ impl<N: Real> ProfileView<N> {
         self.point - self.outward * self.distance
     }
 
-    /// Returns the unit tangent of the rim at the point's angle.
+    /// Returns the unit tangent of the rim at the angle of the point about the axis.
     pub(super) fn around(&self) -> Vector<N, 3> {
         Vector::<N, 3>::new(-self.away.y, N::ZERO, self.away.x)
     }
@@ -145,10 +145,10 @@ impl<N: Real> ProfileView<N> {
         self.outward.dot(along)
     }
 
-    /// Returns the step of Newton's method along `along` that minimises the squared distance to the
-    /// rim, even if another part is nearest to the point. Of a cylinder's two rims it is the one on
-    /// the point's side of the origin. `None` if the second derivative of that distance is not
-    /// positive.
+    /// Returns the multiple of `along` that is one step of Newton's method for the smallest squared
+    /// distance to the rim, even if another part is nearest to the point. A cylinder's rim on the
+    /// point's side of the origin is used. `None` if the second derivative of the squared distance
+    /// is not positive.
     pub(super) fn step_to_rim(&self, profile: &Profile<N>, along: &Vector<N, 3>) -> Option<N> {
         let Round { half, radius, is_cone } = profile.round;
         let end = if is_cone || self.point.y < N::ZERO { -half } else { half };
@@ -168,7 +168,7 @@ impl<N: Real> ProfileView<N> {
         match self.part {
             ProfilePart::Cap => None,
             // As a function of the multiple of `along`, the distance from the axis is a hyperbola.
-            // The slope sought is that at which the hyperbola has the slope `rise`.
+            // The multiple sought is the one at which the hyperbola has the slope `rise`.
             ProfilePart::Side => {
                 let rise = -up * self.offset.y / self.offset.x;
                 let left = across - rise * rise;

@@ -3,7 +3,7 @@
 //! The apex or a rim of one solid is tried against the other. Over a rim the distance is a function
 //! of one angle, whose minimum Newton's method finds. The remaining case is side against side; the
 //! common normals of two sides are the intersections of two circles on the sphere of directions. If
-//! the solids overlap, the proof is two balls around one point, one in each solid, whose radii add
+//! two sides overlap, the proof is two balls around one point, one in each solid, whose radii add
 //! up to the depth.
 
 use super::profile::Profile;

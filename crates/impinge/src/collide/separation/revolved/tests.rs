@@ -25,8 +25,8 @@ fn answers_are_those_of_the_general_algorithm() {
     agree::<f32>(4, 600, 3e-6);
 }
 
-/// Returns a pair moved to the given signed distance, up to the error of three steps along its
-/// normal.
+/// Returns a pair at about the given signed distance: a random pair, moved three times along the
+/// normal of its separation.
 fn placed<'a, N: Real>(
     shapes: &'a Solids<N>,
     random: &mut Random,

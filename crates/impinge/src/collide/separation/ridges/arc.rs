@@ -51,8 +51,8 @@ impl<N: Real> RidgeLine<N> {
 
 /// An arc of at most half a circle, counter-clockwise, and the lines that are highest at its ends.
 /// The two lines are equal if one point is highest at both ends; otherwise each line is lower at
-/// the end of the other line, so that they cross. An arc may have no length: if a bound is attained
-/// at an end, one of the two halves has none.
+/// the end of the other line, so that they cross. An arc may have no length: if an arc is split at
+/// one of its ends, one of the two parts has none.
 #[derive(Clone, Copy)]
 pub(super) struct Arc<N: Real> {
     pub(super) ends: [Vector<N, 2>; 2],
@@ -144,7 +144,7 @@ pub(super) fn are_above<N: Real>(heights: &[[N; 2]; 2], least: N) -> bool {
 pub(super) struct ArcSearch<N: Real> {
     /// Least depth so far, found by this or by another search.
     pub(super) least: N,
-    /// Direction of the least depth; `None` if another search found it.
+    /// Direction of the least depth; `None` if this search has not improved on the initial depth.
     pub(super) best: Option<Vector<N, 2>>,
     /// Improvements smaller than this are not searched for.
     gap: N,

@@ -73,7 +73,7 @@ fn cores<'a, N: Real>(pair: &Pair<'a, N, 3>) -> (FlatCore<'a, N, 3>, &'a dyn Sup
     }
 }
 
-/// Source of the overlap normals of two solids whose cores overlap.
+/// Gives the general algorithm the normal of least depth for a pair whose cores overlap.
 struct OverlapPeaks<'a, 'b, N: Real> {
     pair: &'b Pair<'a, N, 3>,
 }
@@ -125,7 +125,8 @@ struct DepthSearch<'a, N: Real> {
 }
 
 impl<N: Real> DepthSearch<'_, N> {
-    /// Searches all features for the least depth, up to `gap`; `None` if arcs are split too often.
+    /// Searches all features for the least depth, to within `gap`; `None` if arcs are split too
+    /// often.
     fn search(&mut self, gap: N) -> Option<()> {
         let mut ends = SmallVec::<[Vector<N, 3>; 16]>::new();
         for (index, (normal, vertex)) in self.flat.normals.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Support of cylinders and cones about the y axis.
+//! Support points, touched points and side normals of cylinders and cones about the y axis.
 
 use smallvec::SmallVec;
 
@@ -23,7 +23,7 @@ pub(super) struct Slope<N> {
 pub(in super::super) struct Round<N: Real> {
     /// Half the height.
     pub(in super::super) half: N,
-    /// Radius of cylinder or base.
+    /// Radius of the cylinder, or of the base of the cone.
     pub(in super::super) radius: N,
     pub(in super::super) is_cone: bool,
 }
@@ -41,7 +41,8 @@ impl<N: Real> Round<N> {
         (round.half > rounding_error() && round.radius > rounding_error()).then_some(round)
     }
 
-    /// Returns the positions of the caps along the axis: 1 for the upper end, -1 for the lower.
+    /// Returns the sides of the caps: 1 for a cap at the upper end of the axis, -1 for a cap at the
+    /// lower end. A cone has only the lower cap.
     pub(in super::super) fn caps(&self) -> &'static [f64] {
         if self.is_cone { &[-1.0] } else { &[1.0, -1.0] }
     }
@@ -76,11 +77,12 @@ impl<N: Real> Round<N> {
         Slope { aside, along, extent: along * self.half }
     }
 
-    /// Returns up to 8 points of this solid, among which are those that touch a plane with the
-    /// normal `direction`. For the normal of a cap they are the ends of its diameters through the
-    /// first four of the points `below`. For other directions they are both ends of the line along
-    /// the side in that direction: two points of the rims or, of a cone, a point of the rim and the
-    /// apex.
+    /// Returns up to 8 points of this solid, at least one of which touches the supporting plane
+    /// with the normal `direction`; the point of a separation is computed from them. For the normal
+    /// of a cap they are the ends of its diameters through the first four of the points `below`
+    /// (none if there are no such points). For other directions they are both ends of the line
+    /// along the side in that direction: two points of the rims or, of a cone, a point of the rim
+    /// and the apex.
     pub(in super::super) fn touched<'a>(
         &self,
         direction: &Vector<N, 3>,

@@ -22,7 +22,8 @@ pub(in crate::collide) fn core<N: Real, const D: usize>(
 /// Returns the point of a segment nearest to `point`, and whether it lies strictly between the
 /// ends.
 ///
-/// It is computed from the nearer end, which keeps the rounding error small on long segments.
+/// The point is computed from the nearer end, which keeps the rounding error small on long
+/// segments.
 #[inline]
 pub(in crate::collide::separation) fn nearest_on_segment<N: Real, const D: usize>(
     ends: &[Point<N, D>; 2],

@@ -29,12 +29,12 @@ pub(crate) struct Nearest<V, M, const D: usize> {
     /// Coordinate of the given point along `along`, measured from the first end, times the length
     /// of the segment.
     pub(crate) from_first: V,
-    /// Coordinate of the given point against `along`, measured from the last end, times the length
-    /// of the segment.
+    /// Coordinate of the given point along the negated `along`, measured from the last end, times
+    /// the length of the segment.
     pub(crate) to_last: V,
 }
 
-/// Returns the nearest points of segments to points, computed from the nearer end.
+/// Returns for each lane the point of a segment nearest to `point`, computed from the nearer end.
 #[inline(always)]
 pub(crate) fn nearest_on_segment<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,

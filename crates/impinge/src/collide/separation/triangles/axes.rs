@@ -54,13 +54,13 @@ pub(super) struct TriangleAxes<N> {
     pub(super) features: [N; LANES],
 }
 
-/// Features that a direction is perpendicular to.
+/// The feature or the two features that determine a direction, which is perpendicular to them.
 pub(super) enum AxisFeature {
-    /// The triangle's own normal.
+    /// The triangle: the direction is one of its two normals.
     Triangle,
-    /// A face of the solid.
+    /// A face of the solid, by index.
     Face(usize),
-    /// An edge of the solid and a side of the triangle.
+    /// An edge of the solid and a side of the triangle, by index.
     Edges(usize, usize),
 }
 

@@ -341,8 +341,8 @@ impl<V> TrianglePacket<V> {
     }
 }
 
-/// Returns whether some triangle of `features` that is not thin contains the nearest side or corner
-/// of triangle `lane` of `own`, and is nearer to the centre.
+/// Returns whether some triangle of `features` that is neither thin nor small contains the nearest
+/// side or corner of triangle `lane` of `own`, and is certainly nearer to the centre.
 #[inline(always)]
 fn is_hidden<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

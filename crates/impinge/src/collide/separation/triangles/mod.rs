@@ -62,7 +62,7 @@ pub(crate) struct TiledTriangles<'a, N: Real> {
     pub(crate) origin: Vector<N, 3>,
 }
 
-/// Distance of a triangle and a solid, in the frame of the triangle.
+/// Gap between a triangle and a solid along a direction, in the frame of the triangles.
 #[derive(Clone, Copy)]
 pub(crate) struct TriangleGap<N: Real> {
     /// Signed gap along `normal`: the distance if `touched` is `Some`, else a lower bound of it.
@@ -120,7 +120,8 @@ struct TriangleQuery<'a, N: Real> {
 }
 
 impl<N: Real> TriangleQuery<'_, N> {
-    /// Packs the selected triangles, 8 at a time, and visits those within the limit.
+    /// Packs the selected triangles, 8 at a time, and visits the triangles that are not certainly
+    /// farther than the limit.
     fn each(&self, visit: GapVisitor<'_, N>) {
         let (mut slots, mut first) = (self.parts.slots(), 0);
         loop {

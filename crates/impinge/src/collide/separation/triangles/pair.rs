@@ -136,7 +136,7 @@ impl<N: Real> PlacedTriangle<N> {
     }
 }
 
-/// The normal of one triangle or its opposite, whichever gives the larger gap.
+/// The normal of one triangle, negated if that gives a larger gap to the other triangle.
 struct FaceAxis<N: Real> {
     /// Signed height of the other triangle above this one's plane; negative if it extends below.
     gap: N,

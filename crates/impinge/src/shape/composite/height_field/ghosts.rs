@@ -23,8 +23,8 @@ impl<N: Real> HeightField<N, 2> {
         self
     }
 
-    /// Makes the first and the last cell ghosts. For a field whose outermost heights are samples of
-    /// the neighbouring fields: solids then do not catch on its ends.
+    /// Makes the first and the last cell ghosts. Use it for a field whose outermost heights are
+    /// samples of the neighbouring fields: solids then do not catch on the ends of the field.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Vector};
@@ -82,8 +82,9 @@ impl<N: Real> HeightField<N, 3> {
         self
     }
 
-    /// Makes the outermost ring of cells ghosts. For a tile of a terrain whose outermost heights
-    /// are samples of the neighbouring tiles: solids then do not catch on the seams between tiles.
+    /// Makes the outermost ring of cells ghosts. Use it for a tile of a terrain whose outermost
+    /// heights are samples of the neighbouring tiles: solids then do not catch on the seams between
+    /// tiles.
     ///
     /// ```
     /// use impinge::dim3::math::Vector;

@@ -171,7 +171,8 @@ impl<N: Real, const D: usize> HeightField<N, D> {
     }
 }
 
-/// Returns the grid of `rows` along z and `columns` along x; 2D has one row.
+/// Returns the grid of `rows` along z and `columns` along x; 2D has one row. An error if the number
+/// of heights is not their product, or the scale or a height is not finite.
 fn grid<N: Real, const D: usize>(
     [rows, columns]: [usize; 2],
     heights: Vec<N>,

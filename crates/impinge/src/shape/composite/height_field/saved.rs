@@ -30,8 +30,8 @@ impl<N: Real, const D: usize> HeightField<N, D> {
 }
 
 impl<N: Real> FieldRecord<N> {
-    /// Restores the field by `make`, the constructor of its dimension. The caller must rebuild the
-    /// pyramid, which depends on the marks.
+    /// Restores the field by `make`, the constructor of its dimension. An error if `make` fails, or
+    /// the marks are damaged. The caller must rebuild the pyramid, which depends on the marks.
     pub(in crate::shape) fn make<const D: usize>(
         &self,
         make: impl FnOnce(Vec<N>, Vector<N, D>) -> Result<HeightField<N, D>, ShapeError>,

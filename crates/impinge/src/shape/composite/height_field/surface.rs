@@ -122,7 +122,8 @@ impl<N: Real> FieldFace<N> {
     }
 }
 
-/// The lazily computed neighbourhood of one feature of a triangle.
+/// The neighbours of one feature of a triangle: the triangle across a side, or the triangles around
+/// a corner. Each is computed on first use.
 struct Beside<N: Real> {
     fold: Option<Fold<N>>,
     star: Option<Star<N>>,
@@ -348,8 +349,8 @@ struct StarFace<N: Real> {
     front: Vector<N, 3>,
 }
 
-/// Returns the component of the unit vector `edge` along the unit vector `along`. −1, the least
-/// component, if `edge` is zero.
+/// Returns the component of the unit vector `edge` along the unit vector `along`. Returns −1, the
+/// least possible component, if `edge` is zero.
 fn rise<N: Real>(edge: &Vector<N, 3>, along: &Vector<N, 3>) -> N {
     if *edge == Vector::<N, 3>::zeros() { -N::ONE } else { edge.dot(along) }
 }
@@ -419,9 +420,10 @@ impl<N: Real> HeightField<N, 2> {
         front.map_or(N::ZERO, |front| front.dot(vector))
     }
 
-    /// Returns whether the grid point `index` admits `normal` ([`Seam::admits`]): no segment that
-    /// leaves the point rises along `normal`, the two segments at the point are not collinear, and
-    /// in a one-sided field the higher segment has its front towards `normal`.
+    /// Returns whether the grid point `index` admits `normal` ([`Seam::admits`]): the directions of
+    /// both segments away from the point have components of at most zero along `normal`, the two
+    /// segments are not collinear, and in a one-sided field the segment with the larger component
+    /// has its front towards `normal`.
     fn point_admits(&self, part: u32, index: usize, normal: &Vector<N, 2>) -> bool {
         let own = self.along(part).unwrap_or_else(Vector::<N, 2>::zeros);
         let mut seam = Seam::of_segments(own, normal);

@@ -1,4 +1,4 @@
-//! Walks around the sides and corners of a mesh.
+//! Iteration over the triangles at a side or a corner of a mesh.
 //!
 //! Some meshes contain triangles without area as fillers: where a corner touches the interior of a
 //! longer side, a thin triangle joins that corner to the two ends of the side. Seams are evaluated
@@ -94,8 +94,8 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         }
     }
 
-    /// Returns whether some interval of a zero-area triangle's side has no triangle with an area
-    /// beside it. False for a triangle with an area.
+    /// Returns whether part of a side of a zero-area triangle has no triangle with an area beside
+    /// it. False for a triangle with an area.
     pub(super) fn is_exposed(&self, triangle: u32, side: usize) -> bool {
         if self.inward(triangle, side).is_some() {
             return false;
@@ -220,7 +220,7 @@ struct SideLine<N: Real, const D: usize> {
     /// The unit direction; zero if the side has no length.
     along: Vector<N, D>,
     length: N,
-    /// Intervals up to this length are rounding errors.
+    /// Intervals of at most this length are treated as empty.
     slack: N,
 }
 

@@ -118,8 +118,8 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         })
     }
 
-    /// Merges vertices at the same position. Of these only the first is kept, and the triangles
-    /// refer to it. The behaviour of the mesh is unchanged.
+    /// Merges vertices at the same position: only the first vertex at each position is kept, and
+    /// the triangles refer to it. Results of queries do not change.
     #[must_use]
     pub fn with_vertices_merged(self) -> Self {
         let (mut number, mut kept) = (Vec::with_capacity(self.vertices.len()), Vec::new());
@@ -152,7 +152,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
     /// fronts.
     ///
     /// # Errors
-    /// If a scale is zero or not finite, or a coordinate becomes infinite.
+    /// If a factor of the scale is zero or not finite, or a coordinate becomes infinite.
     pub fn try_scaled(&self, scale: &Vector<N, D>) -> Result<Self, MeshError> {
         check_scale(scale)?;
         let scaled = |point: &Point<N, D>| Point::from(point.coords.component_mul(scale));
@@ -164,7 +164,8 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         Ok(self.with(vertices, triangles))
     }
 
-    /// Returns a mesh of the given valid vertices and triangles, with the options of this mesh.
+    /// Returns a mesh of the given vertices and triangles, which must be valid, with the options of
+    /// this mesh. The last triangles are ghosts, as many as this mesh has.
     fn with(&self, vertices: Vec<Point<N, D>>, triangles: Vec<[u32; 3]>) -> Self {
         let made = or_panic(entries::build_mesh(vertices, triangles, self.ghosts));
         let Self { is_one_sided, is_solid, keeps_internal_edges, .. } = *self;
@@ -225,7 +226,7 @@ fn corners_of<N: Real, const D: usize>(
     triangle.mapped(|vertex| vertices[vertex as usize])
 }
 
-/// Returns the box of a triangle, as stored in the tree.
+/// Returns the box of a triangle, as stored in the tree; all of space if a coordinate is NaN.
 pub(crate) fn box_of_corners<N: Real, const D: usize>(corners: &[Point<N, D>; 3]) -> Aabb<N, D> {
     Aabb::from_points(corners).unwrap_or_else(Aabb::unbounded)
 }

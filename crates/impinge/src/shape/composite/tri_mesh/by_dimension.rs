@@ -86,7 +86,8 @@ pub trait MeshByDimension<N: Real, const D: usize> {
     #[cfg(feature = "serde")]
     fn shape_record(shape: &dyn Shape<N, D>) -> Option<ShapeRecord<N>>;
 
-    /// Restores the shape whose record [`Self::shape_record`] returned.
+    /// Restores the shape whose record [`Self::shape_record`] returned; an error for a damaged
+    /// record or another kind.
     #[cfg(feature = "serde")]
     fn make_shape(record: &ShapeRecord<N>) -> Result<ShapeHandle<N, D>, Damage>;
 

@@ -209,7 +209,8 @@ pub(in crate::shape) fn aabb_at<N: Space<D>, const D: usize, const K: usize>(
 }
 
 /// Returns the sphere about the centre of `aabb` that contains the vertices in `used`. Its radius
-/// exceeds the distance of the farthest of these vertices by a bound of the rounding error.
+/// exceeds the distance of the farthest of these vertices by a bound of the rounding error. All of
+/// space if the radius overflows.
 pub(in crate::shape) fn sphere_around<'a, N: Real, const D: usize>(
     aabb: &Aabb<N, D>,
     used: impl Iterator<Item = &'a u32>,

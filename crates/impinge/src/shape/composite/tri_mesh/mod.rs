@@ -241,7 +241,7 @@ impl<N: Real> TriMesh<N, 3> {
     /// True for every mesh that [is closed](Self::is_closed) and [oriented](Self::is_oriented).
     /// Also true if volumes share a side, which then has four triangles, or if triangles have
     /// repeated corners. If [`Self::set_vertices`] moves joined vertices apart, the result is
-    /// false. [`Self::encloses`] and [`Self::signed_distance`] compute what lies inside.
+    /// false. [`Self::encloses`] and [`Self::signed_distance`] test whether a point lies inside.
     #[must_use]
     pub const fn is_volume(&self) -> bool {
         self.is_cycle

@@ -25,8 +25,8 @@ pub(super) struct RayBounds<'a, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> TriMesh<N, D> {
-    /// Calls `visit` with the parts whose boxes `bounds.around`, moving along the ray, hits up to
-    /// the limit.
+    /// Moves the box `bounds.around` along the ray, and calls `visit` with each part whose box it
+    /// hits up to the limit.
     pub(super) fn boxes_along(&self, bounds: &RayBounds<'_, N, D>, visit: HitVisitor<'_, N, D>) {
         let RayBounds { ray, around, limit } = *bounds;
         self.tree.cast(around, &ray.dir, limit, &mut |index, _| {
@@ -121,8 +121,8 @@ impl<N: Real> TriMesh<N, 3> {
         black_box(triangle.map(|corners| corners.mapped(|at| self.vertices[at as usize][0])));
     }
 
-    /// Returns the corners of a triangle: from its block if the block holds them exactly, else from
-    /// the vertices.
+    /// Returns the corners of a triangle: from its block if `f32` represents the scalar `N`
+    /// exactly, else from the vertices.
     #[inline(always)]
     pub(crate) fn corners_in(&self, at: &TriangleAt<'_>) -> [Point<N, 3>; 3] {
         if !holds_all::<N>() {

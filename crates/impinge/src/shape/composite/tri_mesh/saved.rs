@@ -21,7 +21,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         }
     }
 
-    /// Restores the mesh from its record.
+    /// Restores the mesh from its record; an error if the record is not of a valid mesh.
     pub(in crate::shape) fn of_record(record: &MeshRecord<N>) -> Result<Self, Damage> {
         let (triangles, ghosts) = (record.parts()?, record.ghosts as usize);
         ensure(ghosts < triangles.len(), "all triangles of a mesh are ghosts")?;

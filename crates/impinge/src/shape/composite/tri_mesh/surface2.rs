@@ -41,7 +41,8 @@ impl<N: Real> TriMesh<N, 2> {
         self.is_open_along(part, side, &outward).then_some(outward)
     }
 
-    /// Returns whether no other triangle at a side extends from the side towards `direction`.
+    /// Returns whether, for each other triangle at a side, the direction from the side into the
+    /// triangle has a component of at most zero along `direction`.
     fn is_open_along(&self, part: u32, side: usize, direction: &Vector<N, 2>) -> bool {
         let mut is_open = true;
         self.each_beyond(part, side, |_, inward| is_open &= inward.dot(direction) <= slack());
@@ -61,12 +62,13 @@ impl<N: Real> TriMesh<N, 2> {
         }
     }
 
-    /// Returns whether the corner admits `normal`: no side that leaves the corner rises along
-    /// `normal`, and the two highest sides do not form a straight border.
+    /// Returns whether the corner admits `normal`: the directions of all sides away from the corner
+    /// have components of at most zero along `normal`, and the two sides with the largest
+    /// components, one to the left of `normal` and one to its right, do not form a straight border.
     fn corner_admits(&self, part: u32, corner: usize, normal: &Vector<N, 2>) -> bool {
         let joint = self.joint_ends(part, corner)[0];
-        // The side that rises highest along `normal` to its left, and to its right. Both start as
-        // the opposite of `normal`.
+        // To the left and to the right of `normal`: of the sides that leave the corner, the
+        // direction with the largest component along `normal`; `-normal` until one is found.
         let (mut is_highest, mut highest) = (true, [-normal; 2]);
         for &triangle in self.topology.joints.parts(joint) {
             for along in self.leaving(triangle, joint) {

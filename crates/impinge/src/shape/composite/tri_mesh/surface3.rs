@@ -106,10 +106,11 @@ impl<N: Real> TriMesh<N, 3> {
         Some(Bend::of(self.bends.at(part, side, find)?, fronts))
     }
 
-    /// Returns whether the edge admits `normal`: `normal` is perpendicular to the edge, no face at
-    /// the edge rises along `normal`, the faces do not continue each other flat, and on a one-sided
-    /// mesh the highest face has its front towards `normal`. An exposed side ([`Self::is_exposed`])
-    /// admits every perpendicular normal.
+    /// Returns whether the edge admits `normal`: `normal` is perpendicular to the edge, the
+    /// directions from the edge into its faces have components of at most zero along `normal`, the
+    /// faces do not continue each other flat, and on a one-sided mesh the face with the largest
+    /// component has its front towards `normal`. An exposed side ([`Self::is_exposed`]) admits
+    /// every perpendicular normal.
     fn bent_edge_admits(
         &self,
         bend: Option<&Bend<N>>,
@@ -133,9 +134,9 @@ impl<N: Real> TriMesh<N, 3> {
         is_across(&edge, normal) && (seam.admits(self.is_one_sided) || self.is_exposed(part, side))
     }
 
-    /// Returns how steeply a triangle rises from a joint: the larger of the components along
-    /// `normal` of the unit vectors along its two sides that leave the joint. `normal` has a length
-    /// of at most 1. −1 if neither side has a length.
+    /// Returns the larger of the components along `normal` of the unit vectors along the two sides
+    /// of a triangle that leave a joint. `normal` has a length of at most 1. Returns −1, the least
+    /// possible component, if neither side has a length.
     fn rise_from(&self, triangle: u32, joint: u32, normal: &Vector<N, 3>) -> N {
         let (corners, at) = (self.corners(triangle), self.corner_at(triangle, joint));
         let mut highest = -N::ONE;

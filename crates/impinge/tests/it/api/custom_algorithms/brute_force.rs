@@ -1,4 +1,4 @@
-//! A custom broad phase that compares all pairs at every update.
+//! A custom broad phase that tests the boxes of every two proxies for overlap at every update.
 
 use std::collections::BTreeSet;
 
@@ -101,7 +101,8 @@ impl<N: Real, T> BroadPhase<N, Aabb<N>, T> for BruteForce<N, T> {
         self.find_mut(handle).map(|_| ())
     }
 
-    /// Does nothing, because `update` calls the filter for all pairs in any case.
+    /// Does nothing, because every update calls the filter for all pairs of overlapping boxes
+    /// anyway.
     fn deferred_recompute_all_proximities(&mut self) {}
 
     fn update(

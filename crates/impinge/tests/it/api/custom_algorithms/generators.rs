@@ -111,9 +111,9 @@ impl<N: Real> ContactDispatcher<N, DIM> for Policy {
     }
 }
 
-/// A kinematic made from public parts reproduces the contact at the poses for which it was made.
-/// With the second ball moved a quarter turn around the first and 0.5 farther away, the normal
-/// turns with it and the depth falls from 0.25 to -0.25.
+/// Asserts that a kinematic made from public parts reproduces the contact at the poses for which it
+/// was made. If the second ball moves by a quarter turn around the first and 0.5 farther away, the
+/// normal must turn by a quarter and the depth fall from 0.25 to -0.25.
 fn own_kinematics<N: Real>() {
     let (ball1, ball2) = (Ball::new(N::ONE), Ball::new(N::HALF));
     let (here, there) = (at::<N>(0.0, 0.0), at::<N>(1.25, 0.0));

@@ -1,5 +1,5 @@
-//! A custom narrow phase: a sorted list of pairs, each with a boxed algorithm, all of which are
-//! computed at every update.
+//! A custom narrow phase: a sorted map of pairs, each with its boxed algorithm. Every update
+//! computes all pairs.
 
 use std::collections::BTreeMap;
 
@@ -65,7 +65,8 @@ impl<N: Real> PlainNarrowPhase<N> {
     }
 }
 
-/// Pushes an event for each difference between the states of a pair before and after an update.
+/// Pushes an event if the pair began or ceased to touch, and one if its proximity changed; then
+/// stores the new state.
 fn note<N: Real>(
     (collider1, collider2): Key,
     entry: &mut Entry<N>,

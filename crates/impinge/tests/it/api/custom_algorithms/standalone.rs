@@ -26,8 +26,9 @@ pub(super) fn cube<N: Real>(half: f64) -> Cuboid<N> {
     Cuboid::new(Vector::repeat(N::lit(half)))
 }
 
-/// A cube slides 1/16 above a floor. Depth and normal have the values computed by hand, the contact
-/// ids persist, and the boxed algorithm gives the same manifolds as the generator.
+/// Tests a cube that slides 1/16 above a floor. Asserts that depth and normal have the values
+/// computed by hand, that the contact ids persist, and that the boxed algorithm gives the same
+/// manifolds as the generator.
 fn contacts_alone<N: Real>() {
     let dispatcher = DefaultContactDispatcher::new();
     let (floor, cube) = (cube::<N>(2.0), cube::<N>(0.5));

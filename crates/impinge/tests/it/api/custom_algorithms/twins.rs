@@ -1,6 +1,6 @@
-//! Two worlds play the same scene: one with the default parts, and one whose phases and algorithms
-//! are exchanged while it plays. Both must report the same contacts, proximities and events at
-//! every step, even at a step with an exchange.
+//! Runs a scene in two worlds: one with the default parts, and one whose phases and algorithms are
+//! exchanged during the run. Both must report the same contacts, proximities and events at every
+//! step, even at a step with an exchange.
 
 use std::collections::BTreeMap;
 
@@ -125,8 +125,8 @@ impl<N: Play<DIM>> Twins<N> {
     }
 }
 
-/// Plays the scene with an exchange of a phase or of algorithms every few steps. Asserts that both
-/// worlds report the same after each step.
+/// Runs the scene in both worlds, with an exchange of a phase or of algorithms in one of them every
+/// five steps. Asserts that both report the same events, proximities and depths after each step.
 fn exchanges<N: Play<DIM>>(scene: &Scene<DIM>) {
     let plan = [
         Exchange::Algorithms(Policy::Balls),
@@ -170,8 +170,8 @@ fn phases_are_exchanged_without_false_or_lost_events() {
     exchanges::<f64>(&spawn_and_despawn(200));
 }
 
-/// When all pairs lose their algorithm, every contact stops with one event; when they get one
-/// again, every contact starts with one event.
+/// Asserts that each touching pair stops with one event when all pairs lose their algorithm, and
+/// starts with one event when they get one again.
 fn pairs_without_algorithm<N: Play<DIM>>() {
     let mut twins = Twins::<N>::new(&balls());
     for step in 0..12 {
@@ -206,8 +206,8 @@ fn pairs_without_algorithm<N: Play<DIM>>() {
     }
 }
 
-/// Pairs whose algorithm refuses them have no contacts and no events. Every third object is not a
-/// ball, so that such pairs occur.
+/// Asserts that pairs for which the algorithm's `update` returns `false` have no contacts and no
+/// events. Every third object is not a ball, so that such pairs occur.
 fn pairs_that_are_refused<N: Play<DIM>>() {
     let mut scene = balls();
     for (object, other) in scene.objects.iter_mut().zip(sparse_drift::<DIM>(150).objects).step_by(3)

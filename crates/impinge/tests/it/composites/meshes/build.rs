@@ -115,7 +115,8 @@ fn open_flat_and_odd_meshes() {
     check_neighbors(&flipped);
 }
 
-/// A band of eight quadrilaterals with half a twist, whose windings cannot all agree.
+/// Tests a band of eight quadrilaterals with half a twist, in which neighbouring triangles cannot
+/// all have matching windings.
 #[test]
 fn a_moebius_strip_has_one_seam_too_many() {
     let mut vertices = Vec::new();
@@ -210,8 +211,8 @@ fn triangles_without_area_have_no_normal() {
     }
 }
 
-/// Asserts that all corners lie in the box and the sphere, and that each upper face of the box is
-/// at most `looseness` beyond the corners.
+/// Asserts for random poses that all corners lie in the box up to rounding, and in the sphere. Each
+/// upper face of the box may be at most `looseness` beyond the corners.
 fn check_boxes<N: Space<3>>(mesh: &TriMesh<N, 3>, looseness: N) {
     let mut random = Random::new(5);
     for _ in 0..20 {

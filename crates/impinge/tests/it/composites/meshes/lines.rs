@@ -59,7 +59,7 @@ fn a_straight_joint_has_the_normals_of_its_segments_only() {
 
 #[test]
 fn bends_and_ends() {
-    // A line that goes uphill, downhill, and out of the valley.
+    // A line of three segments: up to a top, down to a valley, and up again.
     let line = open::<f64, 2>(&[[0.0, 0.0], [1.0, 1.0], [2.0, 0.0], [3.0, 1.0]]);
     let admits = |part, feature, degrees| surface(&line).admits(part, feature, &leaning(degrees));
     for (part, end) in [(0, END), (1, START)] {

@@ -63,7 +63,8 @@ fn grid<const D: usize>(side: u32, at: impl Fn(f64, f64) -> [f64; D]) -> GridOf<
 
 type GridOf<const D: usize> = (Vec<[f64; D]>, Vec<[u32; 3]>);
 
-/// Returns the vertex feature of a part's corner at a position.
+/// Returns the feature of the part's corner at the position `at`. Panics if the part has no corner
+/// there.
 fn corner_at<N: Real, const D: usize>(mesh: &TriMesh<N, D>, part: u32, at: [f64; D]) -> FeatureId {
     let corners = mesh.triangles()[part as usize].map(|v| mesh.vertices()[v as usize].coords);
     let found = (0..3).find(|&corner| corners[corner as usize] == vector(at));

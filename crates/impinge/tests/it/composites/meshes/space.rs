@@ -10,7 +10,8 @@ fn up<N: Real>() -> Vector<N, 3> {
     vector([0.0, 0.0, 1.0])
 }
 
-/// Iterates over all features of all parts.
+/// Iterates over all features of `parts` triangles: three vertices, three edges and two faces of
+/// each.
 fn features(parts: u32) -> impl Iterator<Item = (u32, FeatureId)> {
     let of_part = |part| {
         let sides = (0..3).flat_map(|at| [FeatureId::Vertex(at), FeatureId::Edge(at)]);
@@ -237,8 +238,8 @@ fn edges_of_a_sphere_have_its_normals_and_no_others() {
     }
 }
 
-/// Returns whether the vertex or edge is the highest place, along the normal, of the triangles that
-/// share it; `None` if the heights are too close to decide.
+/// Returns `true` if the vertex or edge is higher, along the normal, than all other corners of the
+/// triangles that share it. `None` if the highest of these is within 1e-3 of it.
 fn is_highest(mesh: &TriMesh<f64, 3>, ends: &[usize], normal: &Vector<f64, 3>) -> Option<bool> {
     let at = mesh.vertices()[ends[0]].coords.dot(normal);
     let around = mesh.triangles().iter().filter(|t| ends.iter().all(|&e| t.contains(&number(e))));
@@ -307,7 +308,8 @@ fn internal_edges_may_be_kept() {
     assert!(!whole.faces(9, &vector([0.0, 0.0, -1.0]).into()), "still one side");
 }
 
-/// A wall that stands on a floor: three triangles share an edge.
+/// Tests the normals that are admitted at the edge where a wall stands on a floor, which three
+/// triangles share.
 #[test]
 fn a_wall_on_a_floor() {
     let vertices =

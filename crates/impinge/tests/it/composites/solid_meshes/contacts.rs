@@ -1,6 +1,6 @@
-//! Compares contacts of solid meshes and solids that do not touch the surface with a scan of all
-//! triangles: whether there is a contact, and its depth. Also tests impacts of solids that start
-//! inside, points, rays, and a manifold.
+//! Compares the contacts between solid meshes and solids that do not touch the surface of the mesh
+//! with a scan of all triangles: whether there is a contact, and its depth. Also tests impacts of
+//! solids that start inside, points, rays, and a manifold.
 
 use super::{P3, V3, at, ball, cuboid, inverted, joined, skin, solid};
 use crate::support::query_support;

@@ -62,8 +62,9 @@ fn compare<N: Space<3>>(
     of_mesh == N::ZERO
 }
 
-/// Asserts that moving by the depth of the contact separates the solid and the mesh, and that both
-/// orders agree.
+/// Asserts that both orders give the same contact. A solid that does not cross the surface must be
+/// separated from the mesh by a motion along the normal by the depth; if convex, its depth must be
+/// at least that of the hull.
 fn check_way_out<N: Space<3>>(
     Twins { mesh, hull }: &Twins<N>,
     m1: &Isometry3<N>,
@@ -155,7 +156,8 @@ fn resting<N: Space<3>>() {
                     "{found:?} at {place:?}"
                 );
                 assert_eq!(found == N::ZERO, expected <= N::ZERO, "{found:?} at {place:?}");
-                // The nearest wall is the wall along the axis, or all walls are equally near.
+                // The nearest wall of the mesh is the wall in the direction of `place`, or all
+                // walls are equally near.
                 let depth =
                     contact(&here, &twins.mesh, &m2, other, N::ZERO).map(|found| found.depth);
                 let depth = depth.unwrap_or(-found);

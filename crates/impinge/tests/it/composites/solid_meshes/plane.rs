@@ -1,5 +1,5 @@
-//! Tests that closed lines made solid have the distances of polygons, and that points, rays and
-//! casts see their inside.
+//! Tests that closed lines made solid have the distances of polygons, and that point queries, rays
+//! and casts treat their inside as part of the solid.
 
 use crate::support::query_support;
 use crate::support::samples::samples;

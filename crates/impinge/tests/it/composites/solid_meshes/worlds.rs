@@ -1,4 +1,4 @@
-//! Tests that worlds, batches and checkers see the inside of solid meshes.
+//! Tests that worlds, batches and checkers treat the inside of a solid mesh as part of the solid.
 
 use super::{P3, V3, at, ball, cuboid, skin, solid};
 

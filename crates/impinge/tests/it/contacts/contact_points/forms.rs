@@ -1,6 +1,6 @@
 //! Random solids of all kinds. Each has a function for the distance of a point from its surface,
-//! computed in `f64` by the reference or by hand. Convex solids also have a description for the
-//! precise reference.
+//! computed in `f64` by `impinge_reference::geometry` or by a formula of this file. Convex solids
+//! also have a description for `impinge_reference::precise`.
 #![allow(dead_code, reason = "each test binary uses a part")]
 
 use impinge::math::{Isometry2, Isometry3, Point, Pose, Real, Space, Unit, Vector};
@@ -19,17 +19,19 @@ use super::query_support::solids::RoundHull;
 /// Distance of a local point from the surface of a solid, or of one part of a composite.
 type Off<const D: usize> = Box<dyn Fn(&[f64; D]) -> f64>;
 
+/// A shape under test, with what the tests know about it.
 pub(crate) struct Form<N: Real, const D: usize> {
     pub(crate) shape: ShapeHandle<N, D>,
     /// Description of the solid, for messages.
     pub(crate) text: String,
-    /// The solid in the representation of the precise reference; `None` for composites.
+    /// The solid for `impinge_reference::precise`; `None` for composites.
     pub(crate) precise: Option<precise::Solid<D>>,
     offs: Vec<Off<D>>,
     /// Greatest distance of a point of the solid from the local origin; zero for a half-space.
     pub(crate) reach: f64,
-    /// Error allowed for contact points other than the deepest: a tilted face of a rounded solid is
-    /// treated as flat up to its edges.
+    /// Error allowed for contact points other than the deepest, as a length. The library treats a
+    /// tilted face of a rounded solid as flat up to its edges, so points near the edges are off the
+    /// rounded surface.
     pub(crate) beside: f64,
 }
 
@@ -41,12 +43,13 @@ impl<N: Real, const D: usize> Form<N, D> {
         Self { shape: ShapeHandle::new(shape), text, precise: None, offs, reach, beside: 0.0 }
     }
 
-    /// Adds the description for the precise reference.
+    /// Adds the description for `impinge_reference::precise`.
     fn with(self, precise: precise::Solid<D>) -> Self {
         Self { precise: Some(precise), ..self }
     }
 
-    /// Creates the form of a solid of the reference, inflated by the radius `inflation`.
+    /// Creates the form of a shape that equals `solid`, a solid of `impinge_reference::geometry`,
+    /// inflated by the radius `inflation`.
     fn known<S: Shape<N, D>>(shape: S, solid: &Solid<D>, inflation: f64) -> Self {
         let reach = solid.bounding_radius();
         let reach = if reach.is_finite() { reach + inflation } else { 0.0 };
@@ -58,7 +61,8 @@ impl<N: Real, const D: usize> Form<N, D> {
         }
     }
 
-    /// Creates the form of a composite whose parts are solids of the reference.
+    /// Creates the form of a composite whose parts equal `parts`, solids of
+    /// `impinge_reference::geometry`.
     fn composite<S: Shape<N, D>>(shape: S, parts: &[Solid<D>]) -> Self {
         let reach = parts.iter().map(Solid::bounding_radius).fold(0.0, f64::max);
         let offs = parts.iter().map(|part| metered(part, 0.0)).collect();
@@ -72,8 +76,8 @@ impl<N: Real, const D: usize> Form<N, D> {
     }
 }
 
-/// Returns the solid for the precise reference; `None` for solids of revolution, which exist in 3D
-/// only.
+/// Returns the solid for `impinge_reference::precise`; `None` for cylinders and cones, which exist
+/// in 3D only.
 fn with_all_digits<const D: usize>(solid: &Solid<D>) -> Option<precise::Solid<D>> {
     match solid {
         Solid::Rounded { vertices, radius } => {
@@ -89,7 +93,7 @@ fn metered<const D: usize>(solid: &Solid<D>, inflation: f64) -> Off<D> {
     Box::new(move |point| meter.measure(point).0 - inflation)
 }
 
-/// Range of the sizes of random solids.
+/// Range of the lengths of random solids, and whether some of them are zero.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sizes {
     /// Lengths lie between `least` and `16 * least`.
@@ -221,8 +225,8 @@ fn common<N: Space<D>, const D: usize>(kind: usize, draw: &mut Draw<'_>) -> Form
     }
 }
 
-/// Returns the distance from the surface of an ellipsoid to first order, which suffices near the
-/// surface.
+/// Returns a function for the signed distance of a point from the surface of an ellipsoid, accurate
+/// to first order in that distance. For a flat ellipsoid the function uses the precise reference.
 fn off_ellipsoid<const D: usize>(half_axes: [f64; D]) -> Off<D> {
     if half_axes.contains(&0.0) {
         // A flat ellipsoid consists of its surface.
@@ -239,8 +243,8 @@ fn off_ellipsoid<const D: usize>(half_axes: [f64; D]) -> Off<D> {
     })
 }
 
-/// Returns the distance of a local point from the surface of a solid, by the precise reference,
-/// which is slow.
+/// Returns the distance of a local point from the surface of a solid, by
+/// `impinge_reference::precise`, which is slow.
 fn off_precise<const D: usize>(solid: &precise::Solid<D>, point: &[f64; D]) -> f64 {
     let (place, origin) = (precise::Pose::at(*point), precise::Pose::at([0.0; D]));
     let dot = precise::Solid::ball(0.0);
@@ -442,7 +446,8 @@ fn hull<N: Real>(draw: &mut Draw<'_>, inflation: f64) -> Form<N, 3> {
     Form::known(hull, &solid, 0.0)
 }
 
-/// Returns triangles over a square of four cells; `height` returns the height of each vertex.
+/// Returns a mesh of eight triangles over a square of four cells; `height` maps the index of each
+/// of the nine vertices to its height.
 fn floor<N: Real>(half: f64, height: impl Fn(usize) -> f64) -> Form<N, 3> {
     let corner = |index: usize| {
         let at = |step: usize| half * [-1.0, 0.0, 1.0][step];

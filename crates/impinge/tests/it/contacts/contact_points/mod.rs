@@ -70,7 +70,7 @@ struct Wrong {
 
 type Wrongs = BTreeMap<String, Wrong>;
 
-/// Two placed solids.
+/// Two placed solids, the prediction for their contacts, and the unit of errors.
 struct Scene<N: Real, R, const D: usize> {
     forms: [Form<N, D>; 2],
     poses: [Isometry<N, R, D>; 2],
@@ -127,8 +127,8 @@ where
         Scene { forms, poses, prediction, unit: N::EPSILON.as_f64() * size }
     }
 
-    /// Asserts that no law is violated for any pair of kinds; two half-spaces have no contact
-    /// points.
+    /// Asserts for random scenes of every ordered pair of kinds that no error of a contact exceeds
+    /// the allowed error. Skips pairs of two half-spaces, which have no contact points.
     fn check(&self, seed: u64) {
         let (mut random, mut wrongs) = (Random::new(seed), Wrongs::new());
         for (kind1, kind2) in pairs(self.names.len()) {

@@ -14,7 +14,8 @@ pub(crate) struct Turns<R> {
     pub(crate) any: fn(&mut Random) -> R,
 }
 
-/// Rotations in 2D; `CLEAN` has the meaning of [`component`].
+/// Returns the generators of rotations in 2D. `CLEAN` sets tiny components to zero; see
+/// [`component`].
 pub(crate) fn turns2<N: Real, const CLEAN: bool>() -> Turns<UnitComplex<N>> {
     Turns {
         straight: |random| {
@@ -25,7 +26,8 @@ pub(crate) fn turns2<N: Real, const CLEAN: bool>() -> Turns<UnitComplex<N>> {
     }
 }
 
-/// Rotations in 3D; `CLEAN` has the meaning of [`component`].
+/// Returns the generators of rotations in 3D. `CLEAN` sets tiny components to zero; see
+/// [`component`].
 pub(crate) fn turns3<N: Real, const CLEAN: bool>() -> Turns<UnitQuaternion<N>> {
     Turns {
         straight: |random| {

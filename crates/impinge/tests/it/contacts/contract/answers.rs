@@ -11,7 +11,7 @@ use impinge::world::{CollisionGroups, CollisionWorld};
 
 use super::scene::Scene;
 
-/// The points of the manifold; empty without contacts.
+/// The contact points of a pair; empty if the pair has no contacts.
 pub(crate) type Points<N, const D: usize> = Vec<TrackedContact<N, D>>;
 
 /// A generator of one pair, which keeps its state from one call to the next.

@@ -23,7 +23,7 @@ pub(crate) struct Judge<'a, N: Real, R, const D: usize> {
     pub(crate) report: &'a mut Report,
 }
 
-/// Returns the point of the greatest depth; `None` if there are no points.
+/// Returns the deepest point, the first among equals; `None` if there are no points.
 fn deepest<N: Real, const D: usize>(points: &Points<N, D>) -> Option<&TrackedContact<N, D>> {
     points.iter().reduce(
         |best, point| {
@@ -38,7 +38,8 @@ pub(crate) fn are_same<N: Real, const D: usize>(one: &Points<N, D>, two: &Points
         && one.iter().zip(two).all(|(a, b)| a.contact == b.contact && a.kinematic == b.kinematic)
 }
 
-/// Returns, for each point, the index of the earlier point with the same id; `None` for a new id.
+/// Returns, for each point of `after`, the index of the point of `before` with the same id; `None`
+/// if there is none.
 pub(crate) fn kept<N: Real, const D: usize>(
     before: &Points<N, D>,
     after: &Points<N, D>,
@@ -188,7 +189,8 @@ where
         if most == 0.0 { 0.0 } else { most / scene.unit() }
     }
 
-    /// Law 3: a manifold has at most `max_points` points, and always the deepest one.
+    /// Law 3: a manifold has at most two points in 2D and four in 3D, or `max_points` if that is
+    /// fewer. Whatever the limit, it contains a deepest point.
     fn at_most(&mut self, found: &Points<N, D>) {
         self.holds("3 at most", found.len() <= 1 << (D - 1), || format!("{found:?}"));
         let (scene, unit) = (self.scene, N::EPSILON.as_f64() * self.size());
@@ -206,7 +208,8 @@ where
         }
     }
 
-    /// Law 5: exchanging the solids flips the result.
+    /// Law 5: exchanging the solids flips each contact and its features. Two equal solids at the
+    /// same position have no defined order and are skipped.
     fn flips(&mut self, found: &Points<N, D>) {
         if self.scene.is_twin() {
             return;
@@ -255,9 +258,9 @@ where
         }
     }
 
-    /// Law 6: `contact` returns a contact exactly if the manifold has points, with the same depth.
-    /// Only one of them may be empty if the prediction is not zero and equals the distance up to
-    /// rounding.
+    /// Law 6: `contact` returns a contact if and only if the manifold has points, and its depth is
+    /// the depth of the deepest point. If the prediction is not zero and equals the distance up to
+    /// rounding, one of the two may have no contact.
     fn agrees(&mut self, found: &Points<N, D>) {
         let ([pose1, pose2], [shape1, shape2]) = (&self.scene.poses, self.scene.shapes());
         let unit = N::EPSILON.as_f64() * self.size();

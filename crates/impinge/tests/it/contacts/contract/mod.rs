@@ -34,7 +34,8 @@ use scene::{SCENES, Scene, Stage};
 use tolerances::is_known;
 use turns::{turns2, turns3};
 
-/// Numbers of pairs in a world: part of a batch, one less than a batch, a batch, and one more.
+/// Numbers of pairs in a world. The narrow phase computes batches of eight: one pair, one less than
+/// a batch, a full batch, and one more.
 const BATCHES: [usize; 4] = [1, 7, 8, 9];
 
 /// Returns how often the twenty scenes of each pair of kinds are tested: once by default, more

@@ -18,7 +18,7 @@ pub(crate) struct Report {
 }
 
 impl Report {
-    /// Notes an error, which violates the law if it is above `allowed` or NaN.
+    /// Counts a result of a law, and a violation if `error` is above `allowed` or NaN.
     pub(crate) fn within(
         &mut self,
         law: String,
@@ -37,7 +37,8 @@ impl Report {
         }
     }
 
-    /// Notes whether a law without a measure of error holds.
+    /// Counts a result of a law that has no measure of error, and a violation if `holds` is
+    /// `false`.
     pub(crate) fn holds(&mut self, law: String, holds: bool, what: impl FnOnce() -> String) {
         self.within(law, if holds { 0.0 } else { 1.0 }, 0.5, what);
     }

@@ -17,28 +17,29 @@ pub(crate) const SCENES: usize = GAPS.len() * 4;
 /// `None` keeps the drawn position, usually with the origins close to each other.
 const GAPS: [Option<f64>; 5] = [Some(0.05), Some(0.0), Some(-1e-4), Some(-0.3), None];
 
-/// Rotation of one solid relative to the other.
+/// Kind of rotation of the second solid relative to the first.
 #[derive(Clone, Copy, Debug)]
 enum Alignment {
     Any,
-    /// Axes are mapped to axes.
+    /// A rotation that maps axes to axes.
     Aligned,
-    /// Aligned except for an angle of 1e-2 to 1e-7.
+    /// A rotation that maps axes to axes except for a tilt of 1e-7 to 1e-2 radians.
     Nearly,
-    /// Aligned except for an angle of `EPSILON / 16` to `16 * EPSILON` radians.
+    /// A rotation that maps axes to axes except for a tilt of `EPSILON / 16` to `16 * EPSILON`
+    /// radians.
     Hardly,
 }
 
 const ALIGNMENTS: [Alignment; 4] =
     [Alignment::Any, Alignment::Aligned, Alignment::Nearly, Alignment::Hardly];
 
-/// Further property of a scene.
+/// A further property of a scene, drawn at random.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Setup {
     Plain,
     /// Half of the lengths are zero.
     Degenerate,
-    /// Up to 10⁴ away from the origin.
+    /// Both solids are up to 10⁴ away from the world's origin.
     Far,
     /// Both are rotated together, so that no direction is along an axis of the world.
     Turned,
@@ -54,7 +55,7 @@ pub(crate) struct Stage<N: Real, R, const D: usize> {
     pub(crate) names: &'static [&'static str],
     pub(crate) form: fn(usize, Sizes, &mut Random) -> Form<N, D>,
     pub(crate) turns: Turns<R>,
-    /// The pose for the precise reference.
+    /// Converts a pose to the pose of the precise reference.
     pub(crate) precise: fn(&Isometry<N, R, D>) -> precise::Pose<D>,
 }
 
@@ -75,7 +76,7 @@ pub(crate) struct Scene<N: Real, R, const D: usize> {
     pub(crate) limit: N,
     /// Angular prediction.
     pub(crate) angle: N,
-    /// A small step of the second solid.
+    /// A small translation of the second solid, for tests of persistent ids.
     pub(crate) step: Vector<N, D>,
     /// Whether one solid lies in the middle of a much larger one.
     pub(crate) is_swallowed: bool,
@@ -103,7 +104,8 @@ where
         };
         let recipes = [recipe(0, random.bits()), recipe(1, random.bits())];
         let forms = recipes.map(|recipe| self.draw(&recipe));
-        // A length of the scene; two points have no length of their own, hence the minimum.
+        // The length in which offsets of the scene are measured. Two points have a bounding radius
+        // of zero, hence the minimum.
         let length = (forms[0].reach + forms[1].reach).max(0.1);
         let mut poses = self.places(length, gap, alignment, random);
         if let Some(gap) = gap {
@@ -131,8 +133,8 @@ where
         (self.form)(recipe.kind, recipe.sizes, &mut Random::new(recipe.seed))
     }
 
-    /// Returns poses with the first solid at the origin, and the second one well above or below it,
-    /// or, without a gap, at about the same height.
+    /// Returns poses with the first solid at the origin. The second one is 1.5 times `length` above
+    /// or below it; if `gap` is `None`, at most 0.01 times `length` above it.
     fn places(
         &self,
         length: f64,
@@ -214,7 +216,8 @@ where
     }
 }
 
-/// Sets coordinates far below rounding to zero, so that no product of a few of them underflows.
+/// Sets coordinates of the position to zero if they are less than 1/1024 of the rounding error of
+/// `length`, so that no product of a few coordinates underflows.
 fn drop_dust<N, R, const D: usize>(pose: &mut Isometry<N, R, D>, length: N)
 where
     N: Space<D, Isometry = Isometry<N, R, D>>,

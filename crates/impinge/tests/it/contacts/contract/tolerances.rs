@@ -55,7 +55,7 @@ const KNOWN: [(&str, usize); 1] = [
     ("5 scaled, capsule and capsule", 3),
 ];
 
-/// Returns `true` if the law is known to be violated.
+/// Returns `true` if some scenes are known to violate the law in dimension `D`.
 pub(crate) fn is_known<const D: usize>(law: &str) -> bool {
     KNOWN.contains(&(law, D))
 }

@@ -54,8 +54,8 @@ fn topology<N: Real>(hull: &IndexedHull<N>) {
     assert_eq!(hull.vertices.len() + hull.faces.len(), edges + 2, "Euler");
 }
 
-/// Checks a hull. Heights are compared with every given point; with very many points only some
-/// faces are checked.
+/// Asserts that the topology and the normals of a hull are right, and measures its errors over all
+/// points. With very many points it examines only some of the faces.
 pub(crate) fn check<N: Real>(points: &[Point<N, 3>], hull: &IndexedHull<N>) -> Measured {
     topology(hull);
     let (exact, unit) = normalized(points);

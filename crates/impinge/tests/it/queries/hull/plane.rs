@@ -1,4 +1,4 @@
-//! Tests hulls and outlines in 2D.
+//! Tests hulls of points in 2D, and polygons made from outlines of either winding.
 
 use impinge::math::{Point, Real};
 use impinge::shape::{ConvexPolygon, ShapeError};
@@ -10,7 +10,8 @@ fn points<N: Real>(coordinates: &[[f64; 2]]) -> Vec<Point<N, 2>> {
     coordinates.iter().map(|&[x, y]| Point::<N, 2>::new(N::lit(x), N::lit(y))).collect()
 }
 
-/// Returns the largest distance of a point to the right of a side, computed in `f64`.
+/// Returns the largest distance, computed in `f64`, by which a point lies to the right of a side
+/// and so outside a counter-clockwise ring; zero if none does.
 fn outside<N: Real>(points: &[Point<N, 2>], ring: &[usize]) -> f64 {
     let at = |i: usize| points[i].coords.map(Real::as_f64);
     let mut outside = 0.0_f64;

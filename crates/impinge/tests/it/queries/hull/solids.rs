@@ -202,7 +202,7 @@ fn bounds_hold_in_the_plane() {
     bounds_in_the_plane::<f64>();
 }
 
-/// The upper faces of the box of a hull each touch a vertex up to rounding.
+/// Asserts that each upper face of the box of a rotated hull touches a vertex up to rounding.
 #[test]
 fn boxes_of_hulls_are_tight() {
     let pose = Isometry3::rotation(Vector::<f64, 3>::new(0.4, 0.5, -0.2));

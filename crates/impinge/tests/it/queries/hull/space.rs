@@ -1,4 +1,5 @@
-//! Tests hulls in 3D.
+//! Tests hulls in 3D: known solids, random, flat and tiny point sets, coordinates near the limits,
+//! and errors.
 
 use impinge::math::{Point, Real};
 use impinge::shape::{ConvexHull, ShapeError};
@@ -246,7 +247,8 @@ fn the_panicking_constructor_says_why() {
         ConvexHull::<f32>::from_points(&[[0.0; 3], [1.0; 3], [2.0; 3], [3.0; 3]].map(Point::from));
 }
 
-/// Coordinates whose products underflow or overflow unless the points are scaled first.
+/// Asserts that the hull of a cube is a cube at scales near the limits of the scalar, where
+/// products of coordinates underflow or overflow unless the points are scaled first.
 #[test]
 fn the_ends_of_the_range() {
     for scale in [f32::MIN_POSITIVE, 1e-40, 1e30, f32::MAX] {

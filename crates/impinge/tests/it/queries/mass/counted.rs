@@ -54,8 +54,8 @@ fn check<const D: usize>(
     assert_alike(&unit(shape), &count(shape, is_inside), 1.2e-2, name);
 }
 
-/// Compares with counts in which the level functions of [`solids`] decide whether a point is
-/// inside.
+/// Compares mass properties with counts of points for which the level functions of [`solids`] are
+/// negative.
 fn by_levels<const D: usize>(make: fn(&mut Rng) -> Vec<solids::Solid<f64, D>>)
 where
     f64: Inertia<D>,
@@ -81,7 +81,8 @@ fn solids_of_random_sizes() {
     by_levels::<3>(solids::space_solids);
 }
 
-/// Compares with counts in which the point queries of the library decide whether a point is inside.
+/// Compares mass properties with counts of points that the library's own point queries place inside
+/// the shape.
 fn by_points<R, const D: usize>(shapes: &Shapes<f64, D>, origin: &Isometry<f64, R, D>)
 where
     f64: Inertia<D>,
@@ -139,7 +140,8 @@ fn solids_of_space() {
     by_points(&shapes, &Isometry3::identity());
 }
 
-/// Compares a nested, placed compound with a count of the whole; the children do not overlap.
+/// Compares the mass properties of a nested compound, whose children do not overlap, with a count
+/// of the points inside the whole compound.
 #[test]
 fn compounds_with_densities() {
     use impinge::dim3::math::Isometry;
@@ -170,7 +172,7 @@ fn compounds_with_densities() {
     );
     let found = super::wide(&body.expect("solids"));
     assert_alike(&found, &super::wide(&(whole + heavy)), 1e-2, "nested");
-    // A custom composite with equal parts.
+    // A custom composite of such a box and such a ball.
     let parts = vec![
         (
             Pose::from(at(-2.0, 0.0, 2.0)),

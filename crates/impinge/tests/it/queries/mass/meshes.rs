@@ -1,5 +1,5 @@
-//! Tests the mass properties of closed meshes and lines, also in compounds, and that open ones are
-//! refused.
+//! Tests the mass properties of closed meshes and closed lines, also in compounds, and that open
+//! meshes and lines are refused.
 
 use impinge::math::{Isometry2, Isometry3, Point, Real, Unit, Vector};
 use impinge::procedural::space as surfaces;
@@ -42,7 +42,7 @@ fn closed_meshes<N: Inertia<3>>() {
         let found = unit(&mesh::<N>(&[cuboid(half, at, is_inverted)]));
         assert_alike(&found, &expected, share, "whichever way round");
     }
-    // A cavity, and a second body.
+    // Tests a box with a cavity, and a mesh of two bodies.
     let hollow = mesh::<N>(&[cuboid([2.0; 3], [0.0; 3], false), cuboid([1.0; 3], [0.0; 3], true)]);
     let (outer, inner) = (boxed([2.0; 3]), boxed([1.0; 3]));
     let expected = (outer.0 - inner.0, V3::zeros(), outer.2 - inner.2);
@@ -132,7 +132,8 @@ fn lines_and_meshes_of_the_plane() {
     assert_eq!(mass_properties(&wire, 1.0), Err(MassError::NotClosed { part: 0 }));
 }
 
-/// The error for a part inside nested compounds reports the index of the part in the whole.
+/// Asserts that the error for a part inside nested compounds reports the index of the part in the
+/// outermost compound.
 #[test]
 fn errors_in_compounds_name_the_part() {
     let ball = ShapeHandle::new(Ball::new(1.0));

@@ -51,7 +51,8 @@ where
     unit(&Hidden { solid, map })
 }
 
-/// Returns the mass properties of a solid whose points are all multiplied by a matrix.
+/// Maps the mass properties `found` of a solid to those of the solid whose points are multiplied by
+/// `map`, a matrix with the positive determinant `determinant`.
 fn mapped<const D: usize>(found: &Found<D>, map: &Matrix<f64, D>, determinant: f64) -> Found<D> {
     let half_trace = found.2.trace() / (D as f64 - 1.0);
     let second = Matrix::<f64, D>::from_diagonal_element(half_trace) - found.2;

@@ -1,4 +1,5 @@
-//! Tests outlines in 2D.
+//! Tests the outlines of disks, capsules, ellipses, tapered capsules, boxes, triangles and polygons
+//! in 2D.
 
 use core::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! Tests surfaces in 3D.
+//! Tests the triangulated surfaces of solids in 3D.
 
 use core::f64::consts::PI;
 

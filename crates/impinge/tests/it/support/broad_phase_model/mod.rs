@@ -8,7 +8,7 @@ use impinge::broad_phase::Bounds;
 use impinge::broad_phase::{BroadPhase, DBVTBroadPhase, ProxyHandle};
 use impinge::math::{Point, Real, Space, Vector};
 
-/// A linear congruential generator.
+/// A linear congruential generator, of which only the upper bits are used.
 pub(crate) struct Random(pub u64);
 
 impl Random {
@@ -38,7 +38,7 @@ struct Object<N: Real, const D: usize> {
 pub(crate) struct Model<N: Real, const D: usize> {
     margin: N,
     objects: BTreeMap<u32, Object<N, D>>,
-    /// Overlapping pairs by uid, and whether the filter allowed them.
+    /// For each pair of uids whose loosened boxes overlap, whether the filter allowed the pair.
     decided: BTreeMap<(u32, u32), bool>,
     again: Vec<u32>,
     is_all_again: bool,
@@ -425,7 +425,7 @@ impl<N: Space<D>, const D: usize> Run<N, D> {
         }
         self.update();
         (0..3).for_each(|_| self.compare_queries());
-        // Searches do not see pending moves.
+        // Moves that no update has applied must not affect searches.
         self.move_one();
         self.remove_some();
         self.compare_queries();

@@ -78,7 +78,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Scene<N, R, D> {
         Self { places: parts.into_iter().map(|(m, _)| m).collect(), fast, slow }
     }
 
-    /// Returns the least signed distance of a part from a solid.
+    /// Returns the least signed distance of the solid `g2` from any part, by a query of each part.
     pub fn brute(&self, m: &Isometry<N, R, D>, m2: &Isometry<N, R, D>, g2: &dyn Shape<N, D>) -> N {
         let one = |part: usize| {
             let (_, piece) = &self.fast.parts[part];

@@ -1,5 +1,5 @@
-//! Cost of contacts between large solids and shapes with many parts, counted by calls to the
-//! shapes, not by time.
+//! Measures the cost of contacts between large solids and shapes with many parts by the number of
+//! calls to the shapes, which unlike time is the same on every machine.
 
 use std::fmt::Debug;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -73,7 +73,7 @@ impl<S: CompositeShape<f64, D> + Debug, const D: usize> Surface<f64, D> for Coun
     }
 }
 
-/// A composite that counts calls, as a shape.
+/// A shape whose geometry is a composite that counts calls.
 #[derive(Debug)]
 struct Ground<S>(Counted<S>);
 
@@ -212,8 +212,8 @@ where
     })
 }
 
-/// Asserts that the calls for each part at the greatest size are at most 1.5 times the greater of
-/// those at the two smaller sizes, so that the cost is linear in the parts.
+/// Asserts that the number of calls per part does not grow: at the largest size it is at most 1.5
+/// times the larger of the numbers at the two smaller sizes.
 fn check_growth<S, const D: usize>(label: &str, halves: [u32; 3], make: impl Fn(u32) -> S)
 where
     f64: Space<D>,

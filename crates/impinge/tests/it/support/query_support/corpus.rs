@@ -11,7 +11,7 @@ use serde_json::Value;
 use super::Placed;
 use super::solids;
 
-/// Returns all cases of a file.
+/// Returns all cases of a corpus file, parsed from its text.
 pub fn cases(text: &str) -> Vec<Value> {
     let file: Value = serde_json::from_str(text).expect("the corpus is JSON");
     file["cases"].as_array().expect("a list of cases").clone()

@@ -25,8 +25,8 @@ impl<N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Placed<N, R, D> {
         self.pose.transform_point(&map.support_point(&local))
     }
 
-    /// Returns an approximate upper bound on the distance of the points of the solid from the world
-    /// origin.
+    /// Returns, up to rounding, an upper bound of the distance of the points of the solid from the
+    /// world origin. For a half-space, returns the distance of the origin of its frame.
     pub fn extent(&self) -> N {
         let geometry = self.shape.geometry();
         let reach = geometry.as_support_map().map_or(N::ZERO, |map| map.reach() + map.rounding());

@@ -10,7 +10,7 @@ use super::corpus::{hull, polygon};
 use super::random::Random;
 use super::solids::RoundHull;
 
-/// The kinds in 2D.
+/// The kinds of convex shapes that exist in 2D.
 pub const PLANE: [ShapeKind; 11] = [
     ShapeKind::Ball,
     ShapeKind::Segment,
@@ -25,7 +25,7 @@ pub const PLANE: [ShapeKind; 11] = [
     ShapeKind::Plane,
 ];
 
-/// The kinds in 3D.
+/// The kinds of convex shapes that exist in 3D.
 pub const SPACE: [ShapeKind; 13] = [
     ShapeKind::Ball,
     ShapeKind::Segment,

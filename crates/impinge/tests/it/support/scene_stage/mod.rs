@@ -1,4 +1,4 @@
-//! Plays scenes in worlds of any scalar and dimension, for tests of whole runs.
+//! Runs scenes in worlds of any scalar and dimension, for tests of whole runs.
 
 #![allow(dead_code, reason = "each test uses a part")]
 
@@ -19,7 +19,7 @@ use impinge_scenes::{Placement, Scene, SceneGroups, SceneQuery, SceneShape};
 
 pub(crate) type World<N, const D: usize> = CollisionWorld<N, D, usize>;
 
-/// A scalar and dimension in which scenes can be played.
+/// A scalar and dimension in which scenes can be run.
 pub(crate) trait Play<const D: usize>: Space<D> {
     /// Returns the pose of a placement whose lengths are multiplied by `scale`.
     fn pose_of(placement: &Placement<D>, scale: f64) -> Self::Isometry;
@@ -141,8 +141,8 @@ pub(crate) struct PlayerMark {
 }
 
 impl<N: Play<D>, const D: usize> Player<N, D> {
-    /// Returns a world without objects, before the first step. All of its lengths are the lengths
-    /// of the scene times `scale`.
+    /// Creates a player before the first step, with a world without objects. All lengths in the
+    /// world are the lengths of the scene times `scale`.
     pub(crate) fn new(scene: Scene<D>, scale: f64) -> Self {
         let handles = vec![None; scene.objects.len()];
         let world = World::new(N::lit(scene.margin * scale));
@@ -166,7 +166,8 @@ impl<N: Play<D>, const D: usize> Player<N, D> {
         self.handles.clone_from(&mark.handles);
     }
 
-    /// Continues with another world, which was restored from this one.
+    /// Continues with `world`, a restored copy of the present world, and converts all handles to
+    /// those of the copy.
     pub(crate) fn go_on_with(&mut self, world: World<N, D>) {
         for handle in self.handles.iter_mut().flatten() {
             *handle = world.counterpart(*handle).expect("it has the same objects");

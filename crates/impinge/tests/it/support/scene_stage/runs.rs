@@ -33,7 +33,7 @@ impl<const D: usize> Run<D> {
         format!("{name} {D} {scalar}")
     }
 
-    /// Plays the scene in a world whose broad phase uses the given instruction set.
+    /// Runs the scene in a world whose broad phase uses the given instruction set.
     pub(crate) fn play<N: Play<D>>(&self, lanes: Option<Lanes>) -> Outcome {
         let mut player = Player::<N, D>::new(self.scene.clone(), 1.0);
         if let Some(lanes) = lanes {
@@ -49,8 +49,8 @@ impl<const D: usize> Run<D> {
         score.finish()
     }
 
-    /// Plays the scene with a mark before each step. After every tenth new step it rewinds by at
-    /// most eight steps and plays these again; after every seventh it continues with a clone.
+    /// Runs the scene with a mark before each step. After every tenth new step it rewinds by at
+    /// most eight steps and runs these again; after every seventh it continues with a clone.
     pub(crate) fn play_again<N: Play<D>>(&self) -> Outcome {
         let mut player = Player::<N, D>::new(self.scene.clone(), 1.0);
         let mut score = Score { digest: Digest::new(), outcome: Outcome::default() };
@@ -99,7 +99,7 @@ impl Score {
     }
 }
 
-/// Passes all runs to a macro, each with the name of its test.
+/// Expands `$then` with the list of all runs, each with the name of its test.
 macro_rules! for_each_run {
     ($then:ident) => {
         $then! {

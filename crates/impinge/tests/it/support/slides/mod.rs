@@ -12,7 +12,8 @@ use impinge::shape::{
     Ball, Capsule, Cone, ConvexHull, Cuboid, Cylinder, HeightField, Shape, ShapeHandle, TriMesh,
 };
 
-/// A small generator with the constants of Numerical Recipes.
+/// A linear congruential generator with the constants of Knuth's MMIX; only the upper bits are
+/// used.
 pub struct Random(u64);
 
 impl Random {
@@ -37,7 +38,7 @@ pub enum Pattern {
     Slash,
     Backslash,
     Zigzag,
-    /// Vertices beside the grid, diagonals at random.
+    /// Inner vertices displaced from the grid, and random diagonals.
     Random,
     /// Every triangle has its own vertices.
     Soup,
@@ -144,7 +145,8 @@ impl<N: Space<D>, const D: usize> Sliding<N, D> {
         Self { generator: PairManifoldGenerator::default(), ids: IdAllocator::new() }
     }
 
-    /// Returns the manifolds of two placed shapes.
+    /// Updates the generator, which keeps its state between calls, and returns the manifolds of the
+    /// two placed shapes.
     pub fn update(
         &mut self,
         (m1, g1): (&N::Isometry, &dyn Shape<N, D>),

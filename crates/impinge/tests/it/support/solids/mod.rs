@@ -297,8 +297,9 @@ fn hull_corners<const D: usize>(rng: &mut Rng) -> Vec<Vector<f64, D>> {
     corners
 }
 
-/// Returns the function of the height above the highest of all planes through `D` corners that have
-/// all corners on one side.
+/// Returns the level function of the hull of `corners`: the largest height of a point above the
+/// planes of the hull's faces. These are the planes through `D` corners that have all corners on
+/// one side.
 fn hull_level<const D: usize>(
     corners: Vec<Vector<f64, D>>,
     normal: impl Fn(&[Vector<f64, D>], [usize; D]) -> Vector<f64, D>,

@@ -70,7 +70,8 @@ pub(crate) fn add<N: Stage<D>, const D: usize>(
     world.add(N::on_x(x), shape.clone(), CollisionGroups::new(), query, ())
 }
 
-/// Updates the world, validates it, and returns the contact events.
+/// Updates the world, validates it, and returns the contact events. Asserts that each started pair
+/// has a contact.
 pub(crate) fn step<N: Space<D>, const D: usize, T>(
     world: &mut CollisionWorld<N, D, T>,
 ) -> Vec<ContactEvent> {
@@ -85,7 +86,7 @@ pub(crate) fn step<N: Space<D>, const D: usize, T>(
     world.contact_events().to_vec()
 }
 
-/// Runs each check for both scalars and dimensions.
+/// Defines for each check a test that runs it with both scalars and in both dimensions.
 #[allow(unused_macros, reason = "each test uses a part")]
 macro_rules! in_tests {
     ($($check:ident),* $(,)?) => {

@@ -16,7 +16,8 @@ use super::draw::{self, Grid};
 use super::twins::{self, OnGrid, Twins};
 use crate::support::world_stage::vector;
 
-/// Counts of what happened in a run.
+/// Counts of the events and operations of a run, with which a test asserts that each kind occurred
+/// often enough.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tally {
     pub(crate) updates: usize,
@@ -33,7 +34,7 @@ pub(crate) struct Tally {
     pub(crate) hits: usize,
     /// Number of pairs of fixed objects that overlap, summed over the updates.
     pub(crate) fixed: usize,
-    /// Number of events that were kept over an update.
+    /// Number of events of earlier updates that an update kept, summed over the updates.
     pub(crate) kept: usize,
     /// Number of pairs computed between updates; `changed` counts those that started or stopped
     /// thereby.
@@ -47,7 +48,8 @@ pub(crate) struct Tally {
     pub(crate) in_skins: usize,
 }
 
-/// Status of each pair according to the events.
+/// Contact and proximity of each pair according to the events so far, with which new events must be
+/// consistent.
 #[derive(Default)]
 struct Told {
     touching: BTreeMap<(CollisionObjectHandle, CollisionObjectHandle), ()>,
@@ -235,7 +237,8 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         self.tally.exchanges += 1;
     }
 
-    /// Calls that must be refused and change nothing; later checks would notice a change.
+    /// Makes calls that the world must refuse. Later comparisons with the twin would detect a
+    /// change of the world.
     fn try_nonsense(&mut self) {
         let (position, _) = draw::pose::<N, D>(&mut self.random);
         if !self.stale.is_empty() {
@@ -315,8 +318,9 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         text
     }
 
-    /// Follows the new events, after those that were kept: each start has one stop, and each old
-    /// status is the one reported before.
+    /// Asserts for each new event, after those that were kept, that a contact starts and stops in
+    /// turn, and that a proximity's old status is the new status of the pair's previous event, or
+    /// disjoint if there is none.
     fn listen(&mut self, kept: (usize, usize)) {
         for event in &self.world.contact_events()[kept.0..] {
             let consistent = match *event {

@@ -164,7 +164,7 @@ pub(crate) fn pose<N: Grid<D>, const D: usize>(random: &mut Random) -> (N::Isome
     N::posed(std::array::from_fn(|_| random.grid(room, 3)), random)
 }
 
-/// Returns a random pose near another one.
+/// Returns a random pose up to half a unit from `from` along each axis, on the grid of 1/8.
 pub(crate) fn pose_near<N: Grid<D>, const D: usize>(
     from: &Pose<D>,
     random: &mut Random,

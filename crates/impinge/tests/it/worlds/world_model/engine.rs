@@ -1,4 +1,4 @@
-//! Operations for authors of engines, performed on both worlds.
+//! The operations for authors of physics engines, performed on the world and its naive twin.
 
 use impinge::narrow_phase::{CollisionObjectHandle, ContactEvent};
 use impinge::world::{CollisionObject, WorldError};
@@ -8,7 +8,8 @@ use super::both::Both;
 use super::draw::{self, Grid};
 use super::twins;
 
-/// Name of the passed filter in the naive world.
+/// Name under which the naive world registers the filter that the tested world gets as an argument
+/// of its update.
 const LENT: &str = "lent";
 
 impl<N: Grid<D>, const D: usize> Both<N, D> {
@@ -34,8 +35,8 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         assert_eq!(object.is_fixed(), is_fixed, "at once");
     }
 
-    /// Predicts a pose, which affects only the pairs of the broad phase; validating the world
-    /// checks these.
+    /// Moves an object and predicts its next pose. The prediction may change only the pairs of the
+    /// broad phase, which the validation after each update checks.
     fn predict(&mut self) {
         let Some((handle, twin)) = self.someone() else { return };
         let from = self.naive.object(twin).expect("alive").pose;
@@ -118,7 +119,8 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         self.tally.changed += usize::from(self.is_told(twins) != before);
     }
 
-    /// Whether two objects touch or are near in the naive world.
+    /// Returns `true` if two objects touch in the naive world, or if their proximity there is not
+    /// disjoint.
     fn is_told(&self, [first, second]: [Handle; 2]) -> bool {
         let is_near = |&(a, b, _): &(Handle, Handle, _)| (a, b) == (first, second);
         self.naive.touching_pairs().contains(&(first, second))

@@ -16,17 +16,18 @@ use crate::support::samples::samples;
 use crate::support::scene_stage::{Digest, digest_state};
 use crate::support::world_stage::vector;
 
-/// Greatest number of objects.
+/// Number of objects from which on operations add none.
 const MOST: usize = 40;
 /// Number of marks that the world keeps.
 const MARKS: usize = 5;
 
-/// The filters that may be registered, each with its number as name.
+/// The numbers of the filters that may be registered; the name of a filter is its number as text.
 pub(super) const FILTERS: [usize; 2] = [3, 5];
 
 pub(super) type World<N, const D: usize> = CollisionWorld<N, D, u64>;
 
-/// Returns a new world; one with an even seed reuses the contacts of pairs that hardly move.
+/// Returns a new world that keeps [`MARKS`] marks. If `seed` is even, the world reuses the contacts
+/// of pairs that hardly move.
 pub(super) fn new_world<N: Grid<D>, const D: usize>(seed: u64) -> World<N, D> {
     let mut world = World::new(N::lit(0.125));
     if seed.is_multiple_of(2) {
@@ -275,8 +276,8 @@ fn worlds_that_go_back_and_fork_in_space() {
     run::<f64, 3>(3);
 }
 
-/// A handle from before a fork refers to the object in both worlds, and removing the object from
-/// one leaves it in the other.
+/// Asserts that a handle from before a clone refers to the object in both worlds, and that removing
+/// the object from one world leaves it in the other.
 #[test]
 fn handles_of_two_branches() {
     let mut world = new_world::<f32, 2>(1);

@@ -129,8 +129,8 @@ fn restored_worlds_go_on_in_space() {
     run::<f64, 3>(3);
 }
 
-/// Cuts off the bytes of a saved world or flips some of their bits. They are refused, or restored
-/// as a world that can be used.
+/// Truncates the bytes of a saved world or flips some of their bits. Asserts that such bytes are
+/// refused, or restored as a world that can be used.
 #[test]
 fn damaged_worlds_are_refused_or_valid() {
     damage::<f32, 2>(1);

@@ -1,4 +1,4 @@
-//! Converts results of the world and of the reference into one form.
+//! Converts results of the world and of the naive world, `impinge_reference::world`, into one form.
 
 use std::collections::BTreeMap;
 
@@ -12,9 +12,9 @@ use impinge_reference::world::{Handle, Shape};
 
 /// A solid whose distances are rounded to multiples of 2^-40.
 ///
-/// The reference computes in `f64` and has errors of a unit in the last place for solids that touch
-/// along a slanted direction. On the grid of these tests, a distance that differs from a sum of
-/// limits does so by far more than 2^-40.
+/// `impinge_reference::geometry` computes in `f64` and has errors of a unit in the last place for
+/// solids that touch along a slanted direction. On the grid of these tests, a distance that differs
+/// from a sum of limits does so by far more than 2^-40.
 #[derive(Clone, Debug)]
 pub(crate) struct OnGrid<const D: usize>(pub(crate) Solid<D>);
 
@@ -45,7 +45,7 @@ impl<const D: usize> Shape<D> for OnGrid<D> {
     }
 }
 
-/// The handle of the reference for each handle of the world, including those of removed objects.
+/// The handle in the naive world for each handle of the world, including those of removed objects.
 pub(crate) type Twins = BTreeMap<CollisionObjectHandle, Handle>;
 
 pub(crate) fn proximity(proximity: query::Proximity) -> reference::Proximity {

@@ -112,7 +112,8 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         }
     }
 
-    /// Changes objects without an update.
+    /// Removes, moves or changes a quarter of the objects on average, and adds eight, without an
+    /// update.
     fn disturb(&mut self) {
         let handles: Vec<_> = self.world.collision_objects().map(Object::handle).collect();
         for &handle in handles.iter().skip(1) {
@@ -155,7 +156,7 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         }
     }
 
-    /// Moves objects a little.
+    /// Moves the objects `handles` by up to 0.3, and gives them random rotations.
     fn shift_all(&mut self, handles: &[CollisionObjectHandle]) {
         for &handle in handles {
             let object = self.world.collision_object(handle).expect("it is there");
@@ -386,8 +387,8 @@ fn changes_one_by_one<N: Stage<D>, const D: usize>() {
     assert_eq!(scene.world.validate(), Ok(()), "the pairs after it");
 }
 
-/// Objects that moved since the last update are tested no more often than others. With any number
-/// of moved objects, fewer than 1.5 times as many objects are tested as with none.
+/// Asserts that queries do not test all objects that moved since the last update: with up to 1500
+/// moved objects of 2000, they test fewer than 1.5 times as many objects as with none.
 fn moved_objects_are_found_by_their_boxes<N: Stage<D>, const D: usize>() {
     let tested = [0, 100, 450, 1500].map(|moved| {
         let mut world = World::<N, D>::new(N::lit(0.1));
@@ -426,7 +427,8 @@ fn moved_objects_are_found_by_their_boxes<N: Stage<D>, const D: usize>() {
     assert!(2 * most < 3 * tested[0], "objects tested, with 0, 100, 450, 1500 moved: {tested:?}");
 }
 
-/// A predicate is called at most once for each object, and for few objects.
+/// Asserts that a query calls a predicate at most once for each object, and for fewer than half of
+/// the objects.
 fn predicates<N: Stage<D>, const D: usize>() {
     let mut scene = Scene::<N, D>::new(4, 0.0, true);
     scene.world.update();

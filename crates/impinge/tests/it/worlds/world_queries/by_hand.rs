@@ -105,7 +105,8 @@ fn casts_in_order<N: Stage<D>, const D: usize>() {
     }
 }
 
-/// Queries see changes since the last update: objects are found at their present position only.
+/// Asserts that queries respect changes since the last update: they find objects at the present
+/// positions, with the present shapes, and no removed objects.
 fn changes_are_seen_at_once<N: Stage<D>, const D: usize>() {
     let (mut world, handles) = row::<N, D>(&[4.0, 8.0, 12.0]);
     world.update();
@@ -132,8 +133,8 @@ fn changes_are_seen_at_once<N: Stage<D>, const D: usize>() {
     assert_eq!(found.map(|near| near.object.handle()), Some(handles[0]), "where it went");
 }
 
-/// The first queries after a change come from many threads at once, some of which wait for each
-/// other.
+/// Asserts the results if the first queries after a change come from many threads at once, some of
+/// which wait for each other.
 fn many_threads_ask_after_a_change<N: Stage<D>, const D: usize>()
 where
     N::Isometry: Sync,

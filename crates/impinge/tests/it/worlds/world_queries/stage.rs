@@ -172,7 +172,8 @@ pub(crate) fn contacts<N: Real>() -> GeometricQueryType<N> {
     GeometricQueryType::Contacts(N::lit(0.01), N::ZERO)
 }
 
-/// Adds an object to `world` that interacts with everything.
+/// Adds an object without rotation that may interact with every object; its data are its serial
+/// number.
 pub(crate) fn add<N: Stage<D>, const D: usize>(
     world: &mut World<N, D>,
     coordinates: [f64; D],
@@ -183,7 +184,7 @@ pub(crate) fn add<N: Stage<D>, const D: usize>(
     world.add(position, shape.clone(), CollisionGroups::new(), contacts(), number)
 }
 
-/// A handle and a result, for comparison.
+/// The handle of an object and its result; results of queries are compared as lists of rows.
 pub(crate) type Row<A> = (CollisionObjectHandle, A);
 
 pub(crate) fn rows<N: Space<D>, const D: usize, A>(found: Vec<(&Object<N, D>, A)>) -> Vec<Row<A>> {

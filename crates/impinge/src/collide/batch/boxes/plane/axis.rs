@@ -16,7 +16,7 @@ pub(super) struct BestSide<V, M> {
     pub(super) normal: [V; 2],
     /// Signed distance along the normal; negative for an overlap.
     pub(super) gap: V,
-    /// Length that counts as rounding error for this pair.
+    /// Length up to which differences count as rounding errors, for each pair.
     pub(super) rounding_error: V,
     /// Lanes where the pose is finite.
     pub(super) is_finite: M,
@@ -33,7 +33,7 @@ struct AxisSide<V, M> {
 }
 
 impl<V> Boxes<V, 2> {
-    /// Returns for each pair the length that counts as rounding error.
+    /// Returns for each pair the length up to which differences count as rounding errors.
     #[inline(always)]
     fn rounding_error<S: Simd, N: Real>(&self, simd: S) -> V
     where

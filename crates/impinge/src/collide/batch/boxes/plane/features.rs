@@ -57,7 +57,7 @@ const SIDE_BITS: u8 = 63;
 const AT_END_AT: u32 = 5;
 /// Position of the bits of `sides` in a code.
 const SIDES_AT: u32 = 7;
-/// Bit that is set in every code.
+/// Bit that is set in every code, so that no code is 0.
 const MARK: u32 = 1 << 31;
 
 impl SideFeatures {

@@ -42,7 +42,7 @@ pub(in super::super) struct LaneSides<N: Real, const L: usize> {
     slots: Slots<N, 2, SLOTS, L>,
     /// Signed distance of the boxes; negative for an overlap.
     gap: [N; L],
-    /// Lengths up to this count as rounding errors.
+    /// Largest length that counts as a rounding error.
     tolerance: [N; L],
     /// Half the diagonal of the smaller box.
     size: [N; L],
@@ -116,8 +116,8 @@ impl<N: Real> Batch<N, 2> for Boxes2 {
 }
 
 impl<N: Real, const L: usize> LaneSides<N, L> {
-    /// Runs the kernel: axis, sides, slots. Returns after the axis test if no lane has a supported
-    /// pair within the prediction.
+    /// Runs the kernel: tests the axes, chooses the sides and fills the slots. Returns after the
+    /// axis test if no lane has a supported pair within the prediction.
     #[inline(always)]
     fn find<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, inputs: &Inputs<N, 2, L>) {
         let (boxes, prediction) = (inputs.boxes::<S, V>(simd), inputs.prediction::<S, V>(simd));
@@ -161,7 +161,7 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
         );
     }
 
-    /// Transposes the masks of the batch into one byte for each pair.
+    /// Transposes the masks, so that `sides`, `at_ends` and `filled` have one byte for each pair.
     #[inline(always)]
     fn turn(&mut self) {
         let [a, b, c, d] = self.slots.valid;

@@ -48,7 +48,7 @@ pub(super) struct BoxSides<V, M> {
     is_corner: M,
     /// Lanes where `ends[1]`, not `ends[0]`, faces the lower box.
     is_second_lower: M,
-    /// Lengths up to this count as rounding errors.
+    /// Largest length that counts as a rounding error.
     pub(super) tolerance: V,
     /// Lanes where neither side is too short: both exceed 8 tolerances along the lower side.
     pub(super) is_fit: M,
@@ -125,9 +125,10 @@ impl<V, M> BoxSides<V, M> {
         }
     }
 
-    /// Fills the slots with the ends of the overlap interval. Returns two masks for each slot: the
-    /// lanes where its candidate is at the first end of the other side, and those where it is at
-    /// the second.
+    /// Fills the slots with the ends of the overlap interval, or only with the lower end of the
+    /// upper side where that side is tilted too far. Returns two masks for each slot: the lanes
+    /// where its candidate is at the first end of the other side, and those where it is at the
+    /// second.
     #[inline(always)]
     pub(super) fn share<S: Simd, N: Real, const L: usize>(
         &self,
@@ -191,7 +192,7 @@ impl<V, M> BoxSides<V, M> {
         )
     }
 
-    /// Compares end `end` of the upper side with the lower side.
+    /// Compares one end of the upper side, `ends[end]`, with the lower side.
     #[inline(always)]
     fn above<S: Simd, N: Real>(&self, simd: S, end: usize) -> SideCandidate<V, M>
     where
@@ -239,10 +240,10 @@ impl<V, M> BoxSides<V, M> {
     }
 }
 
-/// The upper side: the side of the other box that is most aligned with the lower side.
+/// The upper side: the side of the other box that is most aligned with the lower side. Fields named
+/// as those of [`BoxSides`] have the same meaning; `is_aligned` is the negation of
+/// `BoxSides::is_corner`.
 struct Upper<V, M> {
-    /// This field and the next four have the meanings of the fields of [`BoxSides`] with these
-    /// names; `is_aligned` is the negation of `is_corner` there.
     is_own_y: M,
     is_positive: M,
     is_reversed: M,
@@ -277,7 +278,7 @@ impl<V, M> Upper<V, M> {
         );
         let is_own_y = facing[1].abs().simd_gt(facing[0].abs());
         let (across, sine) = (on(is_own_y, &facing), is_own_y.select(facing[0], facing[1]));
-        // Tilt limit of the supporting features: `FACING_SINE_SQUARED`.
+        // Within this tilt, `SupportMap::core_feature` also returns the whole side.
         let is_aligned = (sine * sine).simd_le(lit::<S, N, V>(simd, FACING_SINE_SQUARED));
         let zero = V::all(simd, N::ZERO);
         let is_positive = across.simd_gt(zero);

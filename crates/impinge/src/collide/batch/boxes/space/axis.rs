@@ -18,7 +18,7 @@ pub(super) struct BestAxis<V, M> {
     pub(super) normal: [V; 3],
     /// Signed distance along the normal; negative for an overlap.
     pub(super) gap: V,
-    /// Length that counts as rounding error for this pair.
+    /// Length up to which differences count as rounding errors, for each pair.
     pub(super) rounding_error: V,
     /// Lanes where the pose is finite.
     pub(super) is_finite: M,
@@ -54,7 +54,7 @@ fn abs_rotation<S: Simd, V: Wide<S>>(rotation: &[[V; 3]; 3]) -> [[V; 3]; 3] {
 }
 
 impl<V> Boxes<V, 3> {
-    /// Returns for each pair the length that counts as rounding error.
+    /// Returns for each pair the length up to which differences count as rounding errors.
     #[inline(always)]
     fn rounding_error<S: Simd, N: Real>(&self, simd: S) -> V
     where
@@ -77,8 +77,8 @@ impl<V> Boxes<V, 3> {
         let rounding_error = self.rounding_error(simd);
         let (edges, bound) =
             self.best_edges(simd, &abs_rotation, (gap + rounding_error).larger(gap));
-        // Both indices in `edges` are -1 if no pair of edges has a larger gap than the faces, up to
-        // rounding.
+        // Both indices in `edges` are -1 if no pair of edges has a gap that exceeds the best face's
+        // gap by more than the rounding error.
         let is_edges = V::all(simd, N::ZERO).simd_le(edges[0]);
         let is_second = is_second & !is_edges;
         let ends = [is_edges.select(edges[0], face), is_edges.select(edges[1], face)];
@@ -88,8 +88,8 @@ impl<V> Boxes<V, 3> {
         BestAxis { face, is_second, is_edges, normal, gap, rounding_error, is_finite }
     }
 
-    /// Returns the face with the largest gap: the index of its axis, the lanes where the face
-    /// belongs to the second box, and the gap.
+    /// Returns the face with the largest gap (the first one in a tie): the index of its axis, the
+    /// lanes where the face belongs to the second box, and the gap.
     #[inline(always)]
     fn best_face<S: Simd, N: Real>(&self, simd: S, abs_rotation: &[[V; 3]; 3]) -> (V, V::Mask, V)
     where

@@ -24,8 +24,8 @@ use crate::math::lanes::bits;
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
-/// Number of slots for corners of the two faces; they come first. The features of such a candidate
-/// depend on the part of the other face below or above the corner.
+/// Number of slots for corners of the two faces; they come first. The features of a candidate in
+/// one of them depend on the part of the other face below or above the corner.
 pub(super) const CORNERS: usize = 8;
 
 /// Signs of the two coordinates of a corner on its own face, in the order of the slots.
@@ -70,8 +70,9 @@ fn signed<S: Simd, V: Wide<S>>(value: V, is_positive: bool) -> V {
     if is_positive { value } else { -value }
 }
 
-/// Returns the signs, along both arms, of an end of one side of the parallelogram. The side is at
-/// the end `sign` of the arm `arm`; its end is at the end `upper` of the other arm.
+/// Returns the signs, along both arms, of a corner of the parallelogram: `sign` along the arm
+/// `arm`, and `upper` along the other arm. With `arm` and `sign` fixed, the two corners are the
+/// ends of one side.
 const fn ends(arm: usize, sign: bool, upper: bool) -> [bool; 2] {
     if arm == 0 { [sign, upper] } else { [upper, sign] }
 }
@@ -215,8 +216,8 @@ where
         self.store(slot, &position.flat, position.height, position.is_inside);
     }
 
-    /// Fills four slots with the crossings of one side of the parallelogram and all sides of the
-    /// rectangle.
+    /// Fills four slots, from `slot` on, with the crossings of one side of the parallelogram with
+    /// the four sides of the rectangle. The side is at the end `sign` of the arm `arm`.
     #[inline(always)]
     fn crossings(&mut self, slot: usize, arm: usize, sign: bool) {
         let (from, low) = self.arm_end(ends(arm, sign, false));

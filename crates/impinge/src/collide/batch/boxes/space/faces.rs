@@ -67,7 +67,7 @@ pub(super) struct FacesInLanes<V, M> {
     pub(super) area: V,
     /// Distances of the centre from the sides at the ends of the arms.
     pub(super) widths: [V; 2],
-    /// Lengths up to this count as rounding errors.
+    /// Largest length that counts as a rounding error.
     pub(super) tolerance: V,
     /// Lanes where the half widths of both faces exceed four tolerances.
     pub(super) is_fit: M,

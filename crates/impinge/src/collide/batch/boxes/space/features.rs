@@ -208,7 +208,7 @@ const PLACES: usize = 32;
 const PARTS_AT: u32 = 5;
 /// Position of the byte of the faces in a code.
 const FACES_AT: u32 = 12;
-/// Bit that is set in every code.
+/// Bit that is set in every code, so that no code is 0.
 const MARK: u32 = 1 << 31;
 /// Mask of the bits of a pair of parts.
 const PAIR_BITS: u32 = 127;

@@ -37,7 +37,7 @@ pub(in super::super) struct LaneFaces<N: Real, const L: usize> {
     corners: Corners,
     /// Signed distance of the boxes; negative for an overlap.
     gap: [N; L],
-    /// Lengths up to this count as rounding errors.
+    /// Largest length that counts as a rounding error.
     tolerance: [N; L],
     /// Length scale: half the diagonal of the smaller box.
     size: [N; L],
@@ -116,8 +116,8 @@ impl<N: Real> Batch<N, 3> for Boxes3 {
 }
 
 impl<N: Real, const L: usize> LaneFaces<N, L> {
-    /// Runs the kernel: axis, faces, slots. Returns after the axis test if no lane has a supported
-    /// pair within the prediction.
+    /// Runs the kernel: tests the axes, chooses the faces and fills the slots. Returns after the
+    /// axis test if no lane has a supported pair within the prediction.
     #[inline(always)]
     fn find<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, inputs: &Inputs<N, 3, L>) {
         let (boxes, prediction) = (inputs.boxes::<S, V>(simd), inputs.prediction::<S, V>(simd));

@@ -12,9 +12,9 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 use crate::shape::FACING_SINE_SQUARED;
 
-/// Supporting part of a face, indexed by the two axes `i` of the face. `is_free[i]` are the lanes
-/// where the part extends along axis `i`. For the other lanes, `is_positive[i]` are those where the
-/// part is at the positive end of axis `i`.
+/// The supporting part of a face: the face itself, a side or a corner. Index `i` of both fields is
+/// an axis of the face. `is_free[i]` are the lanes where the part extends along axis `i`. For the
+/// other lanes, `is_positive[i]` are those where the part is at the positive end of axis `i`.
 #[derive(Clone, Copy)]
 pub(super) struct SupportingParts<M> {
     is_free: [M; 2],
@@ -24,8 +24,8 @@ pub(super) struct SupportingParts<M> {
 impl<M> SupportingParts<M> {
     /// Computes the part from the components `tilt` of a unit vector along the two axes of the
     /// face. `is_middle` are the lanes where the face is perpendicular to the second axis of the
-    /// box; if both tilts are equal there, the second axis of the face counts as the less tilted
-    /// one, else the first.
+    /// box. If the tilts along both axes are equal, the second axis of the face counts as the less
+    /// tilted one in these lanes, the first axis in all others.
     #[inline(always)]
     pub(super) fn of<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>>(
         simd: S,
@@ -89,9 +89,9 @@ impl<M> SupportingParts<M> {
         self.is_free[1 - axis] & (self.is_free[axis] | self.is_at(axis, is_positive))
     }
 
-    /// Returns the lanes where a point of the face belongs to a part that is a side or the whole
-    /// face. For each axis, `at_end` are the lanes where the point is at an end of the face, and
-    /// `beyond` the lanes where its coordinate is positive.
+    /// Returns the lanes where a point of the face belongs to the part, except lanes whose part is
+    /// a corner, which are never returned. For each axis, `at_end` are the lanes where the point is
+    /// at an end of the face, and `beyond` the lanes where its coordinate is positive.
     #[inline(always)]
     pub(super) fn has_position<S: Simd>(&self, at_end: &[M; 2], beyond: &[M; 2]) -> M
     where
