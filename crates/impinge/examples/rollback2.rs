@@ -160,7 +160,7 @@ fn main() {
         }
     }
 
-    // The same game without a network: every input is known in its frame.
+    // Runs the game without a network: every input is known in its frame.
     let (mut world, players) = build();
     for frame in 0..FRAMES {
         step(&mut world, players, [0, 1].map(|player| input(player, frame)));

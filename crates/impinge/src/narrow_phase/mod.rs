@@ -54,7 +54,7 @@ pub use query_type::{ContactQuery, GeometricQueryType, ProximityQuery};
 pub(crate) use query_type::{PackedQuery, PairQuery};
 pub use reuse::ReuseError;
 pub(crate) use state::{CompositeState, ContactState, KeptContacts};
-pub(crate) use stateless::{ContactQuestion, contact_manifolds_at, each_manifold_at};
+pub(crate) use stateless::each_manifold_at;
 pub use stateless::{contact_manifolds, each_contact_manifold};
 pub use traits::{
     ContactAlgorithm, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,

@@ -3,7 +3,7 @@
 use super::generator::{PairContacts, conforming_points};
 use super::traits::ContactPrediction;
 use crate::collide::{AtIsometry, Placed, Solid};
-use crate::math::{AbstractRotation, Isometry, IsometryRef, Mapped, Real, Space};
+use crate::math::{AbstractRotation, Isometry, IsometryRef, Mapped, Space};
 use crate::query::{ContactManifold, ManifoldView};
 use crate::shape::Shape;
 use crate::tables::entries;
@@ -49,15 +49,17 @@ pub fn contact_manifolds<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>
     prediction: &ContactPrediction<N>,
     max_points: Option<usize>,
 ) -> Vec<ContactManifold<N, D>> {
-    let question = ContactQuestion { prediction: *prediction, max_points };
-    entries::contact_manifolds(R::view(m1), g1, R::view(m2), g2, &question)
+    let mut manifolds = Vec::new();
+    each_contact_manifold(m1, g1, m2, g2, prediction, max_points, |view| {
+        manifolds.push(view.to_manifold());
+    });
+    manifolds
 }
 
 /// Calls `each` with a view of each manifold that [`contact_manifolds`] returns, in the same order.
 ///
-/// For callers that need points, normals and depths alone: kinematics are not computed, and for two
-/// convex shapes nothing is allocated. Two boxes with four contacts take about half the time of
-/// [`contact_manifolds`].
+/// For callers that need points, normals and depths alone: kinematics are not computed, and no list
+/// of manifolds is built.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Vector};
@@ -81,29 +83,8 @@ pub fn each_contact_manifold<N: Space<D>, R: AbstractRotation<N, D>, const D: us
     max_points: Option<usize>,
     mut each: impl FnMut(ManifoldView<'_, N, D>),
 ) {
-    let question = ContactQuestion { prediction: *prediction, max_points };
-    entries::each_contact_manifold(R::view(m1), g1, R::view(m2), g2, &question, &mut each);
-}
-
-/// The parameters of a contact query for two shapes.
-pub(crate) struct ContactQuestion<N: Real> {
-    prediction: ContactPrediction<N>,
-    /// The largest number of points of a manifold; `None` for the default of the dimension.
-    max_points: Option<usize>,
-}
-
-/// Implements [`contact_manifolds`].
-pub(crate) fn contact_manifolds_at<N: Space<D>, const D: usize>(
-    isometry1: IsometryRef<'_, N, D>,
-    shape1: &dyn Shape<N, D>,
-    isometry2: IsometryRef<'_, N, D>,
-    shape2: &dyn Shape<N, D>,
-    question: &ContactQuestion<N>,
-) -> Vec<ContactManifold<N, D>> {
-    let mut manifolds = Vec::new();
-    let mut keep = |view: ManifoldView<'_, N, D>| manifolds.push(view.to_manifold());
-    entries::each_contact_manifold(isometry1, shape1, isometry2, shape2, question, &mut keep);
-    manifolds
+    let (isometry1, isometry2, each) = (R::view(m1), R::view(m2), &mut each);
+    entries::each_contact_manifold(isometry1, g1, isometry2, g2, prediction, max_points, each);
 }
 
 /// Implements [`each_contact_manifold`]. The pair identifier in the contact ids is 0.
@@ -112,10 +93,10 @@ pub(crate) fn each_manifold_at<N: Space<D>, const D: usize>(
     shape1: &dyn Shape<N, D>,
     isometry2: IsometryRef<'_, N, D>,
     shape2: &dyn Shape<N, D>,
-    question: &ContactQuestion<N>,
+    prediction: &ContactPrediction<N>,
+    max_points: Option<usize>,
     each: &mut dyn FnMut(ManifoldView<'_, N, D>),
 ) {
-    let ContactQuestion { prediction, max_points } = question;
     let (one, other) = (AtIsometry::new(isometry1, shape1), AtIsometry::new(isometry2, shape2));
     let Some(placed) = Placed::within(&one, &other, prediction.linear()) else { return };
     if !placed.iter().all(|placed| placed.pose.is_finite()) {

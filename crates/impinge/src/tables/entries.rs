@@ -9,8 +9,8 @@ use crate::convex::Separation;
 use crate::debug_render::Sketch;
 use crate::math::{self, IsometryRef, Point, Pose, Vector};
 use crate::narrow_phase::{
-    self, CompositeState, ContactPrediction, ContactQuestion, ContactState, DefaultNarrowPhase,
-    Events, IdAllocator, KeptContacts, ObjectTable, PairManifoldGenerator,
+    self, CompositeState, ContactPrediction, ContactState, DefaultNarrowPhase, Events, IdAllocator,
+    KeptContacts, ObjectTable, PairManifoldGenerator,
 };
 use crate::query::composite::{self, PartPoint, RayQuestion};
 use crate::query::point::{self, SurfacePoint};
@@ -231,15 +231,6 @@ compiled! {
         max_distance: N,
     ) -> Option<Witness<N, D>> = query::witness_at;
 
-    /// Computes the manifolds of two shapes without the contacts of an earlier step.
-    fn contact_manifolds(
-        isometry1: IsometryRef<'_, N, D>,
-        shape1: &dyn Shape<N, D>,
-        isometry2: IsometryRef<'_, N, D>,
-        shape2: &dyn Shape<N, D>,
-        question: &ContactQuestion<N>,
-    ) -> Vec<ContactManifold<N, D>> = narrow_phase::contact_manifolds_at;
-
     /// Calls `each` with a view of each manifold of two shapes, computed without the contacts of an
     /// earlier step.
     fn each_contact_manifold(
@@ -247,7 +238,8 @@ compiled! {
         shape1: &dyn Shape<N, D>,
         isometry2: IsometryRef<'_, N, D>,
         shape2: &dyn Shape<N, D>,
-        question: &ContactQuestion<N>,
+        prediction: &ContactPrediction<N>,
+        max_points: Option<usize>,
         each: &mut dyn FnMut(ManifoldView<'_, N, D>),
     ) = narrow_phase::each_manifold_at;
 

@@ -1,6 +1,6 @@
 //! Lower bounds of the distances from a convex solid to 8 parts of a surface at a time.
 //!
-//! Of the parts whose boxes are near the solid, most are farther than the limit. A plane
+//! Most parts whose boxes are near the solid are farther than the limit. A plane
 //! perpendicular to the shortest segment from the part to the solid's centre rejects such parts at
 //! the cost of a few products. Any plane gives a valid lower bound of the distance, so only
 //! rounding needs care. The core of the solid is replaced by a box: its half extents along the axes

@@ -11,8 +11,8 @@
 //!                │ side
 //! ```
 //!
-//! Of two faces that meet, each is behind the plane of the other (a ridge), each is in front of it
-//! (a valley), or only one of them is in front of the other's plane. In the last case no solid near
+//! Where two faces meet, each is behind the plane of the other (a ridge), each is in front of it (a
+//! valley), or only one of them is in front of the other's plane. In the last case no solid near
 //! both faces is in front of both, and the face behind the other's plane is hidden.
 
 use smallvec::SmallVec;

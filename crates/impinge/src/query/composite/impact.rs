@@ -32,8 +32,8 @@ pub(crate) struct PartArrival<N: Real, const D: usize> {
 /// parts: if the parts of a floor were tested alone, their inner edges would stop a solid that has
 /// sunk into the floor.
 ///
-/// Of two composites, the one with fewer parts is searched for the parts that the box of the other
-/// composite hits. For each part found, the other composite is searched along the path of that
+/// If both shapes are composites, the one with fewer parts is searched for the parts that the box
+/// of the other composite hits. For each part found, the other composite is searched along the path of that
 /// part; a path ends at the first impact found so far. After a start in contact that is not an
 /// impact, each part that is hit also costs the contacts of the whole shapes at that time.
 pub(crate) fn first_arrival<N: Space<D>, const D: usize>(

@@ -9,7 +9,7 @@ use crate::shape::FeatureId;
 /// Returns the span by the slab test (Kay and Kajiya 1986), with the crossed faces; `None` if the
 /// line misses the box. Corners may be infinite.
 ///
-/// Of several faces crossed at the same time, the one with the lowest index is returned.
+/// If the ray crosses several faces at the same time, returns the one with the lowest index.
 pub(super) fn span<N: Real, const D: usize>(
     corners: [&Point<N, D>; 2],
     ray: &Ray<N, D>,

@@ -203,7 +203,7 @@ mod tests {
         for round in 0..20_000 {
             let (a, b) = (random.vector::<f64>(1.0), random.vector::<f64>(1.0));
             let tip1 = random.vector::<f64>(1.0);
-            // Of every five edges one is exactly flat and two are nearly flat.
+            // In every five edges one is exactly flat and two are nearly flat.
             let flat = [1.0, 0.1, 0.01, 0.003, 0.0][round % 5];
             let tip2 = a + b - tip1 + random.vector::<f64>(1.0) * flat;
             let point = |v: Vector<f64, 3>| Point::from(v.map(N::lit));
