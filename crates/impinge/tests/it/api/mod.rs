@@ -7,7 +7,6 @@ mod chapter2;
 mod chapter3;
 mod coming_from;
 mod custom_algorithms;
-#[cfg(feature = "debug_render")]
 mod debug_render;
 mod dim2;
 mod dim3;

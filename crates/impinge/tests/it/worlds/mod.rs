@@ -2,7 +2,6 @@
 
 mod contact_stream;
 mod extremes_of_worlds;
-#[cfg(feature = "serde")]
 mod saved_worlds;
 mod world_ball_in_room;
 mod world_corpus;

@@ -1,19 +1,16 @@
 //! Random positions, shapes and groups with numbers on a grid, for the world and for the reference.
 
-#[cfg(feature = "serde")]
-use impinge::math::Point;
-use impinge::math::Real;
 use impinge::math::na::{
     Complex, Isometry2, Isometry3, Quaternion, Translation2, Translation3, UnitComplex,
     UnitQuaternion,
 };
+use impinge::math::{Point, Real};
 use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
-#[cfg(feature = "serde")]
 use impinge::procedural::space as surfaces;
-use impinge::shape::{Ball, Capsule, Cuboid, ShapeHandle};
-#[cfg(feature = "serde")]
-use impinge::shape::{ConvexHull, Diagonals, HeightField, Polyline, Tetrahedron, TriMesh};
-#[cfg(feature = "serde")]
+use impinge::shape::{
+    Ball, Capsule, ConvexHull, Cuboid, Diagonals, HeightField, Polyline, ShapeHandle, Tetrahedron,
+    TriMesh,
+};
 use impinge::world::Registry;
 use impinge::world::{CollisionGroups, CollisionWorld};
 use impinge::{dim2, dim3};
@@ -21,7 +18,6 @@ use impinge_reference::geometry::{Pose, Solid};
 use impinge_reference::random::Random;
 use impinge_reference::world::{Groups, QueryType};
 
-#[cfg(feature = "serde")]
 use crate::support::shape_table::{self, Shapes};
 use crate::support::world_stage::{Stage, half_space, vector};
 
@@ -38,11 +34,9 @@ pub(crate) trait Grid<const D: usize>: Stage<D> {
     fn register(world: &mut CollisionWorld<Self, D, u64>, name: &str, number: usize);
 
     /// Adds to a registry the name of the filter that [`Self::register`] registers.
-    #[cfg(feature = "serde")]
     fn name(registry: Registry<Self, D, u64>, name: &str, number: usize) -> Registry<Self, D, u64>;
 
     /// Returns shapes of all kinds, a few times `size` large.
-    #[cfg(feature = "serde")]
     fn all_shapes(size: f64) -> Shapes<Self, D>;
 }
 
@@ -89,12 +83,10 @@ impl<N: Real> Grid<2> for N {
         world.register_broad_phase_pair_filter(name, NotMultipleOf(number));
     }
 
-    #[cfg(feature = "serde")]
     fn name(registry: Registry<N, 2, u64>, name: &str, number: usize) -> Registry<N, 2, u64> {
         registry.with_filter(name, NotMultipleOf(number))
     }
 
-    #[cfg(feature = "serde")]
     fn all_shapes(size: f64) -> Shapes<N, 2> {
         let mut shapes = shape_table::plane(N::lit(size));
         let corner = |x: f64, y: f64| Point::<N, 2>::new(N::lit(x * size), N::lit(y * size));
@@ -125,12 +117,10 @@ impl<N: Real> Grid<3> for N {
         world.register_broad_phase_pair_filter(name, NotMultipleOf(number));
     }
 
-    #[cfg(feature = "serde")]
     fn name(registry: Registry<N, 3, u64>, name: &str, number: usize) -> Registry<N, 3, u64> {
         registry.with_filter(name, NotMultipleOf(number))
     }
 
-    #[cfg(feature = "serde")]
     fn all_shapes(size: f64) -> Shapes<N, 3> {
         let mut shapes = shape_table::space(N::lit(size));
         let corner = |at: [f64; 3]| Point::from(vector(at.map(|x| x * size)));

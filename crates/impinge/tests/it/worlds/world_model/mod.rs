@@ -8,7 +8,6 @@ mod both;
 mod draw;
 mod engine;
 mod forks;
-#[cfg(feature = "serde")]
 mod saved;
 mod twins;
 
