@@ -80,12 +80,11 @@ impl<U, H, K> Journal<U, H, K> {
     /// the last mark or return to a mark. From then on it counts as noted.
     #[inline]
     pub(crate) fn is_first(&mut self, index: usize) -> bool {
-        self.is_on() && {
-            let period = self.period;
-            let noted = self.noted_at(index);
-            let is_first = *noted < period;
-            *noted = (*noted).max(period);
-            is_first
+        // Without marks the period is 0, and `noted` is empty.
+        let period = self.period;
+        match self.noted.get_mut(index) {
+            Some(noted) => *noted < period && core::mem::replace(noted, period) < period,
+            None => self.is_on() && self.grow_noted(index, period),
         }
     }
 
@@ -95,15 +94,18 @@ impl<U, H, K> Journal<U, H, K> {
     #[inline]
     pub(crate) fn is_first_whole(&mut self, index: usize) -> bool {
         let whole = self.period + 1;
-        self.is_on() && core::mem::replace(self.noted_at(index), whole) != whole
+        match self.noted.get_mut(index) {
+            Some(noted) => core::mem::replace(noted, whole) != whole,
+            None => self.is_on() && self.grow_noted(index, whole),
+        }
     }
 
-    #[inline]
-    fn noted_at(&mut self, index: usize) -> &mut u32 {
-        if self.noted.len() <= index {
-            self.noted.resize(index + 1, 0);
-        }
-        &mut self.noted[index]
+    /// Extends [`Self::noted`] to an index, and sets its entry. Returns `true`.
+    #[cold]
+    fn grow_noted(&mut self, index: usize, period: u32) -> bool {
+        self.noted.resize(index, 0);
+        self.noted.push(period);
+        true
     }
 
     /// Adds the note that reverts a change, if there is a mark.
@@ -128,8 +130,13 @@ impl<U, H, K> Journal<U, H, K> {
 
     /// Adds a note, if there is a mark, and keeps its data, which [`Self::take_kept`] returns.
     pub(crate) fn note_kept(&mut self, undo: U, data: K) {
+        self.keep(data);
+        self.note(undo);
+    }
+
+    /// Keeps the data of the note that is added next, if there is a mark.
+    pub(crate) fn keep(&mut self, data: K) {
         if self.is_on() {
-            self.notes.list.push(undo);
             self.notes.kept.push(data);
         }
     }

@@ -20,29 +20,37 @@ use crate::math::{Pose, Real, Space, Vector};
 #[derive(Clone, Debug)]
 pub(crate) struct GroupRow<S, R> {
     key: PairKey,
-    due: bool,
+    is_dirty: bool,
     is_touching: bool,
     state: S,
     /// `None` if the group has no references.
     reference: Option<R>,
 }
 
-/// The state of a pair, which is recorded in two parts: a head of constant size, and the points in
-/// a list of their own. So the note of a pair without contacts takes less memory than the note of a
-/// pair with four.
+/// The state of a pair, which is recorded in three parts: a head of constant size, the points in a
+/// list of their own, and the rest, which most pairs do not have. So the note of a pair without
+/// contacts takes less memory than the note of a pair with four.
 pub(crate) trait Parts: Clone {
-    type Head;
+    type Head: Copy;
+    type Rest;
     type Point: Copy;
 
-    /// Returns the data that an update may change, without the points.
+    /// Returns the data of constant size that an update may change.
     fn head(&self) -> Self::Head;
+
+    /// Returns the data that is neither in the head nor in the points; `None` if there is none.
+    fn rest(&self) -> Option<Self::Rest>;
 
     /// Returns the points.
     fn points(&self) -> &[Self::Point];
 
-    /// Restores the state from its head and its points; `reversed` yields the points in reverse
-    /// order.
-    fn put_together(&mut self, head: Self::Head, reversed: impl Iterator<Item = Self::Point>);
+    /// Restores the state from its parts; `reversed` yields the points in reverse order.
+    fn put_together(
+        &mut self,
+        head: Self::Head,
+        rest: Option<Self::Rest>,
+        reversed: impl Iterator<Item = Self::Point>,
+    );
 }
 
 /// The head of the contacts of two convex solids.
@@ -51,47 +59,62 @@ pub(crate) struct ContactHead<N: Real, const D: usize> {
     normal: Vector<N, D>,
     ids: PairIds,
     is_swapped: bool,
-    pose12: Option<Pose<N, D>>,
 }
 
 impl<N: Space<D>, const D: usize> Parts for ContactEntry<N, ContactState<N, D>> {
     type Head = ContactHead<N, D>;
+    type Rest = Pose<N, D>;
     type Point = RawPoint<N, D>;
 
     fn head(&self) -> Self::Head {
-        let (RawManifold { normal, ids, pose12, .. }, is_swapped) = self.state.kept();
-        ContactHead { normal: *normal, ids: *ids, is_swapped, pose12: *pose12 }
+        let (RawManifold { normal, ids, .. }, is_swapped) = self.state.kept();
+        ContactHead { normal: *normal, ids: *ids, is_swapped }
+    }
+
+    /// Returns the pose of [`RawManifold::pose12`].
+    fn rest(&self) -> Option<Self::Rest> {
+        self.state.kept().0.pose12
     }
 
     fn points(&self) -> &[Self::Point] {
         &self.state.kept().0.points
     }
 
-    fn put_together(&mut self, head: Self::Head, reversed: impl Iterator<Item = Self::Point>) {
-        let ContactHead { normal, ids, is_swapped, pose12 } = head;
+    fn put_together(
+        &mut self,
+        head: Self::Head,
+        pose12: Option<Self::Rest>,
+        reversed: impl Iterator<Item = Self::Point>,
+    ) {
+        let ContactHead { normal, ids, is_swapped } = head;
         let mut points: SmallVec<_> = reversed.collect();
         points.reverse();
         self.state.keep(RawManifold { normal, ids, points, pose12 }, is_swapped);
     }
 }
 
-/// Implements [`Parts`] for states that are recorded whole, as heads.
+/// Implements [`Parts`] for states that are recorded whole, as rests.
 macro_rules! whole {
     ($([$($generics:tt)*] $type:ty;)*) => {
         $(impl<$($generics)*> Parts for $type {
-            type Head = Self;
+            type Head = ();
+            type Rest = Self;
             type Point = ();
 
-            fn head(&self) -> Self {
-                self.clone()
+            fn head(&self) {}
+
+            fn rest(&self) -> Option<Self> {
+                Some(self.clone())
             }
 
             fn points(&self) -> &[()] {
                 &[]
             }
 
-            fn put_together(&mut self, head: Self, _: impl Iterator<Item = ()>) {
-                *self = head;
+            fn put_together(&mut self, (): (), rest: Option<Self>, _: impl Iterator<Item = ()>) {
+                if let Some(whole) = rest {
+                    *self = whole;
+                }
             }
         })*
     };
@@ -119,89 +142,100 @@ pub(crate) enum GroupNote<S: Parts> {
     /// The row of a pair before a change other than an update, or before its replacement by another
     /// pair. The journal also has all data of the old pair, as [`KeptPair::Row`].
     Replaced(u32),
-    /// A pair before an update computed it: its row, the number of its points, its dirty flag and
-    /// its touching flag. Its points are in [`Group::point_journal`]. If the group has references,
-    /// the journal also has the pair's reference, as [`KeptPair::Reference`].
-    Written { place: u32, num_points: u32, due: bool, is_touching: bool, head: S::Head },
+    /// A pair before an update computed it. Its points are in [`Group::point_journal`].
+    Written(WrittenPair<S::Head>),
 }
 
-/// The data of a [`GroupNote`] that owns memory.
-pub(crate) enum KeptPair<S, R> {
+/// The data of constant size of a [`GroupNote::Written`].
+pub(crate) struct WrittenPair<H> {
+    head: H,
+    row: u32,
+    num_points: u32,
+    is_dirty: bool,
+    is_touching: bool,
+    /// Whether the journal also has the rest of the state and the reference, as
+    /// [`KeptPair::Written`].
+    is_kept: bool,
+}
+
+/// The data of a [`GroupNote`] that few pairs have or that owns memory.
+pub(crate) enum KeptPair<S: Parts, R> {
     Row(Box<GroupRow<S, R>>),
-    Reference(R),
-}
-
-impl<S, R> KeptPair<S, R> {
-    fn reference(self) -> Option<R> {
-        match self {
-            Self::Row(_) => None,
-            Self::Reference(reference) => Some(reference),
-        }
-    }
+    Written { rest: Option<S::Rest>, reference: Option<R> },
 }
 
 impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
-    fn row(&self, place: u32) -> Box<GroupRow<S, R>> {
-        let at = place as usize;
+    fn row(&self, row: u32) -> Box<GroupRow<S, R>> {
+        let at = row as usize;
         Box::new(GroupRow {
             key: self.keys[at],
-            due: self.dirty[at],
-            is_touching: self.is_touching(place),
+            is_dirty: self.dirty[at],
+            is_touching: self.is_touching(row),
             state: self.states[at].clone(),
-            reference: self.references.as_ref().map(|references| references[at].clone()),
+            reference: self.reference(at),
         })
+    }
+
+    fn reference(&self, at: usize) -> Option<R> {
+        self.references.as_ref().map(|references| references[at].clone())
     }
 
     /// Records the pairs in the given rows before an update computes them, each pair only once
     /// between two marks. Does nothing if there are no marks.
-    fn note(&mut self, places: impl Iterator<Item = u32>) {
+    pub(super) fn note(&mut self, rows: impl Iterator<Item = u32>) {
         if self.journal.is_on() {
-            places.for_each(|place| self.note_one(place));
+            rows.for_each(|row| self.note_once(row));
         }
     }
 
-    fn note_one(&mut self, place: u32) {
-        let at = place as usize;
-        if core::mem::replace(&mut self.noted[at], self.period) == self.period {
-            return;
+    #[inline]
+    fn note_once(&mut self, row: u32) {
+        if core::mem::replace(&mut self.noted[row as usize], self.period) != self.period {
+            self.note_one(row);
         }
-        let points = self.states[at].points();
+    }
+
+    fn note_one(&mut self, row: u32) {
+        let at = row as usize;
+        let (state, is_dirty, is_touching) =
+            (&self.states[at], self.dirty[at], self.is_touching(row));
+        let (head, rest, points) = (state.head(), state.rest(), state.points());
         let num_points = u32::try_from(points.len()).expect("few enough points for ids");
-        self.point_journal.note_all(points);
-        let (due, is_touching) = (self.dirty[at], self.is_touching(place));
-        let head = self.states[at].head();
-        let written = GroupNote::Written { place, num_points, due, is_touching, head };
-        match &self.references {
-            None => self.journal.note(written),
-            Some(all) => self.journal.note_kept(written, KeptPair::Reference(all[at].clone())),
+        let reference = self.reference(at);
+        let is_kept = rest.is_some() || reference.is_some();
+        if is_kept {
+            self.journal.keep(KeptPair::Written { rest, reference });
         }
+        let written = WrittenPair { head, row, num_points, is_dirty, is_touching, is_kept };
+        self.journal.note(GroupNote::Written(written));
+        self.point_journal.note_all(points);
     }
 
     /// Records all data of the pair in a row before a change other than an update. Does nothing if
     /// there are no marks.
-    pub(super) fn note_whole(&mut self, place: u32) {
+    pub(super) fn note_whole(&mut self, row: u32) {
         if self.journal.is_on() {
-            self.journal.note_kept(GroupNote::Replaced(place), KeptPair::Row(self.row(place)));
-            self.noted[place as usize] = self.period;
+            self.journal.note_kept(GroupNote::Replaced(row), KeptPair::Row(self.row(row)));
+            self.noted[row as usize] = self.period;
         }
     }
 
     /// Records all data of the pair in a row before its removal. Does nothing if there are no
     /// marks.
-    pub(super) fn note_removed(&mut self, place: u32) {
+    pub(super) fn note_removed(&mut self, row: u32) {
         if self.journal.is_on() {
-            self.journal.note_kept(GroupNote::Removed(place), KeptPair::Row(self.row(place)));
-            self.noted.swap_remove(place as usize);
+            self.journal.note_kept(GroupNote::Removed(row), KeptPair::Row(self.row(row)));
+            self.noted.swap_remove(row as usize);
         }
     }
 
     /// Records the pairs that the update is about to compute.
-    fn note_due<N: Space<D>, const D: usize>(&mut self, table: &ObjectTable<N, D>) {
+    fn note_dirty<N: Space<D>, const D: usize>(&mut self, table: &ObjectTable<N, D>) {
         let end = if self.journal.is_on() { self.keys.len() } else { 0 };
         for at in 0..end {
             let [first, second] = self.keys[at];
             if self.dirty[at] || table.has_changed(first) || table.has_changed(second) {
-                self.note_one(u32::try_from(at).expect("fewer than 2^32 pairs fit in memory"));
+                self.note_once(u32::try_from(at).expect("fewer than 2^32 pairs fit in memory"));
             }
         }
     }
@@ -248,27 +282,25 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         }
         while let Some(note) = journal.undo(number) {
             match note {
-                GroupNote::Written { place, num_points, due, is_touching, head } => {
-                    let points = (0..num_points).map_while(|_| self.point_journal.undo(number));
-                    self.states[place as usize].put_together(head, points);
-                    let reference = self.references.as_ref().map(|_| journal.take_kept());
-                    self.put(place, due, is_touching, reference.and_then(KeptPair::reference));
+                GroupNote::Written(written) => {
+                    let kept = written.is_kept.then(|| journal.take_kept());
+                    self.undo_update(written, kept, number);
                 }
                 GroupNote::Pushed => self.pop(),
-                GroupNote::Replaced(place) => {
-                    if let KeptPair::Row(row) = journal.take_kept() {
-                        self.put_row(place, *row);
-                        changed(place);
+                GroupNote::Replaced(row) => {
+                    if let KeptPair::Row(kept) = journal.take_kept() {
+                        self.put_row(row, *kept);
+                        changed(row);
                     }
                 }
-                GroupNote::Removed(place) => {
-                    let KeptPair::Row(row) = journal.take_kept() else { continue };
-                    let last = self.push(row.key, row.state.clone(), false);
-                    if place != last {
-                        self.put_row(last, *self.row(place));
+                GroupNote::Removed(row) => {
+                    let KeptPair::Row(kept) = journal.take_kept() else { continue };
+                    let last = self.push(kept.key, kept.state.clone(), false);
+                    if row != last {
+                        self.put_row(last, *self.row(row));
                     }
-                    self.put_row(place, *row);
-                    changed(place);
+                    self.put_row(row, *kept);
+                    changed(row);
                     changed(last);
                 }
             }
@@ -279,21 +311,38 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         self.begin_period();
     }
 
+    /// Restores a pair that updates have computed since it was noted.
+    fn undo_update(
+        &mut self,
+        written: WrittenPair<S::Head>,
+        kept: Option<KeptPair<S, R>>,
+        number: u64,
+    ) {
+        let WrittenPair { head, row, num_points, is_dirty, is_touching, .. } = written;
+        let (rest, reference) = match kept {
+            Some(KeptPair::Written { rest, reference }) => (rest, reference),
+            Some(KeptPair::Row(_)) | None => (None, None),
+        };
+        let points = (0..num_points).map_while(|_| self.point_journal.undo(number));
+        self.states[row as usize].put_together(head, rest, points);
+        self.put(row, is_dirty, is_touching, reference);
+    }
+
     fn pop(&mut self) {
         if let Some(last) = self.keys.len().checked_sub(1) {
             self.swap_remove(u32::try_from(last).expect("fewer than 2^32 pairs fit in memory"));
         }
     }
 
-    fn put_row(&mut self, place: u32, row: GroupRow<S, R>) {
-        let GroupRow { key, due, is_touching, state, reference } = row;
-        (self.keys[place as usize], self.states[place as usize]) = (key, state);
-        self.put(place, due, is_touching, reference);
+    fn put_row(&mut self, row: u32, kept: GroupRow<S, R>) {
+        let GroupRow { key, is_dirty, is_touching, state, reference } = kept;
+        (self.keys[row as usize], self.states[row as usize]) = (key, state);
+        self.put(row, is_dirty, is_touching, reference);
     }
 
-    fn put(&mut self, place: u32, due: bool, is_touching: bool, reference: Option<R>) {
-        let at = place as usize;
-        self.dirty[at] = due;
+    fn put(&mut self, row: u32, is_dirty: bool, is_touching: bool, reference: Option<R>) {
+        let at = row as usize;
+        self.dirty[at] = is_dirty;
         set_touching(&mut self.touching, at, is_touching);
         if let Some(views) = self.views.get_mut() {
             views[at] = V::default();
@@ -306,27 +355,27 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
 
 /// Runs `action` for each group, with its [`GroupId`].
 macro_rules! each_group {
-    ($lanes:expr, |$lane:pat_param, $group:ident| $action:expr) => {{
+    ($groups:expr, |$id:pat_param, $group:ident| $action:expr) => {{
         let PairGroups { contacts, composites, proximity, custom_contacts, custom_proximity } =
-            $lanes;
+            $groups;
         for (number, $group) in contacts.numbered_mut() {
-            let $lane = GroupId::Contacts(number);
+            let $id = GroupId::Contacts(number);
             $action;
         }
         for (number, $group) in proximity.numbered_mut() {
-            let $lane = GroupId::Proximity(number);
+            let $id = GroupId::Proximity(number);
             $action;
         }
         {
-            let ($lane, $group) = (GroupId::Composites, composites);
+            let ($id, $group) = (GroupId::Composites, composites);
             $action;
         }
         {
-            let ($lane, $group) = (GroupId::CustomContacts, custom_contacts);
+            let ($id, $group) = (GroupId::CustomContacts, custom_contacts);
             $action;
         }
         {
-            let ($lane, $group) = (GroupId::CustomProximity, custom_proximity);
+            let ($id, $group) = (GroupId::CustomProximity, custom_proximity);
             $action;
         }
     }};
@@ -334,22 +383,22 @@ macro_rules! each_group {
 
 impl<N: Space<D>, const D: usize> PairGroups<N, D> {
     /// Records the pairs at the locations `picked`, which are all in one group, before they are
-    /// computed.
+    /// computed. Does nothing if there are no marks.
     pub(super) fn note(&mut self, picked: &[Location]) {
-        let places = picked.iter().map(|at| at.row);
+        let rows = picked.iter().map(|at| at.row);
         match picked[0].group {
-            GroupId::Contacts(number) => self.contacts.of_mut(number).note(places),
-            GroupId::Composites => self.composites.note(places),
-            GroupId::Proximity(number) => self.proximity.of_mut(number).note(places),
-            GroupId::CustomContacts => self.custom_contacts.note(places),
-            GroupId::CustomProximity => self.custom_proximity.note(places),
+            GroupId::Contacts(number) => self.contacts.of_mut(number).note(rows),
+            GroupId::Composites => self.composites.note(rows),
+            GroupId::Proximity(number) => self.proximity.of_mut(number).note(rows),
+            GroupId::CustomContacts => self.custom_contacts.note(rows),
+            GroupId::CustomProximity => self.custom_proximity.note(rows),
             GroupId::Nothing => {}
         }
     }
 
     /// Records the pairs that the update is about to compute.
-    pub(super) fn note_due(&mut self, table: &ObjectTable<N, D>) {
-        each_group!(self, |_, group| group.note_due(table));
+    pub(super) fn note_dirty(&mut self, table: &ObjectTable<N, D>) {
+        each_group!(self, |_, group| group.note_dirty(table));
     }
 }
 
@@ -358,13 +407,13 @@ impl<N: Space<D>, const D: usize> PairGroups<N, D> {
 #[derive(Clone, Debug)]
 pub(crate) struct NarrowHead {
     ids: IdAllocator,
-    due: Vec<PairKey>,
+    dirty_pairs: Vec<PairKey>,
 }
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// Sets a mark for a later [`Self::rewind`]; see [`Journal`](crate::journal::Journal).
     pub(crate) fn mark(&mut self, number: u64) {
-        let head = NarrowHead { ids: self.ids.clone(), due: self.dirty_pairs.clone() };
+        let head = NarrowHead { ids: self.ids.clone(), dirty_pairs: self.dirty_pairs.clone() };
         self.journal.mark(number, head);
         self.pairs.mark(number);
         each_group!(&mut self.groups, |_, group| group.mark(number));
@@ -386,20 +435,20 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             }
             None => locations.push(NOWHERE),
         });
-        each_group!(&mut self.groups, |lane, group| {
-            let mut places = Vec::new();
-            group.rewind(number, |place| places.push(place));
-            for place in places {
-                let Some(&[first, second]) = group.keys.get(place as usize) else { continue };
+        each_group!(&mut self.groups, |id, group| {
+            let mut rows = Vec::new();
+            group.rewind(number, |row| rows.push(row));
+            for row in rows {
+                let Some(&[first, second]) = group.keys.get(row as usize) else { continue };
                 if let Some(index) = self.pairs.index_of(first, second) {
-                    self.locations[index] = Location { group: lane, row: place };
+                    self.locations[index] = Location { group: id, row };
                 }
             }
         });
         while self.journal.undo(number).is_some() {}
-        if let Some(NarrowHead { ids, due }) = self.journal.head() {
+        if let Some(NarrowHead { ids, dirty_pairs }) = self.journal.head() {
             self.ids = ids.clone();
-            self.dirty_pairs.clone_from(due);
+            self.dirty_pairs.clone_from(dirty_pairs);
         }
         self.forget_order();
     }

@@ -86,7 +86,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// Updates all pairs by scanning group after group.
     fn update_all(&mut self, table: &ObjectTable<N, D>, changes: &mut PairChanges) {
         if self.journal.is_on() {
-            self.groups.note_due(table);
+            self.groups.note_dirty(table);
         }
         let reuse = Reuse { table, tolerance: self.tolerance };
         let is_used = |group: &&mut ContactGroup<N, D>| !group.is_empty();
@@ -162,7 +162,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         let mut picked = core::mem::take(&mut self.picked);
         self.pick(table, dirty, &mut picked);
         for picked in picked.chunk_by(|one, other| one.group == other.group) {
-            self.update_picked(table, picked, changes);
+            picked.chunks(CHUNK).for_each(|picked| self.update_picked(table, picked, changes));
         }
         picked.clear();
         self.picked = picked;
@@ -184,16 +184,15 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         picked.dedup();
     }
 
-    /// Updates some pairs, which are all in the same group.
+    /// Updates at most [`CHUNK`] pairs, which are all in the same group. If there are marks, the
+    /// pairs are noted first, so the update finds them in the cache.
     fn update_picked(
         &mut self,
         table: &ObjectTable<N, D>,
         picked: &[Location],
         changes: &mut PairChanges,
     ) {
-        if self.journal.is_on() {
-            self.groups.note(picked);
-        }
+        self.groups.note(picked);
         let reuse = Reuse { table, tolerance: self.tolerance };
         match picked[0].group {
             GroupId::Contacts(kinds) => {
@@ -287,7 +286,7 @@ fn compute_convex<N: Space<D>, const D: usize>(
     }
 }
 
-/// Updates the contacts of the picked pairs of convex solids.
+/// Updates the contacts of at most [`CHUNK`] picked pairs of convex solids.
 fn update_picked_convex<N: Space<D>, const D: usize>(
     mut rows: ContactRows<'_, N, D>,
     reuse: Reuse<'_, N, D>,
@@ -297,16 +296,14 @@ fn update_picked_convex<N: Space<D>, const D: usize>(
     let first = picked[0].row as usize;
     let solids = rows.states[first].state.solids().copied();
     let may_keep = !has_ball(solids.as_ref());
-    for picked in picked.chunks(CHUNK) {
-        let mut indices: RowIndices = picked.iter().map(|at| at.row as usize).collect();
-        for &row in &indices {
-            rows.take_dirty_flag(row);
-        }
-        indices.retain(|row| !(may_keep && reuse.keeps(&mut rows, *row)));
-        compute_convex(&mut rows, reuse.table, &indices, solids.as_ref(), changes);
-        if may_keep {
-            indices.iter().for_each(|&row| reuse.note(&mut rows, row));
-        }
+    let mut indices: RowIndices = picked.iter().map(|at| at.row as usize).collect();
+    for &row in &indices {
+        rows.take_dirty_flag(row);
+    }
+    indices.retain(|row| !(may_keep && reuse.keeps(&mut rows, *row)));
+    compute_convex(&mut rows, reuse.table, &indices, solids.as_ref(), changes);
+    if may_keep {
+        indices.iter().for_each(|&row| reuse.note(&mut rows, row));
     }
 }
 

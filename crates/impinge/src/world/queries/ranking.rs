@@ -82,13 +82,12 @@ impl<N: Real, A> Rank<N, A> for Ranking<N, A> {
     }
 
     fn offer(&mut self, ranked: Ranked<N, A>) {
-        if self.heap.len() < self.count {
-            if ranked.key <= self.limit {
-                self.heap.push(ranked);
-            }
-            return;
-        }
-        if let Some(mut last) = self.heap.peek_mut()
+        // Also false for a NaN key.
+        let is_within = ranked.key <= self.limit();
+        if is_within && self.heap.len() < self.count {
+            self.heap.push(ranked);
+        } else if is_within
+            && let Some(mut last) = self.heap.peek_mut()
             && ranked < *last
         {
             *last = ranked;
@@ -122,8 +121,9 @@ impl<N: Real, A> Rank<N, A> for BestOne<N, A> {
     }
 
     fn offer(&mut self, ranked: Ranked<N, A>) {
-        let is_best = self.best.as_ref().map_or(ranked.key <= self.limit, |best| ranked < *best);
-        if is_best {
+        // The first comparison is false for a NaN key.
+        let is_within = ranked.key <= self.limit();
+        if is_within && self.best.as_ref().is_none_or(|best| ranked < *best) {
             self.best = Some(ranked);
         }
     }
@@ -155,9 +155,13 @@ mod tests {
     use super::*;
     use crate::generation::Generation;
 
+    /// Keys and indices of offered results. NaN comes with the lowest index, early and late.
+    const OFFERED: [(f32, u32); 7] =
+        [(3.0, 6), (f32::NAN, 1), (1.0, 4), (2.0, 3), (1.0, 2), (9.0, 5), (f32::NAN, 0)];
+
     fn filled(count: usize, limit: f32) -> Vec<(f32, u32)> {
         let mut ranking = Ranking::new(count, limit).expect("room");
-        for (key, index) in [(3.0, 0), (f32::NAN, 1), (1.0, 4), (2.0, 3), (1.0, 2), (9.0, 5)] {
+        for (key, index) in OFFERED {
             ranking.offer(Ranked {
                 key,
                 handle: CollisionObjectHandle::new(index, Generation::of_no_table(0)),
@@ -184,7 +188,7 @@ mod tests {
     fn one_answer_is_that_of_a_ranking_of_one() {
         for limit in [0.5, 1.0, 2.0, f32::INFINITY] {
             let mut best = BestOne::new(limit).expect("room");
-            for (key, index) in [(3.0, 0), (f32::NAN, 1), (1.0, 4), (2.0, 3), (1.0, 2), (9.0, 5)] {
+            for (key, index) in OFFERED {
                 let handle = CollisionObjectHandle::new(index, Generation::of_no_table(0));
                 best.offer(Ranked { key, handle, answer: index });
             }
