@@ -71,7 +71,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         Ok(Self::around(CollisionWorld::try_new(margin)?))
     }
 
-    /// Creates a player with a world without objects.
+    /// Creates a player that applies the calls to `world`, which must have no objects.
     pub(crate) fn around(world: CollisionWorld<N, D, T>) -> Self {
         let (handles, asked, queries) = (Vec::new(), Vec::new(), Vec::new());
         let (observer, refused) = (Observer::default(), Vec::new());

@@ -102,8 +102,9 @@ impl<const D: usize> Tree<D> {
         if new * 3 > self.live {
             self.rebuild();
         } else if self.is_sparing && (new <= LANES || self.renewal.is_some()) {
-            // A sparing tree leaves new objects unsorted while there are at most 16, which are
-            // hardly neighbours, or while a renewal, which sorts them, is in progress.
+            // In a sparing tree new objects stay unsorted while there are at most 16 of them: few
+            // objects are rarely close together, and sorting them gains little. They also stay
+            // unsorted during a renewal, because the renewal puts them in their places.
             return;
         } else if new > LANES {
             let most = if self.is_sparing { SMALL } else { usize::MAX };

@@ -136,7 +136,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Writes the changes since the last update to the object table and the broad phase. Starts or
-    /// stops pairs of objects with themselves, and passes changed objects to the narrow phase.
+    /// stops pairs of objects with themselves. The narrow phase then chooses the algorithms again
+    /// for the pairs of objects whose shape, query type or skin changed.
     fn write_changes(&mut self) {
         self.objects.flush(&mut *self.broad_phase, &mut self.algorithms);
         for index in self.objects.changes.take_self_changed() {
@@ -255,9 +256,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Updates with a new broad phase or a new narrow phase. All proxies are new, so the broad
-    /// phase reports every pair as started. If the narrow phase stays, it already has most of these
-    /// pairs; those that the broad phase does not report again are stopped. A new narrow phase
-    /// starts without pairs; its events are the differences between the old and the new statuses.
+    /// phase reports every pair as started. If the narrow phase stays, it keeps its pairs: most
+    /// started pairs are already there, and old pairs that the broad phase no longer reports are
+    /// stopped. A new narrow phase starts without pairs; its events are the differences between the
+    /// old and the new statuses.
     fn update_with_other_phases(&mut self, filter: Option<UpdateFilter<'_, N, D, T>>) {
         self.end_marks();
         let Some(mut narrow_phase) = self.next_narrow_phase.take() else {

@@ -50,8 +50,9 @@ pub(super) struct Topology {
     pub(super) is_moved: bool,
 }
 
-/// A side, stored at its end with the lower joint: the joint of its other end, the triangle, the
-/// side's index within the triangle, and whether the side leads away from the lower joint.
+/// A side in the group of its end joint with the smaller index: the joint of the other end, the
+/// triangle, the side's index within the triangle, and whether the triangle traverses the side from
+/// the smaller joint to the larger.
 type TopologySide = (u32, u32, u8, bool);
 
 /// Returns all sides with two different ends, grouped by the lower joint, and the end index of each
