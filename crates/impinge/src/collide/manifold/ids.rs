@@ -27,10 +27,9 @@
 //! ```
 //!
 //! Each id goes to one point. Ties go to the older id, then to the candidate that comes first. The
-//! result does not depend on the order of the two solids, and scaling by a power of two changes no
-//! choice. If each pair of features has at most one point, as for two boxes, points with the same
-//! features are the same point, and positions are compared only for crossings of two edges
-//! ([`is_same_point`]).
+//! distance treats both solids alike. Scaling by a power of two changes no choice. If each pair of
+//! features has at most one point, as for two boxes, points with the same features are the same
+//! point, and positions are compared only for crossings of two edges ([`is_same_point`]).
 
 use smallvec::SmallVec;
 
@@ -45,9 +44,9 @@ use crate::shape::FeatureId;
 /// the pair's size (`collide/size.rs`).
 pub(super) const SHARE: f64 = 1.0 / 16.0;
 
-/// Largest distance, along each axis and as a fraction of the pair's size, between crossings of the
-/// same two edges that are one point. The crossing of edges that nearly coincide may jump from one
-/// end to the other.
+/// Largest distance, as a fraction of the pair's size, that a crossing of two edges may move and
+/// stay the same contact; [`is_same_point`] compares it with each coordinate. A crossing of edges
+/// that nearly coincide may jump farther, from one end to the other.
 pub(super) const REACH: f64 = 1.0 / 2.0;
 
 /// Returns whether both features are edges.
@@ -74,7 +73,8 @@ pub(in crate::collide) fn near_scale<N: Real>(size: N) -> N {
     N::ONE / (N::lit(SHARE) * size)
 }
 
-/// Data by which a contact point is matched: its features, and its position on either solid.
+/// Data by which a contact point is matched: its features, its position on either solid, and the
+/// normal.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::collide) struct Anchors<N: Real, const D: usize> {
     /// Indices of the parts of composites, zero for a convex solid, and the features of these
@@ -202,9 +202,9 @@ pub(in crate::collide) fn inherit_by_features<N: Real, const D: usize>(
     }
 }
 
-/// Passes ids on by position ([`each_match`]). Considers the candidates with the indices `some`:
-/// those without an id are matched to the old points whose ids none of these candidates has. `pose`
-/// is the new pose; `size` computes the size of the pair.
+/// Passes ids on by position ([`each_match`]). `some` holds the indices of the candidates that may
+/// get an id. Matches the candidates without an id to the old points whose ids no candidate in
+/// `some` has. `pose` is the new pose; `size` computes the size of the pair.
 pub(in crate::collide) fn inherit_by_position<N: Real, const D: usize>(
     old: &RawManifold<N, D>,
     pose: &PairPose<'_, N, D>,

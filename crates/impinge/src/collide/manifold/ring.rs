@@ -69,8 +69,8 @@ pub(super) struct SupportRing<'a, N: Real> {
     turn: N,
     /// Radius around the feature.
     radius: N,
-    /// Cosine of the angle between the frame's normal and the face's, or between a segment and the
-    /// contact plane.
+    /// Cosine of the angle between the face's normal and [`Which::outward`], or between a segment
+    /// and the contact plane; 1 for a point.
     cosine: N,
     /// Only for a solid with a radius: depth, below the supporting plane, of the corner nearest to
     /// the other solid, and the tangent coordinates of that corner.

@@ -106,8 +106,8 @@ pub(in crate::collide) struct FaceClip<N: Real> {
     /// By lane, a bound of the rounding errors of lengths.
     pub(super) tolerance: [N; LANES],
     pub(super) supporting: SupportingBits,
-    /// Lanes where the triangle's supporting feature is certain, and all its sides and the sides of
-    /// the ring are longer than two tolerances.
+    /// Lanes where the triangle's supporting feature is certain, and the sides of this feature and
+    /// of the ring are longer than two tolerances in projection.
     pub(super) with_extent: u8,
     /// Lanes where a side of the triangle (first index) and a side of the ring (second index)
     /// cross.

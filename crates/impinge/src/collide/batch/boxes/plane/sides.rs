@@ -44,7 +44,7 @@ pub(super) struct BoxSides<V, M> {
     ends: [End<V>; 2],
     /// Length of the upper side, projected onto the lower side.
     length: V,
-    /// Lanes where the upper side is tilted too far, so that only its lower end is used.
+    /// Lanes where the upper side is tilted too far. There only its lower end is used.
     is_corner: M,
     /// Lanes where `ends[1]`, not `ends[0]`, faces the lower box.
     is_second_lower: M,
