@@ -25,8 +25,8 @@ use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Matrix, Point, Real, Space, Vector, Wide, filled, max, max_component, min};
 use crate::shape::{Geometry, Kind};
 
-/// Slack of the bounds, relative to the sum of all lengths: 128 rounding units, and at least
-/// `CURVED`, which exceeds the tolerance of the distance search of curved solids.
+/// Slack of the bounds, relative to the sum of all lengths: 128 epsilon, and at least `CURVED`,
+/// which exceeds the tolerance of the distance search of curved solids.
 const ROUNDING: f64 = 128.0;
 const CURVED: f64 = 1.0e-10;
 

@@ -285,7 +285,8 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         })
     }
 
-    /// Returns a part from its cached corners; `None` if it is not cached.
+    /// Returns a part from its cached corners; `None` if it is not cached, or if the cache holds no
+    /// corners.
     pub(super) fn part(&self, part: u32) -> Option<Part<'static, N, D>> {
         if self.tiles.is_empty() {
             return None;

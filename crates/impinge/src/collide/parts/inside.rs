@@ -89,7 +89,7 @@ pub(crate) fn held_pieces<N: Space<D>, const D: usize>(
 /// boundary.
 ///
 /// Cost: one search for nearest parts, shared by all pieces; each pair of parts is compared with
-/// each piece, so that many pieces take quadratic time.
+/// each piece, so many pieces take quadratic time.
 pub(crate) fn find_exits<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     pieces: &mut InsidePieces<N, D>,
