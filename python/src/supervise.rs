@@ -2,8 +2,8 @@
 //! Ctrl-C or at an exception.
 //!
 //! Signals and progress bars belong to the calling thread. That thread sleeps while another thread
-//! computes. It wakes every [`TICK`] and stops the computation through the progress callback of the
-//! batch.
+//! computes. It wakes every [`TICK`] to check signals and to show progress. After an exception it
+//! stops the computation through the progress callback of the batch.
 
 use core::ops::ControlFlow;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

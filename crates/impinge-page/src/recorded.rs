@@ -200,7 +200,8 @@ fn loss_text(loss: &Loss) -> String {
 /// Returns a sentence, to be shown on the page, about the first difference of a replay from its
 /// recording.
 fn divergence_text(found: &Divergence) -> String {
-    // The difference was found by the update that leads to this step.
+    // `found.step` counts the updates before the difference. The difference is in the next update,
+    // or in a query before that update.
     let step = found.step + 1;
     match found.difference {
         Difference::Object { index, field: ObjectField::Description } => {

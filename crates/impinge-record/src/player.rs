@@ -200,8 +200,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         self.refused = pairs;
     }
 
-    /// Updates the world. If the recorded update had a filter, the recorded results of the filter
-    /// are used.
+    /// Updates the world. If the filter of the recorded update rejected pairs, this update rejects
+    /// the same pairs.
     fn update_world(&mut self) {
         let refused = std::mem::take(&mut self.refused);
         if refused.is_empty() {

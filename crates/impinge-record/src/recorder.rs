@@ -21,9 +21,9 @@ use crate::state::Observer;
 /// A collision world that records the calls that change it, and the queries made through it.
 ///
 /// It owns the world and dereferences to it for reading only ([`Deref`]), so that every change is
-/// recorded. Each method calls the method of [`CollisionWorld`] with the same name and returns its
-/// errors; after an error neither the world nor the recording has changed. Queries through `Deref`
-/// are not recorded; they have no influence on the replay.
+/// recorded. A method with the name of a method of [`CollisionWorld`] calls that method and returns
+/// its errors. After an error neither the world nor the recording has changed. Queries through
+/// `Deref` are not recorded; they have no influence on the replay.
 ///
 /// An update is recorded with hashes of all bits of its result: positions, groups, query types,
 /// pairs, contacts, proximities and events. This costs O(objects + contacts) time, and 12 bytes for

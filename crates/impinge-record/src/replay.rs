@@ -428,7 +428,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
 /// recording, to the bit.
 ///
 /// If the hash of the state differs, the hashes of objects determine the first differing object in
-/// the order of handles. A packed recording does not contain them.
+/// the order of handles. A recording that was packed has no hashes of objects; the difference is
+/// then [`Difference::State`](crate::Difference::State).
 ///
 /// # Errors
 /// As [`Replay::open`] and [`Replay::seek`].

@@ -41,7 +41,8 @@ pub(crate) struct Observer {
     /// The pair index of the first contact. Pair indices are hashed relative to it, since their
     /// values are not reset when the phases are replaced.
     first_pair: Option<u64>,
-    /// The two hashes of each object by index; zero for indices that never had an object.
+    /// The two hashes of each object by index; zero for indices without an object at the last
+    /// update.
     known: Vec<[u32; 2]>,
 }
 

@@ -2,8 +2,8 @@
 //!
 //! Results are cached: [`Crowd::touching`] is updated from the events of the world. The nearest
 //! pair is stored with the number of changes when it was found, and the cost of a query depends on
-//! the changes since then. The query itself processes a few moves; after more changes the world is
-//! updated ([`EAGER`]).
+//! the changes since then. If [`EAGER`] changes follow without a query, the world is updated before
+//! the next query.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -24,11 +24,11 @@ pub(super) type Solid = ShapeHandle<f64, 3>;
 /// The world is updated after this many changes without a query, so that a query has few changes to process.
 const EAGER: u64 = 16;
 
-/// Two objects. Those of the same crowd are sorted by handle; otherwise the first is an object of
-/// this manager's crowd and the second of the other crowd.
+/// Two objects of one crowd, sorted by handle; or an object of this manager's crowd, then an object
+/// of the other crowd.
 pub(super) type Pair = (Handle, Handle);
 
-/// Two objects and their distance, negative where they overlap.
+/// Two objects and their distance, negative if they overlap.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Nearest {
     pub(super) pair: Pair,

@@ -82,7 +82,7 @@ pub fn linear_cast<const D: usize>(
     let between = norm(&sub(&pose2.translation, &pose1.translation));
     let reach = solid1.bounding_radius() + solid2.bounding_radius();
     // Beyond `horizon` the solids only move apart. Against a half-space the normal is constant, so
-    // that twice the path to the contact suffices.
+    // twice the path to the contact suffices.
     let horizon = if reach.is_finite() {
         between + reach
     } else {
