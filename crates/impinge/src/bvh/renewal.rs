@@ -65,8 +65,8 @@ pub(super) struct Renewal<const D: usize> {
 enum Stage {
     /// Route the slots from the first value up to the second, exclusive.
     Route(usize, usize),
-    /// Copy the rest of a region's list, which ends with this entry ([`NONE`]: empty), then the
-    /// regions from this index on.
+    /// Copy the rest of a region's list, then the regions from the second value on. The first value
+    /// is the entry of the list to copy next, or [`NONE`] at the end of the list.
     Copy(u32, usize),
     /// Add the objects inserted since the renewal began.
     Follow,

@@ -34,7 +34,7 @@ impl<const D: usize> StillItem<D> {
         self.bounds.lo[axis] * 0.5 + self.bounds.hi[axis] * 0.5
     }
 
-    /// Returns the sort key on an axis: the centre, ties by id. Keys of two boxes differ, so the
+    /// Returns the sort key on an axis: the centre, then the id. Keys of two boxes differ, so the
     /// sorted order is unique.
     #[inline]
     fn key(&self, axis: usize) -> u64 {

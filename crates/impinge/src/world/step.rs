@@ -94,9 +94,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
     }
 
-    /// Begins the batch of events of an update with the queued events. The batch follows the last
-    /// one if that is kept, else replaces it. Drops the removed objects whose handles are in no
-    /// event any more.
+    /// Starts the batch of events of an update with the queued events. If the events of the last
+    /// update are kept, the batch is appended to them; otherwise it replaces them. Drops the
+    /// removed objects whose handles are in no event any more.
     fn begin_events(&mut self) {
         if !core::mem::take(&mut self.keeps_events) {
             self.events.clear();
@@ -222,7 +222,8 @@ pub(super) fn in_order(
     if handle2 < handle1 { (handle2, handle1) } else { (handle1, handle2) }
 }
 
-/// The status of a pair with contacts, or the proximity of a pair that is not disjoint.
+/// The status of a pair: `Touching` if it has contact points, `Near` with its proximity if that is
+/// not `Disjoint`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum StepStatus {
     Touching,
@@ -232,8 +233,8 @@ enum StepStatus {
 /// Replacing the phases. The present phases are used until the next update, which creates all
 /// proxies anew.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Replaces the broad phase by an empty broad phase of any type that is `Clone`, `Send` and
-    /// `Sync`.
+    /// Replaces the broad phase. The new broad phase must be empty; it can have any type that is
+    /// `Clone`, `Send` and `Sync`.
     ///
     /// The new broad phase takes over at the next update, which reports changes as any other update
     /// does, and ends all marks.
@@ -247,7 +248,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         &*self.broad_phase
     }
 
-    /// Replaces the narrow phase by a narrow phase without pairs, of any type that is `Clone`.
+    /// Replaces the narrow phase. The new narrow phase must have no pairs; it can have any type
+    /// that is `Clone`.
     ///
     /// The new narrow phase takes over at the next update, which reports changes as any other
     /// update does, and ends all marks. Contacts get new ids.
@@ -287,8 +289,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         push_differences(&before, &self.statuses(), &mut self.events);
     }
 
-    /// Creates a proxy for every object, in the next broad phase if there is one. Returns the pairs
-    /// of the old proxies.
+    /// Removes all proxies and creates new ones, in the next broad phase if there is one. Returns
+    /// the pairs of the removed proxies.
     fn renew_proxies(&mut self) -> Vec<HandlePair> {
         let known = self.objects.bodies().map(|body| (body.handle, body.proxy));
         let (handles, proxies): (Vec<_>, Vec<_>) = known.unzip();
@@ -326,7 +328,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
     }
 
-    /// Returns the pairs that are touching or near, sorted, with their statuses.
+    /// Returns the pairs that have contacts or are not disjoint, with their statuses, in ascending
+    /// order.
     fn statuses(&self) -> Vec<(HandlePair, StepStatus)> {
         let contacts = self.narrow_phase.contact_pairs(&self.objects);
         let touching = contacts.filter(|(_, _, pair)| pair.num_contacts() > 0);

@@ -32,8 +32,9 @@ use crate::math::{Mapped, Point, Real, Vector, filled, max, unit};
 
 /// Initial capacity of the queue: enough for most searches.
 const EXPECTED: usize = 64;
-/// If the surface of one block is larger by this factor, about the ratio between two layers, only
-/// that block is opened.
+/// If the surface of one block is more than this many times the surface of the other block, only
+/// the larger block is opened. The factor is about the ratio of the surfaces of blocks in
+/// successive layers.
 const MUCH_WIDER: f64 = 8.0;
 
 /// The direction from each tree toward the other tree: a unit vector in the frame of the first
@@ -140,8 +141,8 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
     /// Searches all pairs of objects, beginning with `whole`, the pair of the top blocks. If
     /// [`TreePair::limit`] is positive and [`Self::near`] finds children of the first top block,
     /// first passes two objects that are probably near each other to [`TreePair::guess`], one of
-    /// each tree. Then opens pairs of blocks in the order of their lower bounds, until the lowest
-    /// exceeds [`TreePair::bound`] or this bound is negative.
+    /// each tree. Then opens pairs of blocks in the order of their lower bounds. The search ends
+    /// when the least lower bound exceeds [`TreePair::bound`], or this bound is negative.
     fn run(&mut self, whole: BlockPair) {
         self.queue.push(Reverse(whole));
         let near = || self.near(0, whole.layers[0], 0, &self.other_box(0, &whole));
