@@ -15,9 +15,9 @@ const GROUPS: usize = 30;
 /// The groups of a scene: the groups that the document names, and further groups that disable pairs
 /// of links.
 ///
-/// Groups disable the pairs, so that a recording needs no pair filter. For each pair, one link is
-/// the only member of a group that the other link blacklists. Only groups that the document does
-/// not name are used for this. An object without a `membership` in the document is a member of all
+/// Groups disable the pairs, so a recording needs no pair filter. For each pair, one link is the
+/// only member of a group that the other link blacklists. Only groups that the document does not
+/// name are used for this. An object without a `membership` in the document is a member of all
 /// groups except those that disable pairs.
 #[derive(Debug)]
 pub(super) struct GroupPlan {
