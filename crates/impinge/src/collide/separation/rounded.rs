@@ -21,7 +21,7 @@ pub(super) fn separation<N: Space<D>, const D: usize>(
 }
 
 /// Returns the inner solid of a rounded solid, and the radius around it; for other solids the solid
-/// itself and zero. Of nested rounded solids it removes only the outermost.
+/// itself and zero. Removes only the outermost radius of nested rounded solids.
 pub(crate) fn bare<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> (Kind<'_, N, D>, N) {
     match kind {
         Kind::Rounded(solid) => (solid.inner().0, solid.radius()),

@@ -50,7 +50,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     }
 }
 
-/// A segment in the frame of a solid. Its lengths are scaled by a power of two, so that the larger
+/// A segment in the frame of a solid. Its lengths are scaled by a power of two, so that the largest
 /// of the solid's bounding radius, the ends' coordinates and the translation between the frames is
 /// at least 1 and less than 2.
 struct LocalSegment<'a, N: Real> {

@@ -8,10 +8,10 @@
 //!    lies farthest above, or least deep below ([`vertices`]).
 //! 2. If a lowest point of the other solid lies over that face and above its plane, it
 //!    determines the result ([`face`]).
-//! 3. Otherwise edges are queried ([`edges`]), but only those with an end near enough to the plane
-//!    of the reference face. If the solids overlap, these are the pairs of edges that form a face
-//!    of the Minkowski difference, found by their arcs on the Gauss map; if they are apart, the
-//!    nearest points of edges.
+//! 3. Otherwise edges are queried ([`edges`]), but only edges with an end near enough to the plane
+//!    of the reference face. If the solids overlap, the query compares the pairs of edges that form
+//!    a face of the Minkowski difference, found by their arcs on the Gauss map. If the solids are
+//!    apart, it finds the nearest edges.
 //!
 //! ```text
 //!            other solid

@@ -23,10 +23,10 @@ use smallvec::SmallVec;
 
 use crate::math::{Mapped, Real, Vector, cross2, min, perp, unit};
 
-/// The maximum number of arcs, the given arc and parts of it, that one search examines. For each it
-/// computes at most one direction, at which it may split the arc. About 20 directions are enough in
-/// `f32`, and 40 in `f64`: the splits approach the best direction from both sides, until the bounds
-/// are good enough.
+/// The maximum number of arcs, the given arc and parts of it, that one search examines. For each
+/// arc it computes the depth in at most one direction, at which it may split the arc. About 20
+/// directions are enough in `f32`, and 40 in `f64`: the splits approach the best direction from
+/// both sides, until the bounds are good enough.
 const STEPS: usize = 256;
 
 /// Height of a point along the unit vectors `u` of a circle: `base + toward · u`.
