@@ -8,10 +8,10 @@
 //! ```
 //!
 //! The `code` of a point of a box pair identifies its features and its slot in a batch
-//! (`collide/batch/boxes/choose.rs`). A code of 0 means that both are unknown. Code that creates a
-//! point of a convex pair, or changes its features, must set `code` to 0, because the batch kernels
-//! rely on it. Points of composite pieces (`mesh/scene.rs`) may keep a code that does not match
-//! their features; no kernel reads these codes.
+//! (`collide/batch/boxes/choose.rs`). A code of 0 means that both are unknown. A function that
+//! creates a point of a convex pair, or changes its features, must set `code` to 0, because the
+//! batch kernels rely on it. Points of composite pieces (`mesh/scene.rs`) may keep a code that does
+//! not match their features; no kernel reads these codes.
 
 use smallvec::SmallVec;
 

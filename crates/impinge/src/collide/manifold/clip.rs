@@ -12,11 +12,11 @@
 //! ```
 //!
 //! Both features are [rings](super::ring) projected along the normal. Both solids are treated
-//! alike: there is no reference face that could flip, and the ids of a point do not depend on which
-//! solid is first. A point within the tolerance of a side lies on the side, which keeps ids stable
-//! where sides or corners coincide. A segment has one side; a corner counts as inside it only on
-//! its line. If a feature is a point, or both are segments that are not parallel, [`build`] keeps
-//! only the contact at the nearest points.
+//! alike: there is no reference face that could flip, and the features of a point do not depend on
+//! which solid is first. A point within the tolerance of a side lies on the side. So features are
+//! stable where sides or corners coincide. A segment has one side; a corner counts as inside it
+//! only on its line. If a feature is a point, or both are segments that are not parallel, [`build`]
+//! keeps only the contact at the nearest points.
 //!
 //! The algorithm of Sutherland and Hodgman ("Reentrant polygon clipping", 1974) is not used: it
 //! clips one polygon against the sides of the other, so one solid would be the reference.
@@ -314,8 +314,8 @@ impl<'a, N: Real> RingClip<'a, N> {
         }
     }
 
-    /// Adds a contact of a corner of ring `which` (0 or 1) and the point `under` of the other ring,
-    /// which is opposite along the normal and lies on the part `on`.
+    /// Adds a contact of a corner of ring `which` (0 or 1). `under` is the point of the other ring
+    /// opposite to it along the normal; `on` is the part of that ring that contains `under`.
     fn push_corner(
         &self,
         which: usize,
@@ -393,7 +393,7 @@ impl<'a, N: Real> RingClip<'a, N> {
     }
 
     /// Returns the part of a segment beside a point: an end, if it is within twice the tolerance
-    /// along the segment, else the segment; `None` beyond the ends.
+    /// along the segment, else the segment; `None` farther beyond the ends.
     fn beside(&self, flat: &Vector<N, 2>, segment: &SupportRing<'_, N>) -> Option<FeatureId> {
         let (side, tolerance) = (segment.side(0), N::TWO * self.frame.tolerance);
         let length = side.norm();
@@ -402,10 +402,10 @@ impl<'a, N: Real> RingClip<'a, N> {
         part_beside(along, length, tolerance, ends, segment.id)
     }
 
-    /// Adds the contact at the surface points over two points of the cores, if the request admits
-    /// it. Skips a duplicate of a contact in `out`, because corners that coincide are found from
-    /// both rings. Contacts count as duplicates only at one position: different points on round
-    /// rims may have the same features.
+    /// Adds the contact whose points lie on the rounded surfaces, above two points of the cores, if
+    /// the request admits it. Skips a duplicate of a contact in `out`, because corners that
+    /// coincide are found from both rings. Contacts count as duplicates only at one position:
+    /// different points on round rims may have the same features.
     fn push(
         &self,
         [core1, core2]: [Point<N, 3>; 2],

@@ -40,8 +40,8 @@ use crate::math::order::askew;
 use crate::math::{Point, Pose, Real, Vector, max_component};
 use crate::shape::FeatureId;
 
-/// Largest distance that a contact may move in one step and stay the same contact, as a fraction of
-/// the pair's size (`collide/size.rs`).
+/// Near length, as a fraction of the pair's size (`collide/size.rs`): an old and a new point at
+/// most this distance apart are near each other.
 pub(super) const SHARE: f64 = 1.0 / 16.0;
 
 /// Largest distance, as a fraction of the pair's size, that a crossing of two edges may move and
@@ -66,8 +66,7 @@ pub(in crate::collide) fn is_same_point<N: Real, const D: usize>(
     !are_edges(features) || max_component(moved) <= N::lit(REACH) * size()
 }
 
-/// Returns the reciprocal of the largest distance that a contact may move in one step and keep its
-/// id; `size` is the size of the pair.
+/// Returns the reciprocal of the near length, [`SHARE`] of the pair's `size`.
 #[inline(always)]
 pub(in crate::collide) fn near_scale<N: Real>(size: N) -> N {
     N::ONE / (N::lit(SHARE) * size)
@@ -126,8 +125,8 @@ pub(in crate::collide) struct Inherited {
     pub(in crate::collide) is_old: bool,
 }
 
-/// Returns whether an old and a new point are close enough to be the same contact. `size` is the
-/// size of the pair.
+/// Returns whether an old and a new point are near each other: at most the near length apart.
+/// `size` is the size of the pair.
 pub(in crate::collide) fn are_near<N: Real, const D: usize>(
     old: &Anchors<N, D>,
     new: &Anchors<N, D>,
@@ -167,8 +166,8 @@ pub(super) fn moved<N: Real, const D: usize>(
 /// Cosine of the largest angle, 45°, between the old and new normal of one contact.
 const TURN: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
-/// Returns whether two contacts may be the same one by their normals, in the frame of the first
-/// solid: whether the angle between the normals is at most 45°. `false` for NaN.
+/// Returns whether the angle between an old and a new normal, both in the frame of the first solid,
+/// is at most 45°. `false` for NaN.
 #[inline(always)]
 pub(in crate::collide) fn normals_agree<N: Real, const D: usize>(
     old: &Vector<N, D>,

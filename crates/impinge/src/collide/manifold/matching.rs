@@ -19,7 +19,7 @@ use crate::math::{Mapped, Real};
 use crate::shape::FeatureId;
 
 /// Class of two points with the same features that are near: at most the near length apart, which
-/// is `SHARE` of the size of the two solids.
+/// is `SHARE` of the pair's size.
 const SAME: u64 = 0;
 /// Class of two points with different features that are near.
 const NEAR: u64 = 1;
@@ -155,9 +155,9 @@ fn match_many<N: Real, const D: usize>(
     }
 }
 
-/// Visits matches by position: features count only through `same_vertex`. Points do not match if
-/// their distance exceeds the near length (`SHARE` of the pair's size). `old` and `new` are masks
-/// of points.
+/// Matches points by position and visits the matches; features count only through `same_vertex`.
+/// Points do not match if their distance exceeds the near length (`SHARE` of the pair's size).
+/// `old` and `new` are masks of points.
 ///
 /// `moved` returns the squared distance of an old and a new point in units of the squared near
 /// length. `same_vertex` returns, for an old point and a mask of new points, the new points on the

@@ -31,7 +31,7 @@ const NEW: f64 = 63.0 / 64.0;
 /// Bonus of an old point if more than four points are chosen, as a fraction of the hull's area.
 const KEPT: f64 = 1.0 / 256.0;
 
-/// Fraction of the best area, or length of points in a row, that old points must span to be kept.
+/// Fraction of the best area (length for points in a row) that old points must span to be kept.
 const ENOUGH: f64 = 0.9;
 
 /// Points in a strip narrower than this fraction of its length count as a row. Rows are compared by

@@ -155,7 +155,8 @@ pub(super) fn contact_feature<N: Real, const D: usize>(
     let lowest = map.core_support(direction);
     let height = |point: &Point<N, D>| point.coords.dot(direction);
     let top = out.vertices.iter().map(height).fold(-N::INFINITY, max);
-    // How far the lowest point of the rim lies beyond the farthest corner, along `direction`.
+    // Distance by which the lowest point of the rim lies beyond the farthest corner, along
+    // `direction`.
     let (lower, reach) = (height(&lowest) - top, map.reach());
     if lower > N::lit(SLACK) * reach {
         map.core_feature(direction, out);

@@ -69,8 +69,8 @@ struct SideCandidate<V, M> {
     /// Lanes where `end` is within the other side's interval, or outside by at most twice the
     /// tolerance.
     is_inside: M,
-    /// Lanes where `end` is at the first end of the other side, and at the second, up to the
-    /// tolerance.
+    /// Lanes where `end` is at or beyond the first end of the other side, and at or beyond the
+    /// second, up to the tolerance.
     at_end: [M; 2],
 }
 
@@ -126,9 +126,8 @@ impl<V, M> BoxSides<V, M> {
     }
 
     /// Fills the slots with the ends of the overlap interval, or only with the lower end of the
-    /// upper side where that side is tilted too far. Returns two masks for each slot: the lanes
-    /// where its candidate is at the first end of the other side, and those where it is at the
-    /// second.
+    /// upper side where that side is tilted too far. Returns two masks for each slot: the `at_end`
+    /// of its [`SideCandidate`].
     #[inline(always)]
     pub(super) fn share<S: Simd, N: Real, const L: usize>(
         &self,

@@ -39,8 +39,8 @@ impl<M> SupportingParts<M> {
         let squares = [tilt[0] * tilt[0], tilt[1] * tilt[1]];
         let is_all = Self::is_all(simd, tilt);
         let [one, other] = [tilt[0].abs(), tilt[1].abs()];
-        // The axis with the smaller tilt is free first; a tie is resolved by the order of the box's
-        // axes.
+        // A side extends along the axis with the smaller tilt; a tie is resolved by the order of
+        // the box's axes.
         let is_first_weaker = one.simd_lt(other) | (one.simd_eq(other) & !is_middle);
         Self {
             is_free: [
