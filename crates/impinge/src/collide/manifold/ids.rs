@@ -16,8 +16,9 @@
 //! `batch` keep no old pose, so they compare positions on the first solid only.
 //!
 //! If the normal turned by more than 45°, the distance is infinite, because a solid that fell on
-//! another side begins new contacts. It is zero nevertheless for the same pair of features with a
-//! vertex among them, because such a pair has only one point.
+//! another side begins new contacts. Then only points on the same pair of features still match,
+//! unless both features are edges. For such a pair with a vertex the distance is zero, because the
+//! pair has only one point.
 //!
 //! ```text
 //!           ┌─────────┐            ┌─────────┐
