@@ -249,6 +249,7 @@ impl<'a> Merger<'a> {
     /// Grows a face from each facet that is not in a face yet, the largest first.
     fn merged(mut self) -> FaceRings {
         // The bits of nonnegative floats, taken as integers, have the order of the floats.
+        // Inverting them gives descending order.
         let area = |facet: &Facet| !facet.doubled_area.to_bits();
         let mut seeds: Vec<(u64, u32)> = self.facets.iter().map(area).zip(0..).collect();
         sort_keyed(&mut seeds);

@@ -88,7 +88,7 @@ impl<N: Real> ContactSpan<N> {
         let ([low, high], [bottom, top]) = (own, other);
         let (down, up) = (bottom - high - self.slack, top - low + self.slack);
         if speed == N::ZERO {
-            // The intervals never overlap: the span becomes empty.
+            // Intervals that do not overlap now never do: the span becomes empty.
             self.leave = if down > N::ZERO || up < N::ZERO { -N::ONE } else { self.leave };
             return;
         }

@@ -32,7 +32,7 @@ use crate::shape::{
 /// use impinge::dim3::math::{Isometry, Vector};
 /// use impinge::dim3::shape::{Ball, Compound, Cuboid, ShapeHandle};
 ///
-/// // A hammer, and a rack of two.
+/// // A hammer, and a rack with two hammers.
 /// let handle = ShapeHandle::new(Cuboid::new(Vector::new(0.5_f32, 0.1, 0.1)));
 /// let head = ShapeHandle::new(Ball::new(0.25));
 /// let hammer = ShapeHandle::new(Compound::new(vec![

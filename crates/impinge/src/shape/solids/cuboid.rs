@@ -100,7 +100,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
         (free != CuboidPart::<D>::ALL).then(|| part.id())
     }
 
-    /// Returns the id of a part: its set `free` is the lower `D` bits, `corner` the upper `D`.
+    /// Returns the id of a part: `free` is the lower `D` bits of `bits`, `corner` the next `D`.
     #[inline]
     pub(crate) const fn id_of_bits(bits: u8) -> FeatureId {
         CuboidPart::<D>::IDS[bits as usize & ((1 << (2 * D)) - 1)]
@@ -245,8 +245,9 @@ impl<const D: usize> CuboidPart<D> {
     }
 
     /// Returns the corners in the order documented at [`Cuboid`]: a Gray code over the free axes,
-    /// which changes one coordinate at a time. The axes follow cyclically after a face's own
-    /// axis. The loop is counter-clockwise on the positive side if this permutation is even.
+    /// which changes one coordinate at a time. A face's free axes follow its own axis cyclically.
+    /// The loop is then counter-clockwise on the positive side if this order of the axes is an even
+    /// permutation.
     const fn ring(self) -> CuboidRing {
         let own = self.own_axis();
         let is_face = self.dimension() + 1 == D;

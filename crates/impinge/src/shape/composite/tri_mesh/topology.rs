@@ -55,8 +55,8 @@ pub(super) struct Topology {
 /// the smaller joint to the larger.
 type TopologySide = (u32, u32, u8, bool);
 
-/// Returns all sides with two different ends, grouped by the lower joint, and the end index of each
-/// joint's group.
+/// Returns all sides with two different ends, grouped by the end joint with the smaller index, and
+/// the end of each joint's group in the list.
 fn sides_by_joint(joints: &Joints, triangles: &[[u32; 3]]) -> (Vec<TopologySide>, Vec<usize>) {
     let each = |visit: &mut dyn FnMut(u32, TopologySide)| {
         for (index, triangle) in (0..).zip(triangles) {
