@@ -223,8 +223,8 @@ impl<const D: usize> Tree<D> {
         Open { keys, mask, first }
     }
 
-    /// Opens a block for the children whose squared distance may be at most `limit`, in squared
-    /// units of the gaps.
+    /// Opens a block for the children whose squared distance to the box of `gaps` may be at most
+    /// `limit`, in squared units of `gaps`.
     pub(super) fn opened_around(
         &self,
         gaps: &Gaps<D>,

@@ -128,7 +128,7 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Records that boxes changed, so that the surface must be measured again.
+    /// Records that boxes changed. The surface must then be measured again.
     pub(super) fn note_use(&mut self) {
         self.schedule.is_used = true;
     }

@@ -89,7 +89,8 @@ impl<const D: usize> Tree<D> {
 /// Reorders the items for consecutive slots that begin with the first slot of a subtree. The
 /// recursion ends, since both parts are smaller.
 fn arrange<const D: usize>(items: &mut [StillItem<D>]) {
-    // The boxes in one child: the least power of 16 such that at most 16 children hold all items.
+    // Number of boxes in one child: the least power of 16 such that at most 16 children hold all
+    // items.
     let mut child = LANES;
     while child * LANES < items.len() {
         child *= LANES;

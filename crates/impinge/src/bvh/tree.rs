@@ -106,7 +106,7 @@ pub(crate) struct Tree<const D: usize> {
     pub(super) dirty: Vec<u32>,
     /// Number of lanes with their change bit set.
     pub(super) changed: usize,
-    /// Whether the number of leaf blocks has changed, so that the upper layers must be resized.
+    /// Whether the number of leaf blocks has changed. The upper layers must then be resized.
     pub(super) is_restructured: bool,
     /// Whether a box was written or marked as changed since the last [`Self::refit`]. Searches
     /// would then miss objects.

@@ -246,7 +246,8 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         }
     }
 
-    /// Replaces the pose in an object's row without marking it as written, and returns the old one.
+    /// Replaces the pose in an object's row without marking it as written, and returns the old
+    /// pose.
     pub(super) fn replace_pose(
         &mut self,
         index: u32,

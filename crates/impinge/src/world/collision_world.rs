@@ -72,8 +72,8 @@ pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
     pub(super) keeps_events: bool,
     /// Removed objects whose handles are in events.
     pub(super) removed: RemovedObjects<N, D, T>,
-    /// Scratch: handle indices of objects whose shape, query type or skin changed, so that the
-    /// algorithms of their pairs must be chosen again.
+    /// Scratch: handle indices of objects whose shape, query type or skin changed. The algorithms
+    /// of their pairs must be chosen again.
     pub(super) algorithms: Vec<u32>,
     /// Scratch: pairs that started or stopped in an update.
     pub(super) interactions: Vec<Interaction>,

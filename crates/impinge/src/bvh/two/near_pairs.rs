@@ -2,11 +2,11 @@
 //!
 //! The search is best first over pairs of blocks, one of each tree (Hjaltason and Samet,
 //! "Incremental distance join algorithms for spatial databases", 1998). It begins with a descent
-//! straight to one object of each tree; the distance of these two rejects other pairs. The lanes of
-//! both blocks are compared with each other, or only the lanes of the wider block if it is much
-//! wider. A box of one tree is transformed into the frame of the other, so that the axes of both
-//! frames separate blocks. Other directions separate further blocks: along these, the extent of a
-//! block is bounded by its box and its slab.
+//! straight to one object of each tree; their distance is a first limit, which rejects other pairs.
+//! The lanes of both blocks are compared with each other, or only the lanes of the wider block if
+//! it is much wider. A box of one tree is transformed into the frame of the other, so that the axes
+//! of both frames separate blocks. Other directions separate further blocks: along these, the
+//! extent of a block is bounded by its box and its slab.
 //!
 //! ```text
 //!  queue: pairs (block1, block2) by distance
@@ -105,8 +105,8 @@ struct BlockPair {
     blocks: [u32; 2],
     /// Whether the boxes of the two blocks are disjoint.
     are_apart: bool,
-    /// Whether `distance` is only the distance of the boxes or of the parent pair, so that
-    /// [`PairSearch::gap`] may raise it.
+    /// Whether `distance` is only the distance of the boxes or of the parent pair.
+    /// [`PairSearch::gap`] may then raise it.
     is_rough: bool,
 }
 
@@ -308,9 +308,9 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
     }
 
     /// Returns directions that may separate single objects from all of leaf block `which`, each
-    /// with the extent of the block along it. The directions are the two normals of the block's
-    /// slab and, if the limit is positive, the direction of [`TreePair::best`], with the extent of
-    /// the block's objects.
+    /// with an upper bound of the extent of the block's objects along it. If the limit is positive,
+    /// the direction of [`TreePair::best`] comes first, with the largest extent of an object. The
+    /// two normals of the block's slab follow, with the extent of the block.
     fn sides(&self, which: usize, pair: &BlockPair) -> SmallVec<[(Toward<N, D>, N); 3]> {
         let block = self.slab_box(which, pair);
         let across = block.slab.and_then(|slab| Some(unit(&slab.across::<N>())?.0));

@@ -64,8 +64,8 @@ pub(in crate::checker) struct CollisionSearch {
     mode: SearchMode,
     /// A bit mask of the lanes that are not decided yet.
     live: u8,
-    /// A bit mask of the lanes that the scan cannot evaluate, since numbers are too large for `f32`
-    /// or not finite.
+    /// A bit mask of the lanes that the scan cannot evaluate because numbers are too large for
+    /// `f32` or not finite.
     pub(in crate::checker) blind: u8,
     /// A bit mask of the lanes in which a pair is certainly within the limit, in the mode
     /// [`SearchMode::Any`].
