@@ -143,11 +143,11 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         self.rounding_of_hidden(&candidates, around, part_contacts)
     }
 
-    /// Returns the largest `tolerance` of the hidden triangles that the ball may touch. The generic
-    /// path, which does not skip them, merges points within the largest tolerance of all parts, and
-    /// the result must be the same. Zero with at most one contact, because nothing is merged then.
-    /// `None` if a hidden triangle may be nearer than all contacts, or if its coordinates overflow;
-    /// the generic path is then used.
+    /// Returns the largest `tolerance` of the hidden triangles that can be touched from the
+    /// reference point. The generic path, which does not skip them, merges points within the
+    /// largest tolerance of all parts, and the result must be the same. Zero with at most one
+    /// contact, because nothing is merged then. `None` if a hidden triangle may be nearer than all
+    /// contacts, or if its coordinates overflow; the generic path is then used.
     fn rounding_of_hidden(
         &self,
         candidates: &CandidateTriangles<N>,

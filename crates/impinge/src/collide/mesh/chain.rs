@@ -142,7 +142,8 @@ struct ChainLink<'c, 'b, 'a, N: Real> {
     segment: Segment<N, 2>,
     /// The segment and its neighbours, to filter the normals of its contacts.
     known: KnownSegment<'c, N>,
-    /// Separation of the segment and the solid, in the order of kinds.
+    /// Separation of the segment and the solid, in the order of kinds and in the frame of the first
+    /// of them.
     found: Separation<N, 2>,
     /// Bound of the rounding errors of lengths computed for the segment and the solid.
     tolerance: N,

@@ -100,7 +100,7 @@ struct KeptTriangle<'a, N: Real> {
     tolerance: N,
 }
 
-/// A contact that the surface admits, in the frame of the surface.
+/// Contact of a triangle after the normal filter, in the frame of the surface.
 struct FaceContact<N: Real> {
     /// Unit normal from the triangle to the solid.
     normal: Vector<N, 3>,
@@ -211,8 +211,8 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
         if is_own && distance > self.query.request.prediction {
             return None;
         }
-        // If the parts are apart or overlap by no more than rounding, no point gets a smaller
-        // distance than the parts.
+        // Unless the contact is [`PartStatus::Own`], no point gets a smaller distance than the
+        // parts, except if these overlap by more than rounding.
         let least = if !is_own && distance > -tolerance { distance } else { -N::INFINITY };
         let normal = self.query.between.pair.pose12.vector(&contact.normal);
         ClipRequest::new(self.solid, normal, is_own.then_some(distance), least)

@@ -29,8 +29,8 @@ pub(super) enum FilteredNormal<N: Real, const D: usize> {
     /// The contact's normal is the face's normal, up to rounding or, inside a face, up to
     /// `ON_FACE`. The exact normal of the face is given here.
     Face(Vector<N, D>),
-    /// The seam does not admit the contact's normal. The contact becomes one with the face itself,
-    /// whose normal is given here.
+    /// The seam does not admit the contact's normal. A contact with the face, whose normal is given
+    /// here, replaces the contact.
     Snapped(Vector<N, D>),
     /// The face of this part ends at a ridge (a convex seam), and the contact's normal lies beyond
     /// all normals that the ridge admits, on the side of the adjacent part. The contact with this

@@ -48,7 +48,8 @@ impl CacheMargin {
 enum KeptSeams<N: Real> {
     /// Not computed yet.
     Unasked,
-    /// The surface does not provide the seams of this part, so it must be called for each contact.
+    /// The surface does not provide the seams of this part, so the surface must be called for each
+    /// contact.
     Unknown,
     Known(FaceSeams<N>),
 }

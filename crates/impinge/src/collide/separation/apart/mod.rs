@@ -121,8 +121,8 @@ pub(crate) const fn is_faceted<N: Real>(kind: &Kind<'_, N, 3>) -> bool {
     matches!(kind, Kind::Triangle(_) | Kind::Cuboid(_) | Kind::Polytope(_))
 }
 
-/// Returns the algorithm for the kinds of a pair, which handles contact and overlap, too, unlike
-/// the search.
+/// Returns the algorithm for the kinds of a pair. Unlike the search, it also handles contact and
+/// overlap.
 fn nearer<N: Real>(pair: &Pair<'_, N, 3>) -> Algorithm<N, 3> {
     match (pair.first, pair.second) {
         (Kind::Cuboid(_), Kind::Cuboid(_)) => cuboid_cuboid::separation,

@@ -78,9 +78,9 @@ impl<N: Real, const D: usize> Foot<N, D> {
 
     /// Returns the unit direction from the segment to the projected point. If the nearest point
     /// lies between the ends, this is the direction of the part of the offset perpendicular to the
-    /// segment, else the direction of the offset. If that part or offset is zero or mostly rounding
-    /// error, returns a fixed perpendicular of the segment, or the first axis for a segment without
-    /// length.
+    /// segment, else the direction of the offset. If that part is mostly rounding error, or the
+    /// offset is zero, returns a fixed perpendicular of the segment, or the first axis for a
+    /// segment without length.
     fn outward(&self) -> Vector<N, D> {
         let direct = if self.is_inside { None } else { unit(&self.offset) };
         if let Some((outward, _)) = direct {

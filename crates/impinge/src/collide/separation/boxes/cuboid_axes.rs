@@ -126,8 +126,8 @@ impl<N: Real> BoxPair<N> {
         best.map(|edges| (edges, bound))
     }
 
-    /// Adds the unit vector to an axis of the given kind and gap; it points from the first box to
-    /// the second.
+    /// Completes an axis of the given kind and gap with its unit vector, which points from the
+    /// first box to the second.
     fn axis(&self, kind: AxisKind, gap: N) -> BoxAxis<N> {
         let direction = match kind {
             AxisKind::Face1(axis) => Vector::<N, 3>::ith(axis, N::ONE),

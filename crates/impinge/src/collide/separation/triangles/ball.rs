@@ -205,7 +205,8 @@ impl<V> TrianglePacket<V> {
         let (ab, bc, ca) = (minus(&b, &a), minus(&c, &b), minus(&a, &c));
         let squares = [dot(&ab, &ab), dot(&bc, &bc), dot(&ca, &ca)];
         let along = [-dot(&ab, &a), -dot(&bc, &b), -dot(&ca, &c)];
-        // Products of the two sides at the first corner, measured from that corner.
+        // Both sides at the first corner are taken from that corner: `turn` is their dot product,
+        // `to_c` the coordinate of the centre along the second side, times its length.
         let (turn, to_c) = (-dot(&ab, &ca), dot(&ca, &a));
         let area = squares[0] * squares[2] - turn * turn;
         let at_b = along[0] * squares[2] - to_c * turn;
