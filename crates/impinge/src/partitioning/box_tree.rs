@@ -402,7 +402,7 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         Ok(())
     }
 
-    /// Returns an upper bound of the extent of all objects along `direction`, which exceeds the maximum of
+    /// Returns an upper bound of the extent of all objects along `direction`. The bound exceeds the maximum of
     /// `extent_of(id)` by at most a few `f32` rounding units of the coordinates. Minus infinity if there are no
     /// objects. Calls `extent_of` for O(log n) objects on curved surfaces, and for more where many are almost equally
     /// extreme.

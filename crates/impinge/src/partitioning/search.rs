@@ -227,8 +227,8 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         }
     }
 
-    /// Returns the largest magnitude of a coordinate in the trees, which scales the rounding
-    /// errors.
+    /// Returns the largest magnitude of a coordinate in the trees; rounding errors are proportional
+    /// to it.
     fn size(&self) -> f32 {
         self.trees.iter().map(|tree| tree.size()).fold(0.0, f32::max)
     }

@@ -213,7 +213,8 @@ impl<N: Real, const D: usize> ContactManifold<N, D> {
         self.contacts.is_empty()
     }
 
-    /// Returns the contacts, in the order in which they began.
+    /// Returns the contacts in the order in which they began; a user's manifold keeps its own
+    /// order.
     #[must_use]
     pub fn contacts(&self) -> &[TrackedContact<N, D>] {
         &self.contacts
@@ -243,8 +244,7 @@ pub(crate) struct Placement<'a, N: Real, const D: usize> {
     pub(crate) pose1: &'a Pose<N, D>,
     /// The id of the pair, for the ids of its contacts.
     pub(crate) pair: u64,
-    /// Whether the user's first solid is the second of the raw pair, so that the result must be
-    /// flipped.
+    /// Whether the user's first solid is the second of the raw pair: the result is then flipped.
     pub(crate) is_swapped: bool,
 }
 

@@ -259,7 +259,8 @@ impl<'a, N: Space<D>, const D: usize> ManifoldView<'a, N, D> {
         }
     }
 
-    /// Returns the contacts, in the order in which they began.
+    /// Returns the contacts in the order in which they began; a user's manifold keeps its own
+    /// order.
     #[inline]
     pub fn contacts(self) -> impl ExactSizeIterator<Item = ContactPoint<N, D>> + 'a {
         Contacts { view: self, normal: entries::own_normal(&self), index: 0, count: self.len() }

@@ -28,8 +28,8 @@ pub(crate) struct Path<N: Real, const D: usize> {
     pub(crate) target: N,
     /// Whether a contact at the start is an impact for all velocities.
     pub(crate) contact_at_start: bool,
-    /// Whether both solids are equal and at the same pose, so that every normal is equivalent to
-    /// its opposite.
+    /// Whether both solids are equal and at the same pose. Every normal is then equivalent to its
+    /// opposite.
     pub(crate) mirrored: bool,
 }
 

@@ -95,7 +95,7 @@ pub(super) fn enclosed3<N: Real>(shape: &dyn Shape<N, 3>) -> Result<Moments<3>, 
     Ok(units.grown(&cones.moments()))
 }
 
-/// Returns the local units for a shape with these bounds; around the origin for `None`.
+/// Returns the local units for a shape with the box `bounds`; about the origin for `None`.
 fn units<N: Real, const D: usize>(bounds: Option<&Aabb<N, D>>) -> LocalUnits<D> {
     let origin = Point::<N, D>::origin();
     let [low, high] = bounds.map_or([&origin; 2], |bounds| [bounds.mins(), bounds.maxs()]);

@@ -219,8 +219,8 @@ fn shortest_exit<N: Real, const D: usize>(
     Some((direction, Aabb::try_new(low, high).ok()?))
 }
 
-/// Returns the power of two by which coordinates are divided, so that products of three neither
-/// overflow nor underflow, and the point divided by that power.
+/// Returns a power of two near the largest coordinate, and the point divided by it. Products of
+/// three divided coordinates neither overflow nor underflow.
 fn scaled<N: Space<D>, const D: usize>(
     tree: &BoxTree<N, D>,
     point: &Point<N, D>,

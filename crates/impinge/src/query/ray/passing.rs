@@ -10,7 +10,7 @@ use crate::shape::{Geometry, Kind, Triangle};
 /// direction components: several times the margin of the exact test.
 const SLACK: f64 = 64.0;
 
-/// Returns whether a ray certainly misses a ball or a box, so that a cast finds nothing with any
+/// Returns whether a ray certainly misses a ball or a box: a cast then finds nothing with any
 /// options. Always false for other shapes, and near overflow or underflow.
 #[inline(always)]
 pub(crate) fn surely_misses<N: Real, const D: usize>(

@@ -61,8 +61,8 @@ pub struct Compound<N: Space<D>, const D: usize> {
     /// placing its child; see [`search_box`].
     pub(in crate::shape) tree: BoxTree<N, D>,
     sphere: BoundingSphere<N, D>,
-    /// Whether any child is a composite whose parts form a surface ([`CompositeShape::surface`]),
-    /// so that contacts follow the rule for seams.
+    /// Whether any child is a composite whose parts form a surface ([`CompositeShape::surface`]).
+    /// Contacts then follow the rule for seams.
     has_surface: bool,
     /// Whether any child encloses a solid region by a closed surface: has an [`EnclosedBody`].
     has_bodies: bool,

@@ -4,7 +4,7 @@ use crate::math::{Mapped, Point, Real, filled};
 
 /// The joints of a surface, with the parts that meet at each.
 ///
-/// Vertices at the same position form one joint, whose index is the lowest index of these vertices.
+/// Vertices at the same position form one joint. Its index is the smallest index of its vertices.
 /// So pieces with duplicated vertices, as exporters write them, join like pieces that share
 /// vertices.
 ///

@@ -11,7 +11,7 @@ use super::HeightField;
 use crate::math::Real;
 
 impl<N: Real> HeightField<N, 2> {
-    /// Makes exactly those cells ghosts for which `is_ghost(cell)` returns `true`; see
+    /// Makes each cell a ghost if and only if `is_ghost(cell)` returns `true`; see
     /// [`Self::set_ghost`].
     #[must_use]
     pub fn with_ghosts(mut self, mut is_ghost: impl FnMut(usize) -> bool) -> Self {
@@ -69,7 +69,7 @@ impl<N: Real> HeightField<N, 2> {
 }
 
 impl<N: Real> HeightField<N, 3> {
-    /// Makes exactly those cells ghosts for which `is_ghost(row, column)` returns `true`; see
+    /// Makes each cell a ghost if and only if `is_ghost(row, column)` returns `true`; see
     /// [`Self::set_ghost`].
     #[must_use]
     pub fn with_ghosts(mut self, mut is_ghost: impl FnMut(usize, usize) -> bool) -> Self {

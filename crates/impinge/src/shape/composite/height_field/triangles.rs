@@ -60,8 +60,8 @@ impl<N: Real> HeightField<N, 3> {
         self
     }
 
-    /// Makes exactly those cells holes, with both triangles, for which `is_hole(row, column)`
-    /// returns `true`.
+    /// Makes both triangles of each cell holes if and only if `is_hole(row, column)` returns
+    /// `true`.
     #[must_use]
     pub fn with_holes(mut self, mut is_hole: impl FnMut(usize, usize) -> bool) -> Self {
         let [rows, columns] = self.pyramid.cells();

@@ -25,7 +25,7 @@ pub enum EdgeNeighbor {
     Triangle {
         /// The index of the neighbouring triangle.
         index: u32,
-        /// Whether both triangles traverse the side in the same direction, so that their fronts
+        /// Whether both triangles traverse the side in the same direction: their fronts then
         /// disagree.
         is_flipped: bool,
     },
