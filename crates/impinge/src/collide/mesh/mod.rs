@@ -4,12 +4,12 @@
 //!    these are the cached parts of the composite ([`part_cache`]) that no lower bound rejects
 //!    ([`cull`]). The cache is refilled when the solid leaves its box.
 //! 2. [`part_contact`] computes the contact of each pair of parts. If a surface does not admit its
-//!    normal at a seam, [`normal_filter`] takes the normal of the face, or drops the contact.
+//!    normal at a seam (an edge or corner where parts meet), [`normal_filter`] takes the normal of
+//!    the face, or drops the contact.
 //! 3. [`hidden`] drops contacts with faces that a neighbour hides; [`resolve`] drops contacts whose
 //!    overlap ends if another contact is resolved. Solids that overlap keep at least one contact,
 //!    except beside a ghost (a part that stands for a part of a neighbouring shape).
-//! 4. [`inside`] adds the contacts of connected pieces that lie wholly inside a body (a solid that
-//!    a closed surface bounds) and touch no part of its boundary.
+//! 4. [`inside`] adds contacts of pieces wholly inside a body (a solid with a closed surface).
 //! 5. [`patch`] merges the remaining contacts into flat patches.
 //!
 //! For boxes and hulls, [`faces`] does step 2 for 8 triangles of a surface at a time. [`chain`] (a

@@ -1,5 +1,5 @@
 //! Decides whether the normal of a contact with one part of a surface is a normal of the whole
-//! surface.
+//! surface. At a seam, an edge or corner where parts meet, it may not be.
 
 use crate::math::{Point, Real, Space, Vector, unit};
 use crate::shape::{FeatureId, SurfaceAccess};

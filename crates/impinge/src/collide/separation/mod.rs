@@ -112,7 +112,7 @@ fn look_up<N: Real, const D: usize>(table: &Table<N, D>, pair: &Pair<'_, N, D>) 
 }
 
 /// Entry below the diagonal of a table: exchanges the solids, computes their separation, and flips
-/// it back to the frame of `pair.first`.
+/// it back to the frame of `pair.first`. `None` above `limit`.
 fn flipped<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,

@@ -5,7 +5,7 @@ use crate::convex::Separation;
 use crate::math::{Real, Space};
 use crate::shape::Kind;
 
-/// Returns the separation of two solids of which one or both are rounded.
+/// Returns the separation of two solids of which one or both are rounded; `None` above `limit`.
 ///
 /// Exact for overlapping solids as well: inflating a solid moves each supporting plane outwards by
 /// the radius, so the normal of least depth stays the same.

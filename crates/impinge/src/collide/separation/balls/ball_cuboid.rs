@@ -7,7 +7,7 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, max, min, unit};
 use crate::shape::Kind;
 
-/// Returns the separation of a ball from a box.
+/// Returns the separation of a ball from a box; `None` above `limit`.
 ///
 /// If the centre is inside the box, the ball is pushed out through the nearest face. In a tie, the
 /// axis with the smaller index and its positive side win.

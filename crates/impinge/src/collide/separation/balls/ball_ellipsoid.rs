@@ -11,7 +11,7 @@ use crate::shape::{Ellipsoid, Kind, SupportMap};
 /// about six are taken; close to the centre of a flat ellipsoid up to twenty.
 const STEPS: usize = 64;
 
-/// Returns the separation of a ball from an ellipsoid.
+/// Returns the separation of a ball from an ellipsoid; `None` above `limit`.
 ///
 /// If the two centres coincide, the ball is pushed out along the shortest half axis, towards its
 /// positive side; the first of several shortest axes wins a tie.

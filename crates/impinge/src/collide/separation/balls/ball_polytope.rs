@@ -8,7 +8,7 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, cross};
 use crate::shape::{Kind, Polytope, PolytopeFace, SupportMap};
 
-/// Returns the separation of a ball from a convex hull.
+/// Returns the separation of a ball from a convex hull; `None` above `limit`.
 ///
 /// If the centre is inside the hull, the ball is pushed out through the face whose plane is
 /// nearest; the distance to that plane is the exact depth of the centre. If it is outside, the

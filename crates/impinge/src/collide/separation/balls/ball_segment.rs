@@ -9,7 +9,7 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, unit};
 use crate::shape::{Kind, Segment};
 
-/// Returns the separation of a ball from a segment or capsule.
+/// Returns the separation of a ball from a segment or capsule; `None` above `limit`.
 ///
 /// If the centre lies on the segment, the ball is pushed out along a fixed perpendicular of the
 /// segment. If the segment is a single point and the centre coincides with it, the ball is pushed

@@ -90,7 +90,7 @@ impl<N: Real> BoxPair<N> {
         (best, gap)
     }
 
-    /// Returns the pair of edges with the largest gap, if the gap exceeds `least`.
+    /// Returns the pair of edges with the largest gap; `None` unless the gap exceeds `least`.
     ///
     /// The length of the cross product of two axes is the sine of their angle. Dividing a negative
     /// gap by the sine can only lower it. So a pair of edges is skipped without a square root if

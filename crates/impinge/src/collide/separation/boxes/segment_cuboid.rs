@@ -25,7 +25,7 @@ use crate::convex::Separation;
 use crate::math::{Mapped, Point, Pose, Real, Vector, max, max_component, min};
 use crate::shape::{Kind, SupportMap};
 
-/// Returns the separation of a segment or capsule from a box.
+/// Returns the separation of a segment or capsule from a box; `None` above `limit`.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,

@@ -35,7 +35,8 @@ use crate::math::{
     Mapped, Point, Pose, Real, Vector, Wide, cross, filled, max, max_component, min,
 };
 
-/// Returns the separation of a segment or capsule from a triangle or a convex hull.
+/// Returns the separation of a segment or capsule from a triangle or a convex hull; `None` above
+/// `limit`.
 ///
 /// Cost: linear in the numbers of faces and edges, in blocks of 8. Thin triangles, large hulls and
 /// unproved results fall back to the general algorithm.

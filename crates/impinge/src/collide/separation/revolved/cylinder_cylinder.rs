@@ -21,7 +21,7 @@ use crate::shape::{Cylinder, Kind, SupportMap};
 /// between the centres.
 const STEPS: usize = 10;
 
-/// Returns the separation of two cylinders; `None` beyond `limit`, and if the pose is not finite.
+/// Returns the separation of two cylinders; `None` above `limit`, and if the pose is not finite.
 ///
 /// In a tie, caps come before sides, and the first solid comes before the second.
 pub(in crate::collide::separation) fn separation<N: Real>(

@@ -58,7 +58,7 @@ fn still<N: Real>() -> N {
 }
 
 /// Returns the separation of a flat-sided solid, segment, capsule, cylinder or cone from a cylinder
-/// or cone.
+/// or cone; `None` above `limit`, and if the pose is not finite.
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     let otherwise = || match FlatCore::of(pair.first) {
         Some(_) => ridges::separation(pair, limit),

@@ -8,7 +8,7 @@ use crate::collide::separation::projection::{
 use crate::convex::Separation;
 use crate::math::{Mapped, Point, Real, Vector, cross, max, unit};
 
-/// Returns the separation of two segments or capsules in 3D.
+/// Returns the separation of two segments or capsules in 3D; `None` above `limit`.
 ///
 /// Crossing cores have distance zero, and their common perpendicular is the normal. Overlapping
 /// cores on one line get a fixed perpendicular of the line; two coinciding points get the first
