@@ -281,9 +281,9 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     }
 }
 
-/// Calls `visit` with the index of each triangle that `bits` selects, in ascending order. `bits`
-/// receives the two masks of a packet, near and hidden, and returns a mask. If `visit` returns
-/// `None`, stops and returns `None`.
+/// Calls `visit` with the index of each selected triangle, in ascending order. For each packet,
+/// `bits` receives the masks of the near and of the hidden triangles, and returns the mask of the
+/// selected triangles. Returns `None`, without further calls, as soon as `visit` returns `None`.
 fn each_lane<N>(
     candidates: &CandidateTriangles<N>,
     bits: impl Fn([u8; 2]) -> u8,

@@ -5,10 +5,10 @@ use crate::math::{Point, Real, Space, Vector, unit};
 use crate::shape::{FeatureId, SurfaceAccess};
 
 /// Largest length of the difference between a contact's normal and the face's normal, in epsilons,
-/// at which they count as equal.
+/// at which the two normals count as equal.
 const ROUNDING: f64 = 4096.0;
-/// Largest length of the difference between a contact's normal and the face's normal at which they
-/// count as equal if the contact is inside the face.
+/// Largest length of the difference between a contact's normal and the face's normal at which the
+/// two normals count as equal if the contact is inside the face.
 const ON_FACE: f64 = 1.0 / 64.0;
 /// A contact's normal whose component along the face's normal is below this belongs to the back of
 /// the face.

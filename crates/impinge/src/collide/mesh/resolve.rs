@@ -52,9 +52,9 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
     keep_one(scene, contacts, arena);
 }
 
-/// Drops contacts that are explained by other contacts, whose escapes separate the two parts: first
-/// the `Snapped` contacts, then the `Beyond` contacts. Only a contact that is not deeper can
-/// explain another.
+/// Drops each contact that another contact explains: the escape of the other contact separates the
+/// two parts. First drops `Snapped` contacts, then `Beyond` contacts. Only a contact that is not
+/// deeper can explain another.
 ///
 /// Cost: O(n log n) in the number of contacts; each is compared with at most `MAX_ESCAPES` escapes.
 fn leave_explained<N: Space<D>, const D: usize>(

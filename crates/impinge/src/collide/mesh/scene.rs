@@ -373,7 +373,7 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
     }
 
     /// Returns points well inside the part of the first shape and the part of the second, each in
-    /// the frames of both shapes; `None` if one part is a half-space.
+    /// the frames of both shapes, as `[part][frame]`. `None` if one part is a half-space.
     pub(super) fn centers(&self) -> Option<[[Point<N, D>; 2]; 2]> {
         let [center1, center2] = self.swapped([self.bodies[0].center()?, self.bodies[1].center()?]);
         let [origin1, origin2] = self.origins.mapped(|origin| origin.coords);
@@ -382,9 +382,9 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         Some([[center1 + origin1, in1 + origin2], [in2 + origin1, center2 + origin2]])
     }
 
-    /// Returns the centre of a convex first shape, or `from` if that is `Some`, and the centre of
-    /// the part of the second shape, both in the frame of the second shape. `None` if a centre is
-    /// needed but does not exist.
+    /// Returns `from` or, if that is `None`, the centre of a convex first shape, and the centre of
+    /// the part of the second shape. Both are in the frame of the second shape. `None` if a centre
+    /// is needed but does not exist.
     pub(super) fn centers_in_second(&self, from: &Option<Point<N, D>>) -> Option<[Point<N, D>; 2]> {
         let [first, second] = if self.relative.is_swapped { [1, 0] } else { [0, 1] };
         let origin = self.origins[1].coords;

@@ -70,8 +70,8 @@ pub(crate) struct Exit<N: Real, const D: usize> {
 /// body of the other shape. Such a piece is inside the body or crosses its boundary. A piece occurs
 /// once for each such body.
 ///
-/// Cost: a winding number for each body and each piece of the other shape that has parts in the box
-/// of the body's shape.
+/// Cost: one winding number for each pair of a body and a piece of the other shape with parts in
+/// the box of the body's shape.
 pub(crate) fn held_pieces<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
 ) -> InsidePieces<N, D> {
