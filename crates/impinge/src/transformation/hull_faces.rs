@@ -110,7 +110,8 @@ fn widest_normal<'a>(
 #[derive(Default)]
 pub(super) struct FaceRings {
     /// For each face, the outward unit normal of its largest triangle. The hull has no point in
-    /// front of that triangle, however far smaller triangles deviate within the tolerance.
+    /// front of that triangle; smaller triangles of the face may deviate from its plane within the
+    /// tolerance.
     pub(super) normals: Vec<Vector<f64, 3>>,
     /// The vertices of each face, counter-clockwise from outside, starting at the lowest vertex in
     /// order of coordinates.

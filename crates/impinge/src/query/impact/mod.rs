@@ -388,7 +388,7 @@ pub(crate) fn time_of_pair<N: Space<D>, const D: usize>(
 /// Two solids in canonical order, with the motion of the second in the frame of the first.
 ///
 /// The relative velocity is divided by a power of two, which brings its largest component between 1
-/// and 2. So its square stays in range, and scaling the time by powers of two is exact.
+/// and 2. So the squared speed stays in range, and scaling the time by powers of two is exact.
 struct Course<'m, 'a, N: Real, const D: usize> {
     first: &'m Moving<'a, N, D>,
     ordered: Ordered<'m, 'a, N, D>,

@@ -44,14 +44,14 @@ const PARTS_WAY: f64 = 1.0 / 32.0;
 /// bitwise equal result.
 ///
 /// *Never late.* The time is not later than the first touch, up to the rounding error of the
-/// bodies' positions and sizes: fast rotation and thin bodies are not missed. *Hardly early.* With
-/// [`ImpactStatus::Reached`] the bodies are then within [`ImpactOptions::tolerance`] of the target
-/// distance, or so near that they reach the target distance within the resolution of the time. With
-/// [`ImpactStatus::StepsSpent`] the search ended without a decision, usually after 1024 steps: the
-/// bodies do not touch before the returned time, and whether they touch later is unknown. This
-/// happens for bodies that stay in contact while they rotate, for motions that repeat for ever
-/// without an impact and without a latest time, for bounds far above the true speeds, and if a
-/// later pose is not finite. Query again from that time, or with a smaller latest time.
+/// bodies' positions and sizes: fast rotation and thin bodies are not missed. *Early by little.*
+/// With [`ImpactStatus::Reached`] the bodies are, at the returned time, within
+/// [`ImpactOptions::tolerance`] of the target distance, or they reach it within the resolution of
+/// the time. With [`ImpactStatus::StepsSpent`] the search ended without a decision, usually after
+/// 1024 steps: the bodies do not touch before the returned time, and whether they touch later is
+/// unknown. This happens for bodies that stay in contact while they rotate, for motions that repeat
+/// for ever without an impact and without a latest time, for bounds far above the true speeds, and
+/// if a later pose is not finite. Query again from that time, or with a smaller latest time.
 ///
 /// # Starts in contact
 ///

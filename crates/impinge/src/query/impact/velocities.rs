@@ -129,8 +129,8 @@ impl<N: Space<D>, const D: usize> ConstantVelocities<N, D> {
         Matrix::<N, D>::identity() + self.unit_spin * sine + squared * (N::ONE - cosine)
     }
 
-    /// Returns the position of the body's local origin relative to `origin`, once the body has the
-    /// rotation `rotation`.
+    /// Returns the position of the body's local origin relative to `origin`, at the time `since`
+    /// after the start, when the body has the rotation `rotation`.
     fn translation(
         &self,
         origin: &Vector<N, D>,

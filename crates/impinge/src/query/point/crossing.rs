@@ -75,8 +75,8 @@ pub(super) fn of_triangle(
         return Some(0);
     }
     let side = sign(volume(&corners[0], &corners[1], &corners[2], point));
-    // A triangle whose corners run counter-clockwise, looking along the negative axis, has its back
-    // towards points with smaller coordinates on the axis.
+    // A triangle whose corners run counter-clockwise, seen from the positive end of the axis, has
+    // its back towards points with smaller coordinates on the axis.
     let is_above = side * around < 0;
     match side {
         0 => None,

@@ -340,7 +340,8 @@ fn min_index(a: usize, b: usize) -> usize {
     if a < b { a } else { b }
 }
 
-/// Returns the height of a triangle at (x, z); `None` outside the triangle.
+/// Returns the height of a triangle at (x, z); `None` outside the triangle, and for a triangle
+/// without area seen along y.
 fn height_over<N: Real>(corners: &[Point<N, 3>; 3], x: N, z: N) -> Option<N> {
     let [a, b, c] = corners;
     let side = |p: &Point<N, 3>, q: &Point<N, 3>| (q.z - p.z) * (x - p.x) - (q.x - p.x) * (z - p.z);
