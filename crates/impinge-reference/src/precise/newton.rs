@@ -386,9 +386,9 @@ fn equations<const D: usize>(
     let apart1 = local1[1..].iter().map(|l| local1[0].extent - l.extent);
     let apart2 = local2[1..].iter().map(|l| local2[0].extent - l.extent);
     for (k, difference) in apart1.chain(apart2).enumerate() {
-        // `difference` is `column · normal` for both solids: the extents of the second solid are
-        // along `-normal`, so its heights along `normal` are the negated extents. The step must
-        // cancel this difference.
+        // `difference` is `column · normal` for both solids. The extents of the second solid are
+        // measured along `-normal`, so its heights along `normal` are the negated extents. The step
+        // must cancel this difference.
         rows[D + 1 + k][unknowns] = -difference;
     }
     rows
