@@ -44,8 +44,8 @@ const PARTS_WAY: f64 = 1.0 / 32.0;
 /// bitwise equal result.
 ///
 /// *Never late.* The time is not later than the first touch, up to the rounding error of the
-/// bodies' positions and sizes: fast rotation and thin bodies are not missed. *Early by little.*
-/// With [`ImpactStatus::Reached`] the bodies are, at the returned time, within
+/// bodies' positions and sizes: fast rotation and thin bodies are not missed. *Early by at most the
+/// tolerance.* With [`ImpactStatus::Reached`] the bodies are, at the returned time, within
 /// [`ImpactOptions::tolerance`] of the target distance, or they reach it within the resolution of
 /// the time. With [`ImpactStatus::StepsSpent`] the search ended without a decision, usually after
 /// 1024 steps: the bodies do not touch before the returned time, and whether they touch later is
