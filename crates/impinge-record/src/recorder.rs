@@ -243,8 +243,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
     /// the shape alive.
     ///
     /// # Errors
-    /// If the handle is stale or the shape has another type; `change` is then not called. If the
-    /// changed shape cannot be written.
+    /// If the handle is stale or the shape has another type; `change` is then not called. Or if the
+    /// changed shape cannot be written; the object then keeps its shape.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point};
