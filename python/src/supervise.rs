@@ -72,7 +72,8 @@ pub(crate) fn count(given: Borrowed<'_, '_, PyAny>, name: &str) -> PyResult<usiz
 /// A callback that receives the number of finished elements, and may stop the work.
 type Report<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
 
-/// Runs `work` for `extent`, with the interpreter released unless the query is quick.
+/// Runs `work` for `extent`. Releases the interpreter meanwhile, unless the query is quick and has
+/// no progress bar.
 ///
 /// # Errors
 /// Exceptions of the work and the progress bar, and `KeyboardInterrupt`; the work has then stopped.

@@ -18,8 +18,8 @@ const ROUNDING_ERRORS: f64 = 1024.0;
 pub(crate) struct Boxed<'a, N: Stage<D>, const D: usize, T> {
     objects: Vec<&'a CollisionObject<N, D, T>>,
     tree: BoxTree<N, D>,
-    /// For each box of the tree, the index of its object. Objects without a finite box are not in
-    /// the tree.
+    /// For each box of the tree, the index of its object. Composites without parts have no box and
+    /// are not in the tree.
     owners: Vec<usize>,
 }
 

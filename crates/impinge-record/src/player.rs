@@ -293,7 +293,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         self.queries = std::mem::take(&mut self.asked);
         let replayed = self.observer.observe(&self.world);
         // The recorded world had its pairs before the key frame, while in a rebuilt world all pairs
-        // start.
+        // start. Events that differ for this reason are not compared.
         let keeps_events = std::mem::take(&mut self.keeps_events);
         let has_other_events = std::mem::take(&mut self.is_remade);
         self.has_other_events = has_other_events || self.has_other_events && keeps_events;

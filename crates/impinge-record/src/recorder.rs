@@ -32,10 +32,9 @@ use crate::state::Observer;
 ///
 /// Changes without a method here cannot be recorded: other phases
 /// ([`CollisionWorld::set_broad_phase`], [`CollisionWorld::set_narrow_phase`]) and algorithms of a
-/// narrow phase are code. The data of an object can only be replaced, not
-/// borrowed mutably. Marks cannot be recorded either: a recording is one sequence of steps. A game
-/// with rollback marks and rewinds a world of its own, and records the steps whose inputs are final
-/// with a second one.
+/// narrow phase are code. The data of an object can only be replaced, not borrowed mutably. Marks
+/// cannot be recorded either: a recording is one sequence of steps. A game with rollback marks and
+/// rewinds a world of its own, and records the steps whose inputs are final with a second one.
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;

@@ -54,8 +54,9 @@ pub struct Cast {
     /// the tolerance of [`linear_cast`].
     pub time_of_impact: Option<f64>,
     /// The least signed distance on the path; for solids that touch or overlap at the start, the
-    /// distance there. If it is near zero, the solids only graze, and rounding may decide between
-    /// hit and miss.
+    /// distance there. Against a half-space, only the path up to twice the way to the contact
+    /// counts. If it is near zero, the solids only graze, and rounding may decide between hit and
+    /// miss.
     pub least_distance: f64,
 }
 
