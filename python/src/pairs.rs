@@ -214,7 +214,7 @@ impl Question for Contacts {
     }
 }
 
-/// The nearest pair up to a distance: its index and distance.
+/// The nearest pair up to a distance: its index and distance; -1 and infinity if there is none.
 pub(crate) struct Nearest(pub(crate) f64);
 
 impl Question for Nearest {

@@ -108,7 +108,8 @@ impl<'py> Task for AskPoints<'_, 'py> {
 
 impl AskPoints<'_, '_> {
     /// Computes a query about the inside for shapes of which at least one is a surface or polyline.
-    /// Closed surfaces count as solids here.
+    /// Closed surfaces count as solids here. For a pose or point that is not finite, the result is
+    /// `false` or infinity.
     fn of_solids<N: Numeric<D>, const D: usize>(
         &self,
         given: &GivenSide<'_, '_, N, D>,

@@ -43,7 +43,8 @@ pub(crate) struct GivenSide<'a, 'py, N: Numeric<D>, const D: usize> {
 }
 
 impl<N: Numeric<D>, const D: usize> GivenSide<'_, '_, N, D> {
-    /// Whether there is one shape at one pose: the result is then not an array.
+    /// Whether there is one shape at one pose. The result is then not an array, unless another
+    /// argument has many elements.
     pub(crate) fn is_lone(&self) -> bool {
         self.shapes.lone().is_some() && self.poses.is_lone()
     }

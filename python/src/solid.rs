@@ -104,7 +104,8 @@ pub(crate) fn refuse_open(standing: Option<Standing>, name: &str) -> PyResult<()
     )))
 }
 
-/// Whether a point of the outer frame lies in the placed shape or on its boundary.
+/// Whether a point lies in the placed shape or on its boundary. The point is in the frame in which
+/// `pose` places the shape.
 pub(crate) fn contains<N: Numeric<D>, const D: usize>(
     shape: &ShapeHandle<N, D>,
     pose: &Pose<N, D>,
@@ -118,8 +119,8 @@ pub(crate) fn contains<N: Numeric<D>, const D: usize>(
     N::encloses(shape, &local).unwrap_or_else(|| shape.contains_local_point(&local))
 }
 
-/// Returns the distance of a point of the outer frame from the placed shape, negative inside. For a compound it is the
-/// smallest distance of its children.
+/// Returns the distance of a point from the placed shape, negative inside. The point is in the frame in which `pose`
+/// places the shape. For a compound the result is the smallest distance of its children.
 pub(crate) fn signed_distance<N: Numeric<D>, const D: usize>(
     shape: &ShapeHandle<N, D>,
     pose: &Pose<N, D>,

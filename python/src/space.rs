@@ -1,4 +1,5 @@
-//! Dispatches on the scalar and the dimension of a call. No other module chooses between them.
+//! Dispatches on the scalar and the dimension of a call. No other module selects `f32` or `f64`, or
+//! 2D or 3D, at run time.
 
 use impinge_record::{Header, Recordable};
 use numpy::Element;

@@ -2,8 +2,8 @@
 //! Ctrl-C or at an exception.
 //!
 //! Signals and progress bars belong to the calling thread. That thread sleeps while another thread
-//! computes. It wakes every [`TICK`] and stops the computation through the progress callback of the
-//! batch.
+//! computes. It wakes every [`TICK`] to check signals and to show progress. After an exception it
+//! stops the computation through the progress callback of the batch.
 
 use core::ops::ControlFlow;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -72,7 +72,8 @@ pub(crate) fn count(given: Borrowed<'_, '_, PyAny>, name: &str) -> PyResult<usiz
 /// A callback that receives the number of finished elements, and may stop the work.
 type Report<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
 
-/// Runs `work` for `extent`, with the interpreter released unless the query is quick.
+/// Runs `work` for `extent`. Releases the interpreter meanwhile, unless the query is quick and has
+/// no progress bar.
 ///
 /// # Errors
 /// Exceptions of the work and the progress bar, and `KeyboardInterrupt`; the work has then stopped.

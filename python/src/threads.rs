@@ -12,9 +12,9 @@
 //!   other work       | rayon's global pool    | the calling thread alone ([`settle`])
 //! ```
 //!
-//! Pools belong to a process id. Each call that may divide work compares it with the current one. Other work checks a
-//! flag that Python sets in a child ([`note_fork`]). Only threads that hold the interpreter lock the list of pools.
-//! Python forks while it holds the interpreter, so a child never finds the list locked.
+//! Pools belong to a process id. Each call that may divide work compares this id with the current process id. Other
+//! work checks a flag that Python sets in a child ([`note_fork`]). Only threads that hold the interpreter lock the
+//! list of pools. Python forks while it holds the interpreter, so a child never finds the list locked.
 
 use core::cell::Cell;
 use core::sync::atomic::{AtomicBool, Ordering};

@@ -18,8 +18,8 @@ const ROUNDING_ERRORS: f64 = 1024.0;
 pub(crate) struct Boxed<'a, N: Stage<D>, const D: usize, T> {
     objects: Vec<&'a CollisionObject<N, D, T>>,
     tree: BoxTree<N, D>,
-    /// For each box of the tree, the index of its object. Objects without a finite box are not in
-    /// the tree.
+    /// For each box of the tree, the index of its object. Composites without parts have no box and
+    /// are not in the tree.
     owners: Vec<usize>,
 }
 
@@ -51,9 +51,9 @@ impl<'a, N: Stage<D>, const D: usize, T> Boxed<'a, N, D, T> {
 
     /// Calls `visit` with the indices of two objects, the lower index first, for each pair that may
     /// interact by its groups and whose boxes are near each other. The boxes of a pair are near if
-    /// their distance is at most the value of `reach` for the first object. An object that is
-    /// tested against itself is a pair too. `goes_on` is called before each object, and ends the
-    /// search if it returns `false`.
+    /// they overlap after the first is enlarged on all sides by `reach` of its object. An object
+    /// whose groups allow self-interaction is a pair with itself. `goes_on` is called before each
+    /// object, and ends the search if it returns `false`.
     pub(crate) fn each(
         &self,
         reach: impl Fn(&CollisionObject<N, D, T>) -> N,

@@ -93,7 +93,7 @@ pub(crate) fn print(text: &str) -> Result<(), CliError> {
     written(|out| out.write_all(text.as_bytes()))
 }
 
-/// Writes to standard output through a buffer, so that a long report is never in memory as a whole.
+/// Writes to standard output through a buffer: a long report is never in memory as a whole.
 ///
 /// It is no error if the reader closes the pipe, as in `impinge … | head`.
 fn written(write: impl FnOnce(&mut dyn io::Write) -> io::Result<()>) -> Result<(), CliError> {

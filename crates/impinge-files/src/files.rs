@@ -33,10 +33,10 @@ struct Root {
 }
 
 impl Files {
-    /// Creates a reader for the file at `path` and the files that it names. These are read from the
-    /// root of `options`; without a root, from the folder of `path`. For a URDF file in a ROS
-    /// package the default root is the folder of the package, since the meshes usually lie beside
-    /// the folder of the URDF file.
+    /// Creates a reader for the file at `path` and the files that it names. The named files are
+    /// read from the root of `options`; without a root, from the folder of `path`. For a URDF file
+    /// in a ROS package the default root is the folder of the package, since the meshes usually lie
+    /// beside the folder of the URDF file.
     pub(crate) fn beside(path: &Path, options: &ReadOptions) -> Self {
         let own = path.parent().unwrap_or_else(|| Path::new(""));
         let package = || if extension(path) == "urdf" { package_of(own) } else { None };

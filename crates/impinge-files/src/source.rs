@@ -39,8 +39,8 @@ impl Source {
         let mut reader = serde_json::Deserializer::from_str(text);
         let scene = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
             let path = error.path().to_string();
-            // If a value is not valid JSON, its own step in the path is "?". This step is removed,
-            // so that the path ends at the enclosing value. The path "." is the whole document.
+            // If a value is not valid JSON, its own step in the path is "?". This step is removed:
+            // the path then ends at the enclosing value. The path "." is the whole document.
             let path = path.trim_end_matches('?').trim_end_matches('.').to_owned();
             self.syntax_error(path, error.inner())
         })?;
@@ -51,7 +51,7 @@ impl Source {
     fn syntax_error(&self, path: String, error: &serde_json::Error) -> FileError {
         let (line, column) = (error.line(), error.column());
         let message = error.to_string();
-        // The error has fields for line and column, so that the message need not contain them.
+        // The error has fields for line and column, so the message need not contain them.
         let place = format!(" at line {line} column {column}");
         let message = message.strip_suffix(&place).unwrap_or(&message).to_owned();
         let (line, column) = (line > 0).then_some((line, column.max(1))).unzip();

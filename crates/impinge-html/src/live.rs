@@ -31,8 +31,9 @@ const IO_TIMEOUT: Duration = Duration::from_secs(5);
 /// client is still connected.
 const POLL: Duration = Duration::from_millis(250);
 
-/// The maximum time for which a request waits until fewer than [`MAX_CLIENTS`] requests are served.
-/// It exceeds [`POLL`], so that the requests of clients that have gone end within this time.
+/// The maximum time for which a request waits for one of the [`MAX_CLIENTS`] slots. It is longer
+/// than [`POLL`]: within that interval the server notices that a client has disconnected, and frees
+/// its slot.
 const ADMISSION_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// The maximum time for which a stopping server waits until its clients have read the rest of their

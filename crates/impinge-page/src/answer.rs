@@ -307,7 +307,8 @@ pub struct PairAnswer {
 /// The object at a point on the screen.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Picked {
-    /// The index of the object; `None` if there is none at the point.
+    /// The index of the object; `None` if there is none at the point. The other members are then
+    /// zero.
     pub object: Option<usize>,
     /// The hit point; in 2D the point of the object nearest to the requested point.
     pub point: [f64; 3],

@@ -245,7 +245,7 @@ fn overlap<N: Real, const D: usize>(box1: &Aabb<N, D>, box2: &Aabb<N, D>) -> N {
 }
 
 /// Tests whether the distance of the shapes is at most the limit. The text has the distance, or the
-/// depth if the shapes overlap.
+/// depth if the shapes overlap, and the limit.
 fn distance_test<N: Real, const D: usize>(limit: Limit<N>, measures: &Measures<N, D>) -> Test {
     let (length, apart) = (short(limit.length().as_f64()), short(measures.distance.as_f64()));
     let passes = measures.distance <= limit.length();

@@ -183,7 +183,8 @@ impl<N: Viewed<D>, const D: usize> Source<N, D> for Recorded<N, D> {
     }
 }
 
-/// Describes the missing part of a recording in a sentence for readers.
+/// Returns a sentence, to be shown on the page, that says that the recording has no end and how
+/// many of its last bytes cannot be read.
 fn loss_text(loss: &Loss) -> String {
     match loss.bytes {
         0 => "The recording has no end: its program did not finish it.".to_owned(),
@@ -196,9 +197,11 @@ fn loss_text(loss: &Loss) -> String {
     }
 }
 
-/// Describes the first difference of a replay from its recording for readers.
+/// Returns a sentence, to be shown on the page, about the first difference of a replay from its
+/// recording.
 fn divergence_text(found: &Divergence) -> String {
-    // The difference was found by the update that leads to this step.
+    // `found.step` counts the updates before the difference. The difference is in the next update,
+    // or in a query before that update.
     let step = found.step + 1;
     match found.difference {
         Difference::Object { index, field: ObjectField::Description } => {

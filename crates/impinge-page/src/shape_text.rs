@@ -125,8 +125,9 @@ fn composite_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) ->
     sizes("compound", format!("{} shapes", compound.num_children()))
 }
 
-/// Describes the shapes that exist only in 2D or only in 3D, and height fields, by the data with
-/// which they are recorded, since generic code cannot name their types; `None` for other shapes.
+/// Describes the shapes that exist only in 2D or only in 3D, and height fields; `None` for other
+/// shapes. Generic code cannot name their types, so the sizes come from the data with which they
+/// are recorded.
 fn own_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Option<ShapeText> {
     let [kind, height, radius] = ["cylinder", "half height", "radius"];
     match N::own_data(shape)? {

@@ -28,7 +28,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
     }
 
     /// Runs a query about the objects that satisfy a predicate. Predicates are code and cannot be
-    /// recorded, so that the recording lists the objects that do not satisfy the predicate as
+    /// recorded. Instead the recording lists the objects that do not satisfy the predicate as
     /// excluded.
     ///
     /// Calls the predicate once for each object of the world. The recording gets four bytes for

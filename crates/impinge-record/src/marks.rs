@@ -64,10 +64,11 @@ pub struct Mark {
     /// The number of removed objects.
     pub removed: u32,
     /// The number of calls that set a position, counted per object: an object that is moved twice
-    /// counts twice.
+    /// counts twice. A key frame repeats predicted positions, which count again.
     pub moved: u32,
     /// The number of other changes: of shapes, groups, query types, data, filters, skins, fixed
-    /// flags, and requests to filter again.
+    /// flags, and requests to filter again. A key frame repeats fixed flags and skins, which count
+    /// again.
     pub changed: u32,
     /// The number of queries.
     pub queries: u32,

@@ -71,7 +71,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         Ok(Self::around(CollisionWorld::try_new(margin)?))
     }
 
-    /// Creates a player with a world without objects.
+    /// Creates a player that applies the calls to `world`, which must have no objects.
     pub(crate) fn around(world: CollisionWorld<N, D, T>) -> Self {
         let (handles, asked, queries) = (Vec::new(), Vec::new(), Vec::new());
         let (observer, refused) = (Observer::default(), Vec::new());
@@ -200,8 +200,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         self.refused = pairs;
     }
 
-    /// Updates the world. If the recorded update had a filter, the recorded results of the filter
-    /// are used.
+    /// Updates the world. If the filter of the recorded update rejected pairs, this update rejects
+    /// the same pairs.
     fn update_world(&mut self) {
         let refused = std::mem::take(&mut self.refused);
         if refused.is_empty() {
@@ -293,7 +293,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         self.queries = std::mem::take(&mut self.asked);
         let replayed = self.observer.observe(&self.world);
         // The recorded world had its pairs before the key frame, while in a rebuilt world all pairs
-        // start.
+        // start. Events that differ for this reason are not compared.
         let keeps_events = std::mem::take(&mut self.keeps_events);
         let has_other_events = std::mem::take(&mut self.is_remade);
         self.has_other_events = has_other_events || self.has_other_events && keeps_events;

@@ -242,7 +242,7 @@ impl<N: Space<D>, const D: usize> From<(CollisionObjectHandle, Detail<N, D>)> fo
     }
 }
 
-/// Returns the hash of a result, over all bits of its numbers.
+/// Returns the hash of a result: of the indices of its objects and all bits of their details.
 pub(crate) fn answer_hash<N: Recordable<D>, const D: usize>(answer: &[Found<N, D>]) -> u64 {
     let mut digest = Digest::new();
     for found in answer {

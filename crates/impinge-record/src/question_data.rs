@@ -171,7 +171,7 @@ impl Source<'_> {
     }
 
     /// Reads a box with ordered corners, or the unbounded box. The constructor with corners rejects
-    /// the unbounded box, so that this box is handled separately.
+    /// the unbounded box, so this box is handled separately.
     fn aabb<N: Recordable<D>, const D: usize>(&mut self) -> Result<Aabb<N, D>, ReadError> {
         let error = self.error(Problem::BadValue { what: "a box" });
         let (mins, maxs) = (self.point()?, self.point()?);

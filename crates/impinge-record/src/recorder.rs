@@ -21,9 +21,9 @@ use crate::state::Observer;
 /// A collision world that records the calls that change it, and the queries made through it.
 ///
 /// It owns the world and dereferences to it for reading only ([`Deref`]), so that every change is
-/// recorded. Each method calls the method of [`CollisionWorld`] with the same name and returns its
-/// errors; after an error neither the world nor the recording has changed. Queries through `Deref`
-/// are not recorded; they have no influence on the replay.
+/// recorded. A method with the name of a method of [`CollisionWorld`] calls that method and returns
+/// its errors. After an error neither the world nor the recording has changed. Queries through
+/// `Deref` are not recorded; they have no influence on the replay.
 ///
 /// An update is recorded with hashes of all bits of its result: positions, groups, query types,
 /// pairs, contacts, proximities and events. This costs O(objects + contacts) time, and 12 bytes for
@@ -32,10 +32,9 @@ use crate::state::Observer;
 ///
 /// Changes without a method here cannot be recorded: other phases
 /// ([`CollisionWorld::set_broad_phase`], [`CollisionWorld::set_narrow_phase`]) and algorithms of a
-/// narrow phase are code. The data of an object can only be replaced, not
-/// borrowed mutably. Marks cannot be recorded either: a recording is one sequence of steps. A game
-/// with rollback marks and rewinds a world of its own, and records the steps whose inputs are final
-/// with a second one.
+/// narrow phase are code. The data of an object can only be replaced, not borrowed mutably. Marks
+/// cannot be recorded either: a recording is one sequence of steps. A game with rollback marks and
+/// rewinds a world of its own, and records the steps whose inputs are final with a second one.
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;
@@ -243,8 +242,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
     /// the shape alive.
     ///
     /// # Errors
-    /// If the handle is stale or the shape has another type; `change` is then not called. If the
-    /// changed shape cannot be written.
+    /// If the handle is stale or the shape has another type; `change` is then not called. Or if the
+    /// changed shape cannot be written; the object then keeps its shape.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point};

@@ -149,7 +149,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
     /// Opens a recording whose end is damaged, or missing because the program crashed. Reads all
     /// records up to the first that is incomplete or invalid. [`Self::loss`] describes the rest.
     ///
-    /// Records after a damaged one cannot be read, since each checksum covers all earlier bytes.
+    /// Records after a damaged one are not read: each checksum covers the bytes of all earlier
+    /// records, so nothing after the first wrong checksum can be trusted.
     ///
     /// # Errors
     /// As [`Self::open`], if the header cannot be read.
@@ -427,7 +428,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
 /// recording, to the bit.
 ///
 /// If the hash of the state differs, the hashes of objects determine the first differing object in
-/// the order of handles. A packed recording does not contain them.
+/// the order of handles. A recording that was packed has no hashes of objects; the difference is
+/// then [`Difference::State`](crate::Difference::State).
 ///
 /// # Errors
 /// As [`Replay::open`] and [`Replay::seek`].

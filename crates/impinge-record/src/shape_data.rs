@@ -147,7 +147,8 @@ fn mesh_data<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Optio
     }))
 }
 
-/// Returns `true` if two shapes with equal data have the same adjacency between their parts.
+/// Returns `true` if two shapes with equal data have the same adjacency between their parts. Shapes
+/// other than polylines and meshes have no stored adjacency, so the result is `true`.
 pub(crate) fn joins_alike<N: Recordable<D>, const D: usize>(
     shape1: &dyn Shape<N, D>,
     shape2: &dyn Shape<N, D>,

@@ -44,7 +44,8 @@ pub trait Recordable<const D: usize>: Space<D> + Scalar {
         (numbers.len() == Self::ISOMETRY_NUMBERS).then(|| Self::of_numbers(&padded))
     }
 
-    /// Converts a shape that exists in one dimension only to data; `None` for other shapes.
+    /// Converts a shape to data if its type exists in this dimension but not in the other; `None`
+    /// for other shapes.
     fn own_data(shape: &dyn Shape<Self, D>) -> Option<ShapeData<Self, D>>;
 
     /// Creates a shape from the data of [`Self::own_data`].

@@ -41,7 +41,8 @@ pub(crate) struct Observer {
     /// The pair index of the first contact. Pair indices are hashed relative to it, since their
     /// values are not reset when the phases are replaced.
     first_pair: Option<u64>,
-    /// The two hashes of each object by index; zero for indices that never had an object.
+    /// The two hashes of each object by index; zero for indices without an object at the last
+    /// update.
     known: Vec<[u32; 2]>,
 }
 
@@ -83,7 +84,8 @@ impl Observer {
         let mut known = self.known.clone();
         for ObjectHashes { index, description, pairs } in changed {
             let index = *index as usize;
-            // The list grows by at most one element. A recorder never writes an index beyond that.
+            // The list grows by at most one element for each change, and a larger index is ignored.
+            // So an invalid recording cannot request much memory.
             known.resize(known.len().max(index.min(known.len()) + 1), [0; 2]);
             if let Some(hashes) = known.get_mut(index) {
                 *hashes = [*description, *pairs];

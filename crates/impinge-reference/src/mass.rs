@@ -29,8 +29,9 @@ impl<const D: usize> Mass<D> {
 /// Estimates the integrals over a body within a box. The box is divided into `cells` along each
 /// axis, and one random point of each cell is tested.
 ///
-/// Only cells that the surface crosses add an error. For a body that fills about half of the box,
-/// the relative error of the measure is about `cells` to the power of −(D + 1) / 2.
+/// Only cells that the surface crosses add an error to the measure. If no tested point is inside,
+/// the centre and the moments are NaN. For a body that fills about half of the box, the relative
+/// error of the measure is about `cells` to the power of −(D + 1) / 2.
 pub fn counted<const D: usize>(
     low: &[f64; D],
     high: &[f64; D],

@@ -3,7 +3,7 @@
 //!
 //! `SplitMix64` (Guy Steele, Doug Lea, Christine Flood: Fast Splittable Pseudorandom Number
 //! Generators, 2014): a counter whose bits are mixed. Only the four operations and the square root
-//! are used, so that the values have the same bits everywhere.
+//! are used, so the values have the same bits everywhere.
 
 use crate::geometry::Pose;
 use crate::geometry::vector::{axis, norm, perpendicular, scale};
@@ -35,7 +35,7 @@ impl Random {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Returns a number in [low, high), or `low` if the interval is empty.
+    /// Returns a number in [low, high); `low` if both bounds are equal. Rounding can give `high`.
     pub fn range(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.share()
     }

@@ -44,7 +44,8 @@ pub enum Fault {
         /// The number of faces.
         faces: usize,
     },
-    /// A face has zero area, or the area of a polygon is zero or negative, so that it is clockwise.
+    /// A face has zero area, or a polygon has zero or negative area. The area of a clockwise
+    /// polygon is negative.
     NoArea {
         /// The index of the face; zero for a polygon.
         face: usize,
@@ -55,7 +56,8 @@ pub enum Fault {
 /// each direction.
 ///
 /// # Errors
-/// The first [`Fault`] in the order of the faces.
+/// The first [`Fault`]. Faults of single faces and [`Fault::EdgeTwice`] are found in the order of
+/// the faces, then [`Fault::OpenEdge`] for the least edge, then [`Fault::Euler`].
 pub fn check_surface(vertices: &[[f64; 3]], faces: &[Vec<usize>]) -> Result<(), Fault> {
     let mut edges = BTreeSet::new();
     for (index, face) in faces.iter().enumerate() {
@@ -161,11 +163,11 @@ pub fn volume(vertices: &[[f64; 3]], faces: &[Vec<usize>]) -> f64 {
     faces.iter().map(cone).sum::<f64>() / 6.0
 }
 
-/// Checks that a closed polygon has at least three distinct corners and a positive area, so that it
-/// is counter-clockwise.
+/// Checks that a closed polygon has at least three corners, no corner twice, and a positive area. A
+/// polygon with positive area is counter-clockwise.
 ///
 /// # Errors
-/// The [`Fault`], with face 0.
+/// The first [`Fault`] in this order, with face 0.
 pub fn check_polygon(corners: &[[f64; 2]]) -> Result<(), Fault> {
     if corners.len() < 3 {
         return Err(Fault::TooFewVertices { face: 0 });
@@ -188,9 +190,10 @@ pub fn polygon_area(corners: &[[f64; 2]]) -> f64 {
     corners.windows(2).map(cross).sum::<f64>() / 2.0
 }
 
-/// Returns the largest distance of a point to the right of an edge of a closed polygon. With the
-/// corners as `points`, a polygon that passes [`check_polygon`] gives zero, up to rounding, if and
-/// only if it is convex and counter-clockwise.
+/// Returns the largest distance of a point to the right of the line through an edge of a closed
+/// polygon. Negative if all points lie to the left of all edges; minus infinity if there are no
+/// points or no corners. With the corners as `points`, a polygon that passes [`check_polygon`]
+/// gives zero, up to rounding, if and only if it is convex and counter-clockwise.
 #[must_use]
 pub fn farthest_outside(corners: &[[f64; 2]], points: &[[f64; 2]]) -> f64 {
     let mut farthest = f64::NEG_INFINITY;

@@ -132,7 +132,7 @@ impl Dimension<2> for f32 {
         kind: SurfaceKind,
         height: &HeightFunction<'_>,
     ) -> ShapeHandle<Self, 2> {
-        // Cells have size 1, so that the width is equal to their number.
+        // Cells have size 1, so the width is equal to their number.
         let width = number(cells);
         let xs = (0..=cells).map(|n| number(n) - 0.5 * width);
         if kind == SurfaceKind::Field {
@@ -224,7 +224,7 @@ impl Dimension<3> for f32 {
         let width = number(cells);
         let at = |n: usize| number(n) - 0.5 * width;
         // The vertices are in rows along x, in the order of the heights of a height field. Mesh and
-        // height field have these vertices, so that both kinds are the same surface.
+        // height field have these vertices, so both kinds are the same surface.
         let vertices = (0..=cells).flat_map(|row| (0..=cells).map(move |column| [column, row]));
         let vertices = vertices.map(|[column, row]| {
             Point::<Self, 3>::new(at(column), height(at(column), at(row)), at(row))

@@ -1,8 +1,8 @@
 //! Interactive samples: scenes with controls, each about one subject of the library.
 //!
 //! [`entries`] returns the gallery. Each [`Entry`] contains the constructor of a [`Sample`].
-//! [`Running`] runs a sample, and owns its controls and its world. The world is recorded, so that a
-//! run can be saved as a file. A back end of `debug_render` draws the world.
+//! [`Running`] runs a sample, and owns its controls and its world. The world is recorded, so a run
+//! can be saved as a file. A back end of `debug_render` draws the world.
 //!
 //! Samples compute in `f32` and use no clock, no random numbers and no trigonometry of the
 //! platform: the same calls give the same bits on every machine.

@@ -144,7 +144,7 @@ pub enum GoldenError {
     },
     /// More pixels differ than allowed, or the sizes differ.
     Differs {
-        /// The number of differing pixels.
+        /// The number of pixels that differ by more than the tolerance.
         pixels: u64,
         /// The largest difference of a channel.
         largest: u8,

@@ -54,7 +54,7 @@ impl KeptMesh {
     /// the same position.
     fn welded(&self) -> Vec<[usize; 3]> {
         let mut first = BTreeMap::new();
-        // Adding zero turns -0 into +0, so that both zeros have the same bits.
+        // Adding zero turns -0 into +0, so both zeros have the same bits.
         let bits =
             |vertex: &Point<f64>| [vertex.x, vertex.y, vertex.z].map(|x| (x + 0.0).to_bits());
         let vertices = self.vertices.iter().enumerate();

@@ -128,7 +128,7 @@ impl Lens {
     }
 
     /// Returns the distance of a point from the viewer along the direction of view. An orthographic
-    /// camera has no viewer; then the distance from the origin of the camera's frame.
+    /// camera has no viewer; its distances are from the plane z = 0 of the camera's frame.
     fn distance(&self, local: &Vector<f64>) -> f64 {
         self.eye.z - local.z
     }

@@ -37,8 +37,8 @@ impl Palette {
     /// colours are split at the median until there are enough. The next box to split is the one
     /// with the largest product of its longest side and the square root of its number of pixels.
     pub(crate) fn of(pixels: &[Pixel], count: usize) -> Self {
-        // The pixels are counted in an ordered map, so that the colours do not depend on the
-        // positions of the pixels.
+        // The pixels are counted in an ordered map, so the colours do not depend on the positions
+        // of the pixels.
         let mut counts = BTreeMap::new();
         for pixel in pixels {
             *counts.entry(*pixel).or_insert(0_u32) += 1;

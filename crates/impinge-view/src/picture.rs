@@ -45,8 +45,8 @@ impl<F> Picture<F> {
         self.recording.left_out
     }
 
-    /// Removes all drawn elements and resets the number of omitted ones, so that the next picture
-    /// can be drawn. Stored meshes are kept.
+    /// Removes all drawn elements and resets the number of omitted ones, for the next picture.
+    /// Stored meshes are kept.
     pub fn clear(&mut self) {
         self.recording.clear();
     }

@@ -97,7 +97,7 @@ fn face_piece(face: &Face, view: &View, samples: f64) -> Option<Piece> {
     Some(Piece { triangles, normals: Some(normals), color: face.color, shows_through, depth })
 }
 
-/// Returns `true` if the near plane does not clip a face, so that the projected polygon has the
+/// Returns `true` if the near plane does not clip a face. The projected polygon then has the
 /// corners of the face.
 fn is_whole(face: &Face, view: &View) -> bool {
     face.corners.iter().all(|corner| view.point(corner, 0.0).is_some())

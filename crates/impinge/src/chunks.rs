@@ -1,4 +1,4 @@
-//! Work on long lists in chunks, which run in order or, with the feature `parallel`, on several
+//! Runs work on a long list in chunks: in order or, with the feature `parallel`, on several
 //! threads.
 //!
 //! ```text

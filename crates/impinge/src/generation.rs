@@ -29,7 +29,8 @@ impl Generation {
         Self(1 + TABLES.fetch_add(1, Ordering::Relaxed) % (ONE - 1))
     }
 
-    /// Returns a generation with the tag 0, which no table has, so that every table rejects it.
+    /// Returns a generation with the tag 0. No table has this tag, so every table rejects the
+    /// generation.
     pub(crate) const fn of_no_table(count: u16) -> Self {
         Self((count as u32) << 16)
     }

@@ -70,7 +70,7 @@ impl<U, H, K> Clone for Journal<U, H, K> {
 }
 
 impl<U, H, K> Journal<U, H, K> {
-    /// Returns `true` if there is a mark, so that changes must be noted.
+    /// Returns `true` if there is a mark. Changes must then be noted.
     #[inline]
     pub(crate) fn is_on(&self) -> bool {
         !self.marks.is_empty()
@@ -90,7 +90,7 @@ impl<U, H, K> Journal<U, H, K> {
 
     /// Returns `true` if there are marks and the object with this index has not been noted as a
     /// whole since the last mark or return to a mark. From then on it counts as noted as a whole,
-    /// so that [`Self::is_first`] returns `false`, too.
+    /// and [`Self::is_first`] returns `false` too.
     #[inline]
     pub(crate) fn is_first_whole(&mut self, index: usize) -> bool {
         let whole = self.period + 1;

@@ -24,7 +24,7 @@ macro_rules! clone_fields {
 pub(crate) use clone_fields;
 
 /// Implements `Clone` for scratch lists, which have no meaning between two updates: a clone has
-/// empty ones, and `clone_from` keeps those of the target.
+/// empty lists, and `clone_from` keeps the lists of the target.
 macro_rules! clone_empty {
     ([$($generics:tt)*] $type:ty) => {
         impl<$($generics)*> Clone for $type {

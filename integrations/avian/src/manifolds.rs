@@ -16,7 +16,7 @@ use crate::pairs::PairState;
 use crate::scaling::Dimension;
 
 /// Two placed colliders. Their frame has the axes of the global frame and its origin at the first
-/// collider's position, so that contacts far from the global origin lose no digits.
+/// collider's position, so contacts far from the global origin lose no digits.
 pub(crate) struct Meeting<'a, const D: usize>
 where
     f32: Dimension<D>,
@@ -162,7 +162,7 @@ fn own_name(id: ContactId) -> [u32; 2] {
     id.hash(&mut hasher);
     let hash = hasher.finish();
     // The two upper bits are Avian's kind of feature; 0 is no kind. An id of 0 would be `UNKNOWN`,
-    // so that it becomes 1.
+    // so it becomes 1.
     [hash, hash >> 32].map(|half| (half as u32 & 0x3FFF_FFFF).max(1))
 }
 

@@ -9,8 +9,7 @@ use impinge::narrow_phase::{IdAllocator, PairManifoldGenerator};
 
 use crate::scaling::Dimension;
 
-/// The number of locks. Pairs are distributed over them, so that threads seldom wait for each
-/// other.
+/// The number of locks. Pairs are distributed over them, so threads seldom wait for each other.
 const SHARDS: usize = 256;
 /// The number of ended pairs that may remain before a sweep, in addition to the number of living
 /// pairs.
@@ -23,11 +22,11 @@ type Shard<const D: usize> = BTreeMap<Key, Box<PairState<D>>>;
 /// A resource with the contacts of each pair that contains a mesh, a polyline, a height field or a
 /// compound. The plugin inserts it, unless the app already has one.
 ///
-/// Contact points keep their ids while they move over the parts, and contacts are reused while the
-/// colliders hardly move relative to each other. Pairs of convex shapes are recomputed in each step
-/// and have no state. An app with rollback stores a clone of this resource together with Avian's
-/// `ContactGraph`, or [clears](Self::clear) it. After clearing, points get new ids, and the solver
-/// starts those contacts from zero impulses.
+/// Contact points keep their ids while they move over the parts. Contacts are reused until a
+/// collider has moved, relative to the other, by more than the tolerance of contact reuse. Pairs of
+/// convex shapes are recomputed in each step and have no state. An app with rollback stores a clone
+/// of this resource together with Avian's `ContactGraph`, or [clears](Self::clear) it. After
+/// clearing, points get new ids, and the solver starts those contacts from zero impulses.
 #[derive(Resource)]
 pub struct PairContacts<const D: usize>
 where

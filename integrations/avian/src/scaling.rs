@@ -58,8 +58,8 @@ where
 }
 
 /// Returns unit vectors through the points of a grid on the surface of a square or cube, including
-/// the axes: 40 in 2D and 218 in 3D for `detail` 10. Trigonometry is not used, so that the bits are
-/// the same on every machine.
+/// the axes: 40 in 2D and 218 in 3D for `detail` 10. Trigonometry is not used, so the bits are the
+/// same on every machine.
 fn directions<const D: usize>(detail: u32) -> impl Iterator<Item = Vector<f32, D>> {
     let half = detail.clamp(1, MAX_DETAIL).div_ceil(2 * (D as u32 - 1));
     let width = 2 * half + 1;

@@ -38,7 +38,7 @@ fn walk(
     for (entity, character, collider, mut transform) in &mut characters {
         let filter = SpatialFilter::new().exclude(entity);
         let slide = SlideSettings::default();
-        // Vertical motions end at the first hit, so that feet do not slide off the edge of a step.
+        // Vertical motions end at the first hit, so feet do not slide off the edge of a step.
         let straight = SlideSettings { max_hits: 1, ..slide };
         let mut go = |motion: Vec3, settings: &SlideSettings| {
             let at = Isometry3d::from_translation(transform.translation);

@@ -1,5 +1,5 @@
-//! Picking with a mouse: a ray from a camera through the pixel of the cursor finds the foremost entity. Pixels are drawn
-//! as text, one ray each, so that the example needs no window.
+//! Picking with a mouse: a ray from a camera through the pixel of the cursor finds the foremost entity. Pixels are
+//! drawn as text, one ray each, so the example needs no window.
 
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;

@@ -56,7 +56,8 @@ fn main() {
     let stone = (Stone, Collider::sphere(0.25), Transform::from_xyz(6.0, 4.0, 2.0));
     let stone = world.spawn(stone).id();
 
-    // The first frame has no elapsed time, and the first step ends with the ground in the world.
+    // The first frame has no elapsed time, so the world does not step. After its first step, in the
+    // second frame, the world has the ground.
     for _ in 0..2 {
         app.update();
     }

@@ -24,7 +24,7 @@ pub enum ColliderError {
     Scale(ScaleError),
     /// A component of the transform is NaN or infinite, or its quaternion is not a rotation.
     Pose(WorldError),
-    /// A scaled parent is rotated relative to its child, so that the transform is a shear in the
+    /// A scaled parent is rotated relative to its child. The transform is then a shear in the
     /// child's frame.
     Sheared,
     /// In 2D: the transform rotates the entity out of the x-y plane.

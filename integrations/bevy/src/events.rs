@@ -11,9 +11,9 @@ use crate::{DefaultWorld, WorldKey};
 /// [prediction](crate::ImpingePlugin::with_prediction) at most twice the prediction.
 ///
 /// As a message it is written once per pair. As an event it is triggered twice, each time with one
-/// of the two entities as target, so that observers of both get it. In a step, ended pairs come
-/// before started ones. Within each of the two lists contacts come before sensors, both in the
-/// order in which the colliders were added.
+/// of the two entities as target, so observers of both get it. In a step, ended pairs come before
+/// started ones. Within each of the two lists contacts come before sensors, both in the order in
+/// which the colliders were added.
 #[derive(Message, EntityEvent, Clone, Copy, Debug, PartialEq)]
 pub struct CollisionStarted<const D: usize, W: WorldKey = DefaultWorld> {
     /// The entity; in a message the one whose collider was added first.

@@ -28,7 +28,7 @@ type IsChanged<const D: usize, W> = Or<(
 type IsMoved = Or<(Changed<Transform>, Changed<GlobalTransform>, Changed<ChildOf>)>;
 
 /// Updates the objects of the world from their entities: first those that only moved, then all others in ascending
-/// order, so that the order of objects does not depend on archetypes.
+/// order of their indices. So the order of objects does not depend on archetypes.
 pub(crate) fn follow<const D: usize, W: WorldKey>(
     mut collisions: ResMut<'_, Collisions<D, W>>,
     moved: Query<'_, '_, (Entity, Whereabouts), (With<Collider<D, W>>, IsMoved)>,

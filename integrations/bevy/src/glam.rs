@@ -74,9 +74,9 @@ pub(crate) const MAX_SHEAR: f32 = 1e-3;
 /// The largest relative difference of two scales that is attributed to rounding in a chain of transforms.
 const SCALE_ROUNDING: f32 = 1e-5;
 
-/// Removes the rounding error of a scale that was computed from a product of matrices: factors that agree within
-/// [`SCALE_ROUNDING`] become equal, those that agree with ±1 become ±1. So a capsule below a rotated parent remains a
-/// capsule.
+/// Removes the rounding error of a scale that was computed from a product of matrices. A factor whose magnitude
+/// agrees within [`SCALE_ROUNDING`] with 1, or else with the magnitude of the first factor, gets that magnitude and
+/// keeps its sign. So a capsule below a rotated parent remains a capsule.
 pub(crate) fn settled<const D: usize>(mut scale: Vector<f32, D>) -> Vector<f32, D> {
     let first = scale[0].abs();
     let is_near = |a: f32, b: f32| (a - b).abs() <= SCALE_ROUNDING * b;

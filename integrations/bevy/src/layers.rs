@@ -91,7 +91,7 @@ impl Default for CollisionLayers {
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sensor;
 
-/// A marker: two colliders with this marker have no pair, so that the static parts of a level cost
+/// A marker: two colliders with this marker have no pair, so the static parts of a level cost
 /// nothing. A fixed collider may still be moved.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FixedCollider;

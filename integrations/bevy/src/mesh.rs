@@ -8,7 +8,7 @@ use crate::d3::Collider;
 
 impl Collider {
     /// Creates a triangle mesh collider: a surface without an interior. Vertices at one position are merged, so
-    /// that the surface has no seams where the mesh has different normals or texture coordinates.
+    /// the surface has no seams where the mesh has different normals or texture coordinates.
     ///
     /// The collider has an [error](Self::error) if the mesh has no readable positions or is not a list or strip
     /// of triangles.
@@ -70,7 +70,7 @@ fn list(indices: &[u32]) -> Vec<[u32; 3]> {
 }
 
 /// Returns the triangles of a strip. In a strip, every second triangle has the opposite
-/// orientation, so that two of its corners are exchanged.
+/// orientation. Two of its corners are exchanged to reverse it.
 fn strip(indices: &[u32]) -> Vec<[u32; 3]> {
     let corners = indices.windows(3).enumerate();
     corners.map(|(n, c)| if n % 2 == 0 { [c[0], c[1], c[2]] } else { [c[1], c[0], c[2]] }).collect()

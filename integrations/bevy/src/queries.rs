@@ -170,9 +170,9 @@ impl<const D: usize, W: WorldKey> Collisions<D, W>
 where
     f32: Glam<D>,
 {
-    /// Returns the first hit of a ray within `max_distance`; among hits at the same distance that
-    /// of the entity added first. Colliders are solid: a ray that starts inside a collider hits it
-    /// at distance 0. Costs a search of a tree.
+    /// Returns the first hit of a ray within `max_distance`; among hits at the same distance, the
+    /// hit of the entity that was added first. Colliders are solid: a ray that starts inside a
+    /// collider hits it at distance 0. Costs a search of a tree.
     #[must_use]
     pub fn cast_ray(
         &self,

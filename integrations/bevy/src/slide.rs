@@ -65,7 +65,8 @@ where
     /// of the motion continues along the obstacle, in 3D between two obstacles along their edge.
     /// Sensors are no obstacles. A motion along a wall gets a component away from it of 1e-5 of its
     /// length, which exceeds rounding errors. The shape does not rotate. It is not pushed out of
-    /// obstacles that it overlaps at the start, but moves no deeper.
+    /// obstacles that it overlaps at the start, but moves no deeper. A shape with an error does not
+    /// move.
     ///
     /// Exclude the character itself by the filter. The entities are at their poses of the last step.
     ///

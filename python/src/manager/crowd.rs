@@ -2,8 +2,7 @@
 //!
 //! Results are cached: [`Crowd::touching`] is updated from the events of the world. The nearest
 //! pair is stored with the number of changes when it was found, and the cost of a query depends on
-//! the changes since then. The query itself processes a few moves; after more changes the world is
-//! updated ([`EAGER`]).
+//! the changes since then. After [`EAGER`] changes without a query, the world is updated at once.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -24,11 +23,11 @@ pub(super) type Solid = ShapeHandle<f64, 3>;
 /// The world is updated after this many changes without a query, so that a query has few changes to process.
 const EAGER: u64 = 16;
 
-/// Two objects. Those of the same crowd are sorted by handle; otherwise the first is an object of
-/// this manager's crowd and the second of the other crowd.
+/// Two objects of one crowd, sorted by handle; or an object of this manager's crowd, then an object
+/// of the other crowd.
 pub(super) type Pair = (Handle, Handle);
 
-/// Two objects and their distance, negative where they overlap.
+/// Two objects and their distance, negative if they overlap.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Nearest {
     pub(super) pair: Pair,
@@ -375,12 +374,12 @@ pub(super) fn touch(one: &Object, other: &Object) -> bool {
     proximity(one.position(), shape1, other.position(), shape2, 0.0) == Proximity::Intersecting
 }
 
-/// Returns the depth of two objects, zero if they only touch.
+/// Returns the depth of two objects: zero if they only touch, minus the distance if they are apart.
 pub(super) fn depth(one: &Object, other: &Object) -> f64 {
     depth_at(one.position(), &**one.shape(), other)
 }
 
-/// Returns the depth of an object and a placed solid that it touches.
+/// Returns the depth of a placed solid and an object; minus the distance if they are apart.
 pub(super) fn depth_at(
     position: &Isometry3<f64>,
     shape: &dyn Shape<f64, 3>,

@@ -138,9 +138,9 @@ impl Crowds<'_> {
     }
 
     /// Computes the nearest pair of the two crowds. The search distance begins with the current
-    /// distance of `known`, an earlier nearest pair. The first object searched for is that of the
-    /// smaller crowd that is nearest to the box around the larger crowd. Objects that are farther
-    /// from this box than the smallest distance so far are skipped.
+    /// distance of `known`, an earlier nearest pair. The search visits the objects of the smaller
+    /// crowd in ascending order of a lower bound of their distance from the box around the larger
+    /// crowd. Objects whose bound is not below the smallest distance so far are skipped.
     fn nearest_of_all(self, known: Option<Pair>) -> Option<Nearest> {
         let Crowds(own, others) = self;
         let mut best = known.and_then(|pair| {

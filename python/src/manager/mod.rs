@@ -108,7 +108,8 @@ impl Manager {
         Ok(met.map(|object| index_of(object.handle())).collect())
     }
 
-    /// Returns the object nearest to a shape, and its distance, negative if they overlap.
+    /// Returns the object nearest to a shape, and its distance, negative if they overlap; `None` if
+    /// there are no objects.
     fn nearest_to(
         &self,
         shape: &Shape,

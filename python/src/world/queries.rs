@@ -82,7 +82,8 @@ enum Beside {
     Impacts,
     /// Distance and both points.
     Near,
-    /// The point on the object, and whether it is inside.
+    /// The point on the object, and whether the given point is inside. For `overlaps_any` the flag
+    /// says whether the shape overlaps an object.
     Projections,
 }
 

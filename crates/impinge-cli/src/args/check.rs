@@ -41,8 +41,8 @@ pub(crate) struct CheckArgs {
 
 /// Describe the content of a file, and the defects of its meshes.
 ///
-/// For a scene or mesh, these are the objects with their shapes, and a report of each mesh. For a
-/// recording, these are its version, the program that wrote it, and the number of its steps.
+/// A scene or mesh is described by its objects with their shapes, and by a report of each mesh. A
+/// recording is described by its version, the program that wrote it, and the number of its steps.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:

@@ -8,8 +8,8 @@ use super::{NonNegative, Numbers, OutputFile, SceneArgs, Size};
 ///
 /// The extension of the output file selects the format: .png shows surfaces, .svg shows lines. 2D
 /// scenes are drawn to scale with y upwards. The view of 3D scenes is from the front, above and
-/// right, or along `--look`; the camera frames all objects. No GPU is used, so that equal inputs
-/// give equal bytes.
+/// right, or along `--look`; the camera frames all objects. No GPU is used, so equal inputs give
+/// equal bytes.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:

@@ -189,8 +189,8 @@ pub(crate) struct Stepping {
 /// The option for key frames of a recording.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct KeyFrames {
-    /// Write all objects again every N updates, so that a player that goes back replays at most N
-    /// updates; by default it replays from the start
+    /// Write all objects again every N updates: a player that goes back then replays little more
+    /// than N updates; by default it replays from the start
     #[arg(long = "key-frames", value_name = "N")]
     pub(crate) every: Option<NonZeroU64>,
 }

@@ -22,7 +22,7 @@ pub(crate) struct PageArgs {
 
 /// Write one HTML file that shows a recording and runs queries on it.
 ///
-/// The file contains the recording and the library, so that it opens from disk without a network. A
+/// The file contains the recording and the library, so it opens from disk without a network. A
 /// reader can play the recording, select objects, see why two objects touch or do not touch, cast
 /// rays, and move objects. A scene is recorded first, by `--steps`, `--dt` and `--key-frames`.
 #[derive(Args, Debug)]
@@ -53,8 +53,8 @@ pub(crate) struct ExportArgs {
 /// Show a running scene, or a recording, in a browser on this machine.
 ///
 /// The printed address is a port that only this machine can reach. The objects of a scene move by
-/// its motions, one step in `--dt` seconds, until the command is interrupted. The page follows, and
-/// keeps all earlier steps.
+/// its motions, one step in `--dt` seconds, until the command is interrupted. The page shows the
+/// new steps as they arrive, and keeps all earlier steps.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:

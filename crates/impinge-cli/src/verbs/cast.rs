@@ -41,7 +41,7 @@ impl Task for CastShape<'_> {
         let Self { loaded, args } = self;
         let world = loaded.world_without_pairs::<N, D>()?;
         let Sweep { shape, start, translation, filter } = self.sweep(&world)?;
-        // The translation is used as the velocity, so that the path ends at time 1.
+        // The translation is used as the velocity, so the path ends at time 1.
         let options = ImpactOptions::new()
             .with_max_time(N::ONE)
             .with_target_distance(scalar("--distance", args.distance.0)?);

@@ -37,7 +37,7 @@ fn pairs_are_counted_and_not_kept() {
     assert_eq!(report["pairs"][2]["second"], "b[100,0,0]", "in their order");
     let all = desk.run("check many.json --all");
     assert_eq!(all.out.lines().count(), 2 * 11_175 + 1);
-    // Verbs that store pairs have a limit. `check` stores only the printed pairs, so that its limit
+    // Verbs that store pairs have a limit. `check` stores only the printed pairs, so its limit
     // matters with `--all` only.
     for verb in [
         "check many.json --all",

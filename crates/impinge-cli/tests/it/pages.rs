@@ -84,8 +84,8 @@ fn a_browser_sees_what_is_left_of_a_recording() {
     command.args(["view", "cut.implog"]).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().expect("the command");
     let mut stream = follow(child.stdout.take().expect("a pipe"));
-    // The stream continues until the command ends, so that only the head and the first chunk are
-    // read.
+    // The stream continues until the command ends, so it is read only until the whole records have
+    // arrived.
     let mut answer = Vec::new();
     let is_sent = |answer: &[u8]| answer.windows(kept.len()).any(|bytes| bytes == kept);
     while !is_sent(&answer) {

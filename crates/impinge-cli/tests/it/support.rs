@@ -46,7 +46,7 @@ impl Desk {
 
     /// Creates a folder that also contains `balls.implog`, a recording of 30 steps of `balls.json`.
     ///
-    /// The left ball moves by 2 per second, so that the gap of 0.5 is closed after a quarter of a
+    /// The left ball moves by 2 per second, so the gap of 0.5 is closed after a quarter of a
     /// second, or 15 steps.
     pub(crate) fn recorded() -> Self {
         let desk = Self::new();

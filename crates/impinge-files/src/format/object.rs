@@ -168,7 +168,7 @@ impl RotationOrder {
 }
 
 /// The collision groups of an object, numbered 0 to 29. Two objects interact if each is a member of a group that the
-/// other whitelists, and neither of one that the other blacklists.
+/// other whitelists, and neither is a member of a group that the other blacklists.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GroupsFile {

@@ -9,7 +9,7 @@ use super::{PoseFile, ShapeRef};
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum QueryFile {
-    /// The objects on a half-line.
+    /// The objects that a ray hits.
     Ray(RayFile),
     /// The objects that a moving shape hits.
     Cast(CastFile),

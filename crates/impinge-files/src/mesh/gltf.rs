@@ -57,8 +57,8 @@ fn parts(document: &Gltf, loader: &mut Loader<'_>) -> Result<Vec<RawPart>, Forma
         let frame = frame * matrix(&node);
         if let Some(mesh) = node.mesh() {
             let name = node.name().or(mesh.name()).unwrap_or_default();
-            // Many nodes may use one mesh with a long name, so that the bytes of the names count as
-            // elements.
+            // Many nodes may use one mesh with a long name. Therefore the bytes of the names count
+            // as elements.
             loader.files.count_elements(name.len())?;
             let mut part = NodePart { raw: RawPart::new(name), frame, first: BTreeMap::new() };
             for primitive in mesh.primitives() {

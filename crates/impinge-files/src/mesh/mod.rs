@@ -175,7 +175,7 @@ fn unique_names(parts: &mut [MeshPart]) -> BTreeMap<String, usize> {
         if names.contains_key(&part.name) {
             let stem = core::mem::take(&mut part.name);
             let number = next.entry(stem.clone()).or_insert(2);
-            // Terminates: finitely many names exist, so that some suffix is free.
+            // Terminates: finitely many names exist, so some suffix is free.
             part.name = loop {
                 let name = format!("{stem}.{number}");
                 *number += 1;

@@ -29,7 +29,7 @@ impl PropertyAccess for Element {
             return PropertyAccessResult::Set;
         }
         if name == "vertex_indices" || name == "vertex_index" {
-            // A negative index becomes an index out of range, so that the face is dropped.
+            // A negative index becomes an index out of range, so the face is dropped.
             self.corners = value.to_u32_list().unwrap_or_else(|| vec![u32::MAX]);
             return PropertyAccessResult::Set;
         }

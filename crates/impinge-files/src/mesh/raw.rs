@@ -49,8 +49,9 @@ pub(super) struct RawPart {
     /// The line of each face; empty for binary formats.
     pub(super) lines: Vec<usize>,
     /// The lines of faces that the parser dropped because they name a vertex that does not exist.
+    /// Only the first part of an OBJ file has them, for all parts.
     pub(super) out_of_range: Vec<usize>,
-    /// `true` if the format has no indices, so that each triangle has its own vertices.
+    /// `true` if the format has no indices. Each triangle then has its own vertices.
     pub(super) is_soup: bool,
 }
 

@@ -38,7 +38,7 @@ fn weld(raw: &RawPart, report: &mut MeshReport) -> Vec<u32> {
     let mut welded = vec![NONE; raw.vertices.len()];
     let is_finite = |index: &u32| raw.vertices[*index as usize].iter().all(|x| x.is_finite());
     let mut order: Vec<u32> = (0..NONE).take(raw.vertices.len()).filter(is_finite).collect();
-    // Adding 0 converts -0 to 0, so that both zeros are the same position.
+    // Adding 0 converts -0 to 0, so both zeros are the same position.
     let key = |index: &u32| raw.vertices[*index as usize].map(|x| x + 0.0);
     order.sort_unstable_by(|a, b| {
         let [a_key, b_key] = [key(a), key(b)];
@@ -59,8 +59,9 @@ fn weld(raw: &RawPart, report: &mut MeshReport) -> Vec<u32> {
     welded
 }
 
-/// Triangulates the faces, and returns the triangles that have an area up to rounding. Reports the
-/// dropped faces, except faces with a vertex that is not finite: [`weld`] reports these vertices.
+/// Triangulates the faces, and returns the triangles whose corners are not collinear up to
+/// rounding. Reports the dropped faces, except faces with a vertex that is not finite: [`weld`]
+/// reports these vertices.
 fn pieces(raw: &RawPart, welded: &[u32], report: &mut MeshReport) -> Vec<Piece> {
     let mut triangulator = Triangulator::new();
     let mut pieces = Vec::new();

@@ -7,7 +7,7 @@ pub const MAX_DEFECTS: usize = 8;
 
 /// The defects of the triangles of a part, and their repairs.
 ///
-/// Vertices are welded first, so that edges and triangles are compared by the positions of their
+/// Vertices are welded first, so edges and triangles are compared by the positions of their
 /// corners. Indices count from 0 in the order of the file, within the part.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshReport {
@@ -19,7 +19,8 @@ pub struct MeshReport {
     pub polygons: usize,
     /// Vertices with a coordinate that is NaN or infinite. Faces with such a vertex were dropped.
     pub non_finite_vertices: Defects,
-    /// Dropped faces: they name a vertex that does not exist.
+    /// Dropped faces: they name a vertex that does not exist. In an OBJ file, the report of the
+    /// first part has the faces of all parts, and their index is 0.
     pub out_of_range: Defects,
     /// Dropped faces with zero area or with fewer than three corners. A polygon counts if none of
     /// its triangles has positive area.

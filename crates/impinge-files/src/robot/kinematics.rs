@@ -129,7 +129,7 @@ impl Tree {
             return Err(self.links[*second].clone());
         }
         let mut order = Vec::new();
-        // Terminates: each link has at most one parent, so that it is pushed at most once.
+        // Terminates: each link has at most one parent, so it is pushed at most once.
         while let Some(link) = open.pop() {
             order.push(link);
             open.append(&mut below[link]);
@@ -144,8 +144,8 @@ impl Tree {
     }
 
     /// Resolves chains of mimicking joints of any length, and visits each joint once. The error
-    /// contains the name of a joint that mimics itself through other joints, or whose chain ends at
-    /// a missing joint.
+    /// contains the name of a joint whose chain of mimicked joints has a cycle or ends at a missing
+    /// joint.
     fn mimics(&self) -> Result<BTreeMap<String, Follows>, (String, Problem)> {
         let mut follows: BTreeMap<String, Follows> = BTreeMap::new();
         for name in self.joints.keys() {
@@ -190,7 +190,7 @@ impl Tree {
             }
         }
         let mut frames = vec![*base; self.links.len()];
-        // Parents come first, so that the frame of the parent is known.
+        // Parents come first, so the frame of the parent is known.
         for &link in &self.order {
             if let Some(name) = &self.above[link] {
                 let joint = &self.joints[name];
@@ -242,7 +242,7 @@ impl Tree {
     /// there is none.
     pub(super) fn nearest_above(&self, holds: impl Fn(usize) -> bool) -> Vec<Option<usize>> {
         let mut nearest = vec![None; self.links.len()];
-        // Parents come first, so that the result of the parent is known.
+        // Parents come first, so the result of the parent is known.
         for &link in &self.order {
             if let Some(joint) = &self.above[link] {
                 let parent = self.joints[joint].parent;
@@ -254,8 +254,8 @@ impl Tree {
 }
 
 impl Follows {
-    /// Given the relation of one joint, returns that of another joint, which mimics it by `mimic`.
-    /// Both follow the same joint.
+    /// Returns the relation of a joint that mimics the joint of `self` by `mimic`. Both follow the
+    /// same joint.
     fn followed_by(&self, mimic: &Mimic) -> Self {
         let multiplier = mimic.multiplier.unwrap_or(1.0);
         Self {

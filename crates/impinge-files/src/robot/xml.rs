@@ -34,7 +34,7 @@ impl XmlFile {
             return Err(file.whole(Problem::TooMany { what, given, limit }));
         }
         let document = file.parse()?;
-        // At most `MAX_DEPTH + 1` ancestors are counted, so that the check takes time linear in the
+        // At most `MAX_DEPTH + 1` ancestors are counted, so the check takes time linear in the
         // text.
         let depth = |node: &Node<'_, '_>| node.ancestors().take(MAX_DEPTH + 1).count();
         let too_deep = document.descendants().find(|node| depth(node) > MAX_DEPTH);
@@ -58,7 +58,7 @@ impl XmlFile {
                 .filter(|byte| **byte != b'\n')
                 .for_each(|byte| *byte = b' ');
         }
-        // Only whole elements were replaced, so that the text is still UTF-8.
+        // Only whole elements were replaced, so the text is still UTF-8.
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 

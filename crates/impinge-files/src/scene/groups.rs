@@ -15,10 +15,10 @@ const GROUPS: usize = 30;
 /// The groups of a scene: the groups that the document names, and further groups that disable pairs
 /// of links.
 ///
-/// Groups disable the pairs, so that a recording needs no pair filter. For each pair, one link is
-/// the only member of a group that the other link blacklists. Only groups that the document does
-/// not name are used for this. An object without a `membership` in the document is a member of all
-/// groups except those that disable pairs.
+/// Groups disable the pairs, so a recording needs no pair filter. For each pair, one link is the
+/// only member of a group that the other link blacklists. Only groups that the document does not
+/// name are used for this. An object without a `membership` in the document is a member of all
+/// groups that disable no pairs, and of the group of its own pairs if it has one.
 #[derive(Debug)]
 pub(super) struct GroupPlan {
     /// The groups that the document does not name and that are not taken, in ascending order. The

@@ -89,8 +89,8 @@ impl<N: SceneSpace<D>, const D: usize> SceneWorld<N, D> {
     }
 
     /// Moves the objects by their motions over `seconds`, and updates the world. A step of 0
-    /// seconds only updates, as the first step usually does. Positions are computed from the start
-    /// and the elapsed time.
+    /// seconds only updates; callers usually begin with such a step. Positions are computed from
+    /// the start and the elapsed time.
     ///
     /// # Errors
     /// If a position leaves the range of numbers. The world is then unchanged, but

@@ -178,9 +178,9 @@ pub(crate) fn gltf_with_uri(uri: &str) -> String {
     gltf_json(&format!("\"uri\": \"{uri}\", "))
 }
 
-/// Returns a glTF file of the cube with sparse positions. Their accessor has no view, so that all
-/// elements are 0, and stores seven sparse elements with the indices 1 to 7. The first corner is
-/// the origin and is not stored.
+/// Returns a glTF file of the cube with sparse positions. Their accessor has no view, so elements
+/// that it does not store are 0. It stores seven sparse elements with the indices 1 to 7, but not
+/// the first corner, which is the origin.
 pub(crate) fn gltf_sparse() -> String {
     let sparse = "\"sparse\": {\"count\": 7, \"indices\": {\"bufferView\": 2, \"componentType\": 5121}, \
                   \"values\": {\"bufferView\": 0, \"byteOffset\": 12}}, \"componentType\": 5126";

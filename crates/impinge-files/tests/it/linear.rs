@@ -169,7 +169,7 @@ fn chains_of_joints_that_mimic() {
 fn links_below_a_long_chain_without_solids() {
     let folder = tempfile::tempdir().expect("a folder");
     // A link with a ball, a chain of links without shapes, and at its end many links with balls.
-    // Only links without shapes lie between the first link and each of these balls, so that their
+    // Only links without shapes lie between the first link and each of these balls, so their
     // contacts with the first ball are disabled.
     let (chain, leaves) = (20_000, 20_000);
     let links = (0..=chain + leaves)

@@ -154,7 +154,7 @@ fn a_six_axis_arm_with_meshes() {
     let top = position(&world, "six/link6") * Point::new(0.05, 0.05, 0.3);
     assert!((top - Point::new(0.0, 0.0, 2.1)).norm() < 1e-12, "seven links on each other: {top}");
 
-    // Joints 2 and 4 are bent by 170 degrees, so that link 2 lies beside link 1 and reaches link 0.
+    // Joints 2 and 4 are bent by 170 degrees, so link 2 lies beside link 1 and reaches link 0.
     let folder = folder.path();
     let fold = r#", "packages": ["."], "name": "r", "joints": {"joint2": 2.967, "joint4": 2.967}"#;
     let mut folded: SceneWorld<f64, 3> = scene(folder, &urdf, fold).world().expect("a world");

@@ -133,8 +133,7 @@ fn far_center(points: &[[f64; 3]]) -> [f64; 3] {
     if distance > 16.0 * extent { center } else { [0.0; 3] }
 }
 
-/// Converts to the nearest `f32`, clamped to ±1e30, so that the result of a number is finite. NaN
-/// stays NaN.
+/// Converts to the nearest `f32`, clamped to ±1e30. The result is finite unless `x` is NaN.
 #[expect(clippy::cast_possible_truncation, reason = "rounds, as documented")]
 pub(crate) const fn single(x: f64) -> f32 {
     x.clamp(-1e30, 1e30) as f32

@@ -78,7 +78,7 @@ fn reasons<N: Viewed<D>, const D: usize>(registry: Registry<N, D, Vec<u8>>) {
     let text = "0.1213 apart; contacts are kept up to 0";
     Reasons::of(&mut asker, 2, 3).assert_only("distance", text);
 
-    // If the boxes do not overlap, the shapes are apart too, so that two conditions fail.
+    // If the boxes do not overlap, the shapes are apart too, so two conditions fail.
     let far = Reasons::of(&mut asker, 2, 4).0;
     let [boxes, distance] = [2, 3].map(|test| &far["tests"][test]);
     assert_eq!((&boxes["passes"], &distance["passes"]), (&false.into(), &false.into()), "{far}");

@@ -14,7 +14,7 @@ const FILTERS = [
 const LEAD =
   "Collision detection in 2D and 3D, computed in this page. Open a sample, click its objects, drag them, and ask why they touch.";
 
-/** Fills the gallery. A card is a link, so that it opens by mouse, keyboard and in a new tab. */
+/** Fills the gallery. A card is a link, so it can be opened by mouse, by keyboard and in a new tab. */
 export function showGallery(container: HTMLElement, title: string, samples: SampleEntry[]): void {
   const cards = samples.map((sample) => ({ sample, element: card(sample) }));
   const filters = make("div", { class: "modes", role: "group", "aria-label": "Dimension" });

@@ -49,7 +49,7 @@ export class Pointer {
   private start: At | null = null;
   /** The gesture to which a movement of the pointer belongs. */
   private action: "click" | "ray" | "move" = "click";
-  /** Whether the press moved, so that it is not a click. */
+  /** Whether the press moved farther than the tolerance; then it is not a click. */
   private moved = false;
 
   constructor(

@@ -12,7 +12,7 @@ import type { Info } from "./protocol";
 import { makeRenderer } from "./view";
 import { Viewer } from "./viewer";
 
-/** The open stage. The engine has one stage, so that there is at most one viewer. */
+/** The open stage. The engine has one stage, so there is at most one viewer. */
 class Page {
   private viewer: Viewer | null = null;
   /** The renderer. It is created when the first stage opens, since the gallery needs no graphics. */

@@ -2,8 +2,8 @@
 // of the other parts covers all earlier parts.
 
 /**
- * Opaque solids in 3D write depth. Transparent solids and lines are drawn after them and write no depth, so that all of
- * these remain visible. In 2D nothing writes depth, so the order alone decides what is covered.
+ * Opaque solids in 3D write depth. Transparent solids and lines are drawn after them and write no depth, so they do not
+ * hide each other. In 2D nothing writes depth, so the order alone decides what is covered.
  */
 export const ORDER = {
   grid: 0,

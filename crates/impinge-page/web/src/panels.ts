@@ -138,7 +138,8 @@ function sign(event: PairEvent): string {
 }
 
 /**
- * Returns a list of the nearest other objects, with their distances from the origin of this object; empty without one.
+ * Returns a list of the nearest other objects, with their distances from the origin of this object. Empty if there are
+ * no other objects.
  */
 function near(object: number, nearest: NearAnswer["nearest"], links: Links): Node[] {
   const others = nearest.filter((other) => other.object !== object);

@@ -24,7 +24,7 @@ export interface Mark {
   proximities: number;
   added: number;
   removed: number;
-  /** The number of changed shapes, groups, query types, data and filters. */
+  /** Changes of shapes, groups, query types, data, filters, skins and fixed flags, and requests to filter again. */
   changed: number;
   queries: number;
 }

@@ -1,7 +1,7 @@
 // The time line: a slider over the steps, in front of marks at the steps that have changes.
 //
 // The slider is an input element, so the browser supports pointer, touch and assistive technology. Its thumb is as wide
-// as both margins of the marks together, so that the middle of the thumb is at the mark of its step.
+// as both margins of the marks together, so the middle of the thumb is at the mark of its step.
 
 import { make } from "./dom";
 import type { Mark } from "./protocol";

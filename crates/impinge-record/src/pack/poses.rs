@@ -3,8 +3,8 @@
 //! The motion of a body is predictable. Several candidates predict each number of a pose from the
 //! last poses of the object. The candidate whose recent residuals of this number were the shortest
 //! is used. The reader derives the same choice from the earlier poses, so the choice is not
-//! written. All predictions are sums, products and quotients of `f64` in a fixed order, so that
-//! every machine computes the same bits.
+//! written. All predictions are sums, products and quotients of `f64` in a fixed order, so every
+//! machine computes the same bits.
 
 use std::collections::BTreeMap;
 

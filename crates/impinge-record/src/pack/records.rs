@@ -1,4 +1,4 @@
-//! Splits records into streams, and rebuilds them from these.
+//! Splits records into streams, and rebuilds records from streams.
 
 use std::collections::BTreeMap;
 

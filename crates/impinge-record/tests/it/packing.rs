@@ -61,8 +61,8 @@ fn a_recording_without_its_end() {
     assert_eq!(cut.problem, Problem::Truncated);
 }
 
-/// Asserts that packing and unpacking keep poses with bits that no computation returns: NaN with a
-/// payload, infinities, subnormal numbers.
+/// Asserts that packing and unpacking keep all bits of positions, also of NaN with a payload,
+/// infinities and subnormal numbers.
 #[test]
 fn any_bits_of_positions() {
     let mut recorder = Recorder::<f32, 3, u32>::new(0.02, Registry::new()).expect("usable");
@@ -176,8 +176,8 @@ fn turned(axis: [f64; 3], angle: f64, at: [f64; 3]) -> Isometry<f32> {
     Isometry::from_parts(at.cast::<f32>().into(), turn.cast::<f32>())
 }
 
-/// Simulates bodies with the rounding errors of `f32`. The bodies are thrown from a height, rotate,
-/// bounce on a half-space and come to rest.
+/// Simulates bodies in `f32`, so their poses have rounding errors. The bodies are thrown from a
+/// height, rotate, bounce on the plane y = 0 and come to rest.
 fn integrated() -> impl FnMut(u32, f64) -> Isometry<f32> {
     struct Body {
         at: Vector3<f32>,

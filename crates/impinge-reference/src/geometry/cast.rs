@@ -54,8 +54,9 @@ pub struct Cast {
     /// the tolerance of [`linear_cast`].
     pub time_of_impact: Option<f64>,
     /// The least signed distance on the path; for solids that touch or overlap at the start, the
-    /// distance there. If it is near zero, the solids only graze, and rounding may decide between
-    /// hit and miss.
+    /// distance there. Against a half-space, only the path up to twice the way to the contact
+    /// counts. If it is near zero, the solids only graze, and rounding may decide between hit and
+    /// miss.
     pub least_distance: f64,
 }
 
@@ -82,7 +83,7 @@ pub fn linear_cast<const D: usize>(
     let between = norm(&sub(&pose2.translation, &pose1.translation));
     let reach = solid1.bounding_radius() + solid2.bounding_radius();
     // Beyond `horizon` the solids only move apart. Against a half-space the normal is constant, so
-    // that twice the path to the contact suffices.
+    // twice the path to the contact suffices.
     let horizon = if reach.is_finite() {
         between + reach
     } else {

@@ -93,8 +93,9 @@ pub fn signed_distance<const D: usize>(
 /// distance, and for the best normal it is equal to it.
 ///
 /// A library that returns distance `d` and normal `n` loses `d - separation_along(n)` by its
-/// normal. The result is minus infinity if a solid is a half-space and `normal` differs from its
-/// normal by more than 1e-12.
+/// normal. The result is minus infinity if the first solid is a half-space and `normal` differs
+/// from its outward normal by more than 1e-12. For the second solid the same limit holds for
+/// `-normal`.
 #[must_use]
 pub fn separation_along<const D: usize>(
     solid1: &Solid<D>,
@@ -108,8 +109,9 @@ pub fn separation_along<const D: usize>(
     -solid2.extent(&near2, &negate(normal)) - solid1.extent(&near1, normal)
 }
 
-/// Returns the signed distance along `normal`, the world normal of a half-space: only in this
-/// direction can it be finite. The normal of the result is `None` if the distance is infinite.
+/// Returns the separation along `normal`, the world normal of a half-space, which leads from the
+/// first solid to the second. In all other directions the separation is minus infinity. The normal
+/// of the result is `None` if the distance is infinite.
 fn along<const D: usize>(
     solid1: &Solid<D>,
     pose1: &Pose<D>,
@@ -133,8 +135,9 @@ fn from_point<const D: usize>(
     (distance, pose.rotate(&normal))
 }
 
-/// Computes the signed distance by a search over the sphere of directions. At least one solid is a
-/// cylinder or cone, and neither is a half-space or ball.
+/// Computes the signed distance by a search over the sphere of directions, in 3D. Neither solid may
+/// be a half-space. [`signed_distance`] needs it for a cylinder or cone; tests also call it for
+/// polytopes.
 fn curved<const D: usize>(
     solid1: &Solid<D>,
     pose1: &Pose<D>,
@@ -317,8 +320,8 @@ mod tests {
         );
     }
 
-    /// Asserts that the search over the sphere agrees with the enumeration of features, with which
-    /// it shares no code, for random hulls.
+    /// Asserts that the search over the sphere agrees with the enumeration of features for random
+    /// hulls. The search uses the features only as start directions.
     #[test]
     fn search_agrees_with_enumeration() {
         let mut random = Random::new(7);

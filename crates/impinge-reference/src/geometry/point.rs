@@ -18,7 +18,7 @@ enum Core<const D: usize> {
     Plane([f64; D]),
     Polytope(Features<D>),
     /// A solid of revolution about the y axis, given by its section with a plane through the axis.
-    /// The closest point lies in the half-plane of the axis and the query point, so that a 2D query
+    /// The closest point lies in the half-plane of the axis and the query point, so a 2D query
     /// suffices.
     Revolved(Features<2>),
 }
@@ -108,7 +108,7 @@ mod tests {
         assert_eq!(point_signed_distance(&cylinder, &pose, &[0.0, 0.0, 0.0]), -2.0);
         assert_eq!(point_signed_distance(&cylinder, &pose, &[0.0, 0.0, 2.5]), -0.5);
         assert_eq!(point_signed_distance(&cylinder, &pose, &[6.0, 6.0, 0.0]), 5.0);
-        // The lateral surface of this cone has the slope 4 / 3, so that its normal is (0.8, 0.6).
+        // The lateral surface of this cone has the slope 4 / 3, so its normal is (0.8, 0.6).
         let cone = Solid::Cone { half_height: 2.0, radius: 3.0 };
         let beside_mantle = [1.5 + 0.8, 0.6, 0.0];
         assert!((point_signed_distance(&cone, &pose, &beside_mantle) - 1.0).abs() < 1e-15);

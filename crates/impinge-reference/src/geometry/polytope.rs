@@ -12,7 +12,7 @@
 //!   origin, the depth is zero along the thin direction, which is also a direction of the two kinds
 //!   above.
 //!
-//! No direction gives more than the signed distance, so that superfluous directions cost time only.
+//! No direction gives more than the signed distance, so superfluous directions cost only time.
 
 use super::features::Features;
 use super::vector::{dot, negate, norm, perpendicular, reject, sub, unit};
@@ -65,7 +65,7 @@ pub(super) fn distance<const D: usize>(one: &Features<D>, two: &Features<D>) -> 
     try_face_directions(&mut best, one, two);
     // If the origin lies strictly behind all faces of the difference, it lies inside. The
     // directions from corners would then only give smaller values. (A flat difference has a thin
-    // direction with height zero or more, so that it is not skipped.)
+    // direction with height zero or more, so its corners are tested.)
     let size = one.vertices.iter().chain(&two.vertices).map(norm).fold(0.0, f64::max);
     if best.distance >= -1e-12 * size {
         try_corner_directions(&mut best, one, two);

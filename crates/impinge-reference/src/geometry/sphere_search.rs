@@ -8,8 +8,9 @@
 //! Upper bound of a triangle with the corners n1, n2, n3: for any m in M, `h(n) <= n·m`. A unit n
 //! of the triangle is `Σ λᵢ nᵢ / |Σ λᵢ nᵢ|` with λ >= 0 and Σ λ = 1, so
 //! `h(n) <= max nᵢ·m / |Σ λᵢ nᵢ|`. The denominator is at most 1, and at least the distance of the
-//! flat triangle from the origin. The bound holds for every m in M. The m with the least bound is
-//! taken from the triangle of the three support points: it is the solution of a 3 x 3 matrix game.
+//! flat triangle from the origin. The bound holds for every m in M. The search takes the m with the
+//! least bound among the combinations of the three corners' support points: it is the solution of a
+//! 3 x 3 matrix game.
 
 use super::vector::{add, dot, negate, perpendicular, scale, sub, unit};
 
@@ -148,7 +149,7 @@ fn flatness([a, b, c]: &[Vector; 3]) -> f64 {
 /// Returns a direction at which the maximum within a triangle may lie. It is the normal of the
 /// plane of the support points, which is exact if M has a face there. If the support points are
 /// collinear, it is the direction of `point`, their combination with the weights of the matrix
-/// game.
+/// game. The sign is chosen towards the middle of the triangle.
 fn promising(corners: &[Vector; 3], supports: &[Vector; 3], point: &Vector) -> Vector {
     let [a, b, c] = supports;
     let face = perpendicular(&[sub(b, a), sub(c, a)]);

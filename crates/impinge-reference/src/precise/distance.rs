@@ -22,7 +22,8 @@ pub struct Precise<const D: usize> {
     /// Proven up to rounding errors of 1e-28 of the size.
     pub gap: f64,
     /// The error with which `normal` satisfies the conditions of a local maximum of the separation,
-    /// as a length. If Newton's method has converged, it consists of rounding errors.
+    /// as a length. If Newton's method has converged, it consists of rounding errors. 0 for pairs
+    /// of polytopes or with a half-space, which need no Newton's method.
     pub miss: f64,
     /// The size of the pair: the bounding radii plus the distance of the origins. The radius of a
     /// half-space counts as 0.
@@ -53,7 +54,7 @@ impl<const D: usize> Precise<D> {
 ///   better by more than 1e-11 of the size.
 ///
 /// Only the difference of the two translations matters. For two half-spaces the distance is -1e300,
-/// for overlap without bound.
+/// which stands for an overlap without bound.
 #[must_use]
 pub fn signed_distance<const D: usize>(
     solid1: &Solid<D>,
@@ -91,7 +92,7 @@ pub fn signed_distance<const D: usize>(
 /// Returns the least of `normal · b` over the second solid minus the greatest of `normal · a` over
 /// the first: for every direction a lower bound of the signed distance. `normal` is normalized
 /// first. If one solid is a half-space, the normal of the half-space is used instead of `normal`.
-/// `None` for two half-spaces, and for a zero normal.
+/// `None` for two half-spaces, and for a zero `normal` if neither solid is a half-space.
 #[must_use]
 pub fn separation_along<const D: usize>(
     solid1: &Solid<D>,
@@ -192,10 +193,10 @@ fn polished<const D: usize>(pair: Pair<'_, D>, start: &[f64; D]) -> Polished<D> 
 /// Improves a normal at which Newton's method did not converge.
 ///
 /// If the solids nearly touch, the separation is almost constant along whole arcs of normals, so
-/// that small errors move the normal far. Therefore the second solid is first moved away along the
-/// normal n by s. The best normal m of the moved pair maximises `h(m) + s m·n`: its separation is
-/// no less, and the maximum is sharp (the proximal point method). Then the original pair is tried
-/// again, with more choices of active parts.
+/// small errors move the normal far. Therefore the second solid is first moved away along the
+/// normal n by s. The best normal m of the moved pair maximises `h(m) + s m·n`, where h is the
+/// separation of the original pair. This maximum is sharp, and `h(m) >= h(n)` (the proximal point
+/// method). Then the original pair is tried again, with more choices of active parts.
 fn coaxed<const D: usize>(pair: Pair<'_, D>, found: Polished<D>, size: f64) -> Polished<D> {
     const ROUNDS: usize = 6;
     let mut best = found;
@@ -218,7 +219,8 @@ fn coaxed<const D: usize>(pair: Pair<'_, D>, found: Polished<D>, size: f64) -> P
 }
 
 /// Returns the length of `point`, an upper bound of the separation, minus the separation along the
-/// normal. The result is near zero if the solids are apart or barely overlap.
+/// normal. At the best normal the result is near zero if the solids are apart or barely overlap;
+/// for deeper overlap it proves nothing.
 fn proven_gap<const D: usize>(found: &Polished<D>) -> f64 {
     (norm(&found.point) - found.height).to_f64().max(0.0)
 }

@@ -121,9 +121,9 @@ pub(super) fn is_better<const D: usize>(found: &Polished<D>, best: &Polished<D>)
     gain > noise || gain > -noise && found.miss() < best.miss()
 }
 
-/// Returns a candidate whose normal is `normal`, an axis of `disk`. Its point of the Minkowski
-/// difference is that of a touching point of the other solid and the nearest point of the disk,
-/// with the smallest miss found.
+/// Returns a candidate whose normal is `normal`, an axis of `disk`. Its `point` is the difference
+/// of a touching point of the other solid and the nearest point of the disk. Among several touching
+/// points, the one with the smallest miss is used.
 pub(super) fn across_disk<const D: usize>(
     pair: Pair<'_, D>,
     disk: &Placed<D>,
@@ -149,8 +149,8 @@ pub(super) fn across_disk<const D: usize>(
     found
 }
 
-/// Returns the support points of all parts with the largest extent along `normal`. For a disk
-/// perpendicular to `normal`, the point nearest to `center`.
+/// Returns the support points of all parts with the largest extent along `normal`. A disk
+/// perpendicular to `normal` contributes its point nearest to `center`.
 fn touching_points<const D: usize>(
     parts: &[Placed<D>],
     normal: &Vector<D>,
@@ -171,10 +171,10 @@ fn touching_points<const D: usize>(
     order.iter().take_while(equal).map(point).collect()
 }
 
-/// Returns points of a flat polygon. If the polygon overlaps a disk with this centre, seen along
-/// `normal`, one of the returned points lies in the disk. They are the corners, the point nearest
-/// to the centre on each line between two corners, and the projected centre if the polygon contains
-/// it.
+/// Returns points of the flat polygon with these corners, which is perpendicular to `normal`. If a
+/// disk about `center` overlaps the polygon in the projection along `normal`, one of the returned
+/// points lies in the projected disk. They are the corners, the point nearest to the centre on each
+/// line between two corners, and the projected centre if the polygon contains it.
 fn common_candidates<const D: usize>(
     corners: &[Vector<D>],
     center: &Vector<D>,
@@ -317,7 +317,8 @@ impl<const D: usize> Active<'_, D> {
         let (local1, local2) = (local(&self.parts1, &state.normal)?, local(&self.parts2, &inward)?);
         let change = solve(equations(state, &local1, &local2));
         let turned: Vector<D> = std::array::from_fn(|i| change[i]);
-        // A step of this length would cross half the sphere: Newton's method has failed.
+        // The normal has length one: a longer change is no correction, and Newton's method has
+        // failed. A change with a NaN fails too.
         let length = norm(&turned).to_f64();
         let sane = length < 1.5;
         if !sane {
@@ -361,7 +362,7 @@ fn equations<const D: usize>(
     let point = sub(&mixed(&supports2, &state.weights2), &mixed(&supports1, &state.weights1));
     let away1 = supports1[1..].iter().map(|a| sub(&supports1[0], a));
     let away2 = supports2[1..].iter().map(|b| sub(b, &supports2[0]));
-    // The derivative of the point by each weight.
+    // The derivative of the point with respect to each weight except the first of each solid.
     let columns: Vec<Vector<D>> = away1.chain(away2).collect();
     let unknowns = D + 1 + columns.len();
     let mut rows = vec![vec![Quad::ZERO; unknowns + 1]; unknowns];
@@ -385,8 +386,9 @@ fn equations<const D: usize>(
     let apart1 = local1[1..].iter().map(|l| local1[0].extent - l.extent);
     let apart2 = local2[1..].iter().map(|l| local2[0].extent - l.extent);
     for (k, difference) in apart1.chain(apart2).enumerate() {
-        // Extents of the second solid are along `-normal`, so that its heights are the negated
-        // extents.
+        // `difference` is `column · normal` for both solids. The extents of the second solid are
+        // measured along `-normal`, so its heights along `normal` are the negated extents. The step
+        // must cancel this difference.
         rows[D + 1 + k][unknowns] = -difference;
     }
     rows

@@ -156,8 +156,8 @@ fn try_corner_directions<const D: usize>(
         for part in corners {
             for (start, along) in other.edges() {
                 let aside = reject(&sub(&part.center, start), &along);
-                // Rejected twice: the first time leaves a remainder of the size of the rounding
-                // error of the offset.
+                // Rejected twice: the first result still has a component along the edge, as large
+                // as the rounding error of the offset.
                 trial.line(&reject(&aside, &along));
             }
         }

@@ -66,8 +66,8 @@ pub fn norm<const D: usize>(a: &Vector<D>) -> Quad {
 /// Returns `a` scaled to length one; `None` for the zero vector, and if a component is infinite.
 #[must_use]
 pub fn unit<const D: usize>(a: &Vector<D>) -> Option<Vector<D>> {
-    // Squares of components below 1e-140 would lose digits, so that `a` is first scaled to a length
-    // near one.
+    // Squares of components below 1e-140 would lose digits. Therefore `a` is first scaled to a
+    // length near one.
     let size = a.iter().map(|x| x.to_f64().abs()).fold(0.0, f64::max);
     if size == 0.0 || !size.is_finite() {
         return None;

@@ -14,9 +14,9 @@
 //! - If at least one object queries proximity, only the proximity is computed. It is intersecting
 //!   if the signed distance is at most zero, within margin if the distance is at most the sum of
 //!   the margins, and otherwise disjoint. An object that queries contacts has margin zero.
-//! - An update returns the differences from the previous update. Their cause may be a motion or
-//!   another shape, group, query type or filter. A pair that changes from contacts to proximity
-//!   stops touching, and its proximity starts as disjoint.
+//! - An update returns the differences from the previous update, whether a motion caused them or a
+//!   change of a shape, groups, a query type or a filter. A pair that changes from contacts to
+//!   proximity stops touching, and its proximity starts as disjoint.
 //! - The removal of an object ends its pairs at once, with the state of the last update: touching
 //!   pairs stop, pairs that are not disjoint become disjoint. These events come first at the next
 //!   update. An object that is added and removed between two updates has no events.
@@ -26,7 +26,7 @@
 //! - The skins of both objects add to the prediction of a pair with contacts.
 //! - Changes have no effect on events and pair states before the next update. Queries use them at
 //!   once.
-//! - Angular predictions only add contact points, so that they are not modelled. Neither is
+//! - Angular predictions only add contact points, so they are not modelled. Neither is
 //!   self-collision.
 
 mod events;
@@ -95,7 +95,7 @@ pub struct NaiveWorld<const D: usize, S = Solid<D>> {
     free: Vec<usize>,
     added: u64,
     filters: BTreeMap<String, Filter>,
-    /// The states of the pairs that were not in the default state at the last update.
+    /// The states of the pairs that were not in the default state when they were last computed.
     states: BTreeMap<(Handle, Handle), PairState>,
     /// The events of removals and of computed pairs since the last update.
     queued: Events,
@@ -299,15 +299,15 @@ impl<const D: usize, S: Shape<D> + Clone> NaiveWorld<D, S> {
         Ok(())
     }
 
-    /// Returns the pairs that had contact points at the last update, sorted, the smaller handle
-    /// first.
+    /// Returns the pairs that had contact points when they were last computed, sorted, the smaller
+    /// handle first.
     #[must_use]
     pub fn touching_pairs(&self) -> Vec<(Handle, Handle)> {
         self.states.iter().filter(|(_, state)| state.touching).map(|(&pair, _)| pair).collect()
     }
 
-    /// Returns the pairs that were not disjoint at the last update, sorted, the smaller handle
-    /// first. Pairs of two objects that query contacts have no proximity.
+    /// Returns the pairs that were not disjoint when they were last computed, sorted, the smaller
+    /// handle first. Pairs of two objects that query contacts have no proximity.
     #[must_use]
     pub fn close_pairs(&self) -> Vec<(Handle, Handle, Proximity)> {
         let close = self.states.iter().filter(|(_, state)| state.proximity != Proximity::Disjoint);

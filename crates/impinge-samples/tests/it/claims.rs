@@ -78,8 +78,8 @@ fn contacts_are_the_same_at_every_size() {
     scales_exactly::<3>();
 }
 
-/// Moves the ball up through the hill and down again. Returns whether a normal pointed upwards, so
-/// that the contact pushes the ball up, and whether a normal pointed downwards.
+/// Moves the ball up through the hill and down again. Returns whether a contact normal, which
+/// points from the hill to the ball, pointed upwards, and whether one pointed downwards.
 fn pushes<const D: usize>(is_one_sided: bool) -> [bool; 2]
 where
     f32: Stage<D>,

@@ -89,7 +89,7 @@ fn kinds_of<N: Real, const D: usize>(solids: &[Solid<N, D>; 2]) -> [ShapeKind; 2
     [Geometry(solids[0].kind()).kind(), Geometry(solids[1].kind()).kind()]
 }
 
-/// A pair whose bounds leave open whether it is within the prediction, and its contacts.
+/// A pair that may be within the prediction according to its bounds, with its contacts.
 struct PairManifolds<'a, N: Real, const D: usize> {
     /// Both solids with their poses, in the canonical order of
     /// [`canonical`](crate::collide::canonical).

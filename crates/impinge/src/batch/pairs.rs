@@ -78,8 +78,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         self.len == 0
     }
 
-    /// Computes the distance of each pair: zero if the solids touch or overlap, infinite without a
-    /// result. See [`distance`](crate::query::distance()).
+    /// Computes the distance of each pair: zero if the solids touch or overlap, infinite if the
+    /// pair has no result. See [`distance`](crate::query::distance()).
     ///
     /// The cost is the sum of the single calls, except that data shared by all elements of a side
     /// is computed once. If a maximum distance suffices, [`Self::closest_points`] and
@@ -126,8 +126,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
     }
 
     /// Computes whether the solids of each pair touch or overlap, are at most `margin` apart, or
-    /// neither: see [`proximity`](crate::query::proximity()). An element without a result is
-    /// `Disjoint`.
+    /// are farther apart: see [`proximity`](crate::query::proximity()). A negative or NaN `margin`
+    /// means zero. A pair without a result is `Disjoint`.
     ///
     /// # Errors
     /// [`BatchError::Length`] if `out` is not as long as the batch, [`BatchError::Cancelled`].

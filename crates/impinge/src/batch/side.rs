@@ -168,7 +168,7 @@ pub(super) struct PreparedSide<'a, N: Real, const D: usize> {
     /// The shape if all elements share it; else `None`.
     shape: Option<(&'a dyn Shape<N, D>, Geometry<'a, N, D>)>,
     /// The pose and the placed shape if all elements share both; else `None`. The placed shape of a
-    /// ball has no rotation, the pose has it.
+    /// ball lacks the rotation, which only the pose has.
     only: Option<(Pose<N, D>, Placed<'a, N, D>)>,
 }
 
@@ -278,8 +278,7 @@ impl<'a, N: Real, const D: usize> PlacedSide<'a, N, D> {
     }
 }
 
-/// Returns the two elements of pair `index`. Written without a closure over both sides, which is
-/// not always inlined.
+/// Returns the two elements of pair `index`. A closure over both sides would not always be inlined.
 #[inline]
 pub(super) fn pair_at<'s, 'a, N: Space<D>, const D: usize>(
     sides: &'s [PreparedSide<'a, N, D>; 2],

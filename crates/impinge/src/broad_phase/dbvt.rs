@@ -59,9 +59,9 @@ impl<N: Space<D>, const D: usize> TreeVolume<N> for Aabb<N, D> {
 /// Each unbounded object is tested against every object that changes, so there should be few of
 /// them.
 ///
-/// An update costs O(changed · log n) if objects move little between two updates. A still object
-/// without pairs takes about 60 bytes in addition to its exact volume, its loosened volume and its
-/// data. [`PairFinder`] describes the layout.
+/// An update costs O(k log n) for k changed objects of n, if objects move little between two
+/// updates. A still object without pairs takes about 60 bytes in addition to its exact volume, its
+/// loosened volume and its data. [`PairFinder`] describes the layout.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::Aabb;

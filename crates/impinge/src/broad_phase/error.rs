@@ -20,8 +20,8 @@ pub enum BroadPhaseError {
     StaleHandle(ProxyHandle),
     /// The handle occurs twice in one list of removals.
     RemovedTwice(ProxyHandle),
-    /// The volume is inverted or has a NaN face. The handle is that of the object, or `None` for a
-    /// new object.
+    /// The volume is inverted or has a NaN face. The value is the handle of the object, or `None`
+    /// for a new object.
     BadVolume(Option<ProxyHandle>),
     /// The margin, converted to `f64`, is negative, infinite or NaN.
     BadMargin(f64),

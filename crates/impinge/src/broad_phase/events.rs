@@ -1,5 +1,5 @@
-//! The update of a [`PairFinder`]: applies the waiting boxes, and reports the pairs that start or
-//! stop in canonical order.
+//! The update of a [`PairFinder`]: applies the waiting boxes, and reports in canonical order the
+//! pairs that start or stop.
 
 use super::PairFinder;
 use super::finder::{CHANGED, Container, REFILTER};
@@ -193,8 +193,8 @@ impl PairEvents {
     }
 
     /// Updates the pair table, and lists the events in canonical order. As long as there are pairs
-    /// of both kinds, a pair that starts takes the index of a pair that stops, so that no other
-    /// pair moves in the table.
+    /// of both kinds, a pair that starts takes the index of a pair that stops. So no other pair
+    /// moves in the table.
     fn commit(&mut self, pairs: &mut PairTable, ended: &[u64]) {
         let Self { starting, stopped, events } = self;
         let mut started = 0;

@@ -43,8 +43,8 @@ pub(super) struct Waiting<N: Real, const D: usize> {
     pub(super) aabb: Aabb<N, D>,
 }
 
-/// The pairs of objects whose loosened boxes overlap and that the filter allows, kept up to date.
-/// An object is identified by a small index, its id.
+/// Finds and keeps the pairs of objects whose loosened boxes overlap and that the filter allows. An
+/// object is identified by a small index, its id.
 ///
 /// The loosened box of an object is its exact box grown by the margin and rounded outwards to
 /// `f32`. It is replaced only when the exact box leaves it, or when an unbounded object becomes

@@ -115,7 +115,7 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
     fn num_interferences(&self) -> usize;
 
     /// Returns the exact volume of an object as of its last update, and its data; `None` for a
-    /// stale handle. Before the first update of the object, the volume is that of its creation.
+    /// stale handle. Before the first update of the object, this is its volume at creation.
     fn proxy(&self, handle: ProxyHandle) -> Option<(&BV, &T)>;
 
     /// Adds an object. It has pairs from the next update on.

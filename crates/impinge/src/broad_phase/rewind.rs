@@ -50,7 +50,8 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
         self.finder.pairs.forget_before(number);
     }
 
-    /// Undoes all changes since the mark `number`. Costs O(changed · log n).
+    /// Undoes all changes since the mark `number`. The cost is O(k log n) for k changed objects of
+    /// n.
     pub(crate) fn rewind(&mut self, number: u64) {
         while let Some(note) = self.journal.undo(number) {
             match note {

@@ -13,8 +13,8 @@ pub(crate) const LANES: usize = 16;
 /// lo[1]  y of lanes 0 ... 15      hi[1]  y of lanes 0 ... 15
 /// ```
 ///
-/// 384 bytes (six cache lines) in 3D, 256 in 2D. A lane without a box has [`Bounds::EMPTY`], which
-/// no bounded query overlaps and which is neutral in unions, so that no lane count is needed.
+/// 384 bytes (six cache lines) in 3D, 256 in 2D. A lane without a box has [`Bounds::EMPTY`]: no
+/// bounded query overlaps it, and it is neutral in unions. So no lane count is needed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
 pub(crate) struct Block<const D: usize> {

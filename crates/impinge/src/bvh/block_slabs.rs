@@ -48,8 +48,8 @@ impl<const D: usize> BlockSlab<D> {
         Vector::from_fn(|axis, _| N::lit(self.across[axis].into()))
     }
 
-    /// Returns the slab around the contents of a block whose planes are perpendicular to `sum`, the
-    /// sum of the normals of its faces. `extent` returns the extent of the contents along a
+    /// Returns the slab around the contents of a block. Its planes are perpendicular to `sum`, the
+    /// sum of the normals of the block's faces. `extent` returns the extent of the contents along a
     /// direction. `None` if the sum has no direction, or if the slab is not thin compared with
     /// `bounds` (see [`THINNER`]).
     fn around<N: Real>(

@@ -5,8 +5,8 @@ use crate::math::{Mapped, Point, Real, Vector, filled};
 
 /// A box of the tree: the points with `lo ≤ x ≤ hi` on every axis.
 ///
-/// It encloses a box with coordinates of type `N`: each face is rounded outwards to an `f32`, so
-/// that the enclosures of touching boxes touch. A face of a box in a tree is never NaN.
+/// It encloses a box with coordinates of type `N`: each face is rounded outwards to an `f32`. So
+/// the enclosures of touching boxes touch. A face of a box in a tree is never NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds<const D: usize> {
     /// The least coordinate, by axis.

@@ -34,8 +34,8 @@ pub(crate) struct Gaps<const D: usize> {
 impl<const D: usize> Gaps<D> {
     /// Converts a box that contains a finite point, for trees with coordinates up to `size`.
     ///
-    /// If a finite coordinate is 2¹²⁵ or more, `f32` differences may overflow: the result then
-    /// covers all of space, so that every box is at distance zero.
+    /// If a finite coordinate is 2¹²⁵ or more, `f32` differences may overflow. The result then
+    /// covers all of space: every box is at distance zero.
     pub(crate) fn new<N: Real>(aabb: &Aabb<N, D>, size: f32) -> Self {
         let mut largest = size;
         for axis in 0..D {

@@ -20,7 +20,8 @@ use super::{Block, Bounds, LANES, Tree};
 use crate::memory::{Look, clone_empty};
 use crate::pairs::pack;
 
-/// Number of tasks in a chunk: `UPPER_CHUNK` in the upper layers, `LEAF_CHUNK` in the leaf layer.
+/// Number of tasks in a chunk: `UPPER_CHUNK` for queries and in the upper layers of the join,
+/// `LEAF_CHUNK` in its leaf layer.
 const UPPER_CHUNK: usize = 256;
 const LEAF_CHUNK: usize = 512;
 /// If fewer than one object in `QUERIES_BELOW` changed, queries are faster than the join.
@@ -189,7 +190,8 @@ impl<const D: usize> Joiner<D> {
         self.slots = slots;
     }
 
-    /// Runs the join, layer by layer, and lists the pairs of slots that began or ended in `found`.
+    /// Runs the join, layer by layer. Lists in `found` the pairs of slots whose overlap began or
+    /// ended.
     fn join(&mut self, sides: JoinSides<'_, D>) {
         let nothing_changed = sides.first.changed == 0 && sides.second.changed == 0;
         if nothing_changed || sides.first.live == 0 || sides.second.live == 0 {
@@ -368,7 +370,8 @@ pub(super) struct JoinBoxes<'a, const D: usize> {
     before_b: &'a [Block<D>],
 }
 
-/// Lanes of a block that overlap a box: by the boxes now, and by the boxes before.
+/// Masks of the lanes of a block that overlap a box: by the present boxes, and by the boxes at the
+/// last [`Tree::commit_boxes`].
 #[derive(Clone, Copy)]
 pub(super) struct Overlaps {
     now: u32,

@@ -110,7 +110,7 @@ impl Lanes {
 
     /// Calls `found` with the objects whose squared distance may be at most `limit`, in squared
     /// units of the gaps, and their keys: in groups of at most [`GROUP`], roughly by ascending key.
-    /// `found` returns the new limit, which must not increase.
+    /// `found` returns the new limit, which must not increase. A negative limit ends the search.
     pub(crate) fn visit_around<const D: usize>(
         self,
         trees: &[&Tree<D>],
@@ -223,8 +223,8 @@ impl<const D: usize> Tree<D> {
         Open { keys, mask, first }
     }
 
-    /// Opens a block for the children whose squared distance may be at most `limit`, in squared
-    /// units of the gaps.
+    /// Opens a block for the children whose squared distance to the box of `gaps` may be at most
+    /// `limit`, in squared units of `gaps`.
     pub(super) fn opened_around(
         &self,
         gaps: &Gaps<D>,

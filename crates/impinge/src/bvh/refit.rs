@@ -7,10 +7,9 @@ use super::kernel::{Kernel, with_kernel};
 use super::tree::{Layer, small};
 use super::{Block, Bounds, LANES, Lanes, Tree};
 
-/// Largest ratio of the surface area of a leaf block's bounds with the old boxes to the area
-/// without them, up to which the swept bounds include the old boxes. A larger ratio means that an
-/// object was teleported: bounds around its old and its new box would overlap everything between
-/// them.
+/// The swept bounds of a leaf block include the old boxes only if this enlarges their surface by at
+/// most this factor. A larger factor means that an object was teleported: bounds around its old and
+/// its new box would overlap everything between them.
 const FAR_MOVED: f64 = 2.0;
 /// Number of leaf blocks up to which a single thread refits.
 #[cfg(feature = "parallel")]
@@ -26,8 +25,8 @@ impl<const D: usize> Tree<D> {
     /// Refits the tree as [`Self::refit`] does, with the new boxes of changed objects from `by_id`,
     /// which is indexed by id. `by_id` is empty if the tree already has the boxes.
     ///
-    /// Ids have no spatial order. Reading the boxes in slot order gives independent loads, which
-    /// overlap; writing the boxes to their slots in the order of ids would not overlap.
+    /// Ids have no spatial order. So the blocks are written in slot order, and each box is read
+    /// from `by_id`: these reads are independent of each other, and their latencies overlap.
     pub(crate) fn refit_from(&mut self, mut by_id: &[Bounds<D>]) {
         if self.has_new() {
             self.fetch_boxes(by_id);

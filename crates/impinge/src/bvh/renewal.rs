@@ -27,8 +27,8 @@ use super::{Bounds, LANES, NONE, Tree};
 const ROUTED: usize = 1024;
 const COPIED: usize = 512;
 /// Late objects added in one step: the larger of [`FOLLOWED`] and the fraction 1 / [`FOLLOWED_OF`]
-/// of those left. Inserted objects also add work units, hence steps, so this stage ends however
-/// many objects are inserted.
+/// of the late objects that are left. Inserted objects also add work units, and these add steps. So
+/// this stage ends however many objects are inserted.
 const FOLLOWED: usize = 128;
 const FOLLOWED_OF: usize = 16;
 /// Work units that a new object and a changed object add; each [`OF_STEP`] units make one
@@ -65,8 +65,8 @@ pub(super) struct Renewal<const D: usize> {
 enum Stage {
     /// Route the slots from the first value up to the second, exclusive.
     Route(usize, usize),
-    /// Copy the rest of a region's list, which ends with this entry ([`NONE`]: empty), then the
-    /// regions from this index on.
+    /// Copy the rest of a region's list, then the regions from the second value on. The first value
+    /// is the entry of the list to copy next, or [`NONE`] at the end of the list.
     Copy(u32, usize),
     /// Add the objects inserted since the renewal began.
     Follow,

@@ -4,9 +4,9 @@
 //! Moving objects spoil the order: the leaf blocks grow. A renewal starts when the leaf surface per
 //! object is a fifth above its value after the last renewal, or when many objects were inserted or
 //! removed. Then a snapshot of all centres is sorted over several steps and applied; the work of
-//! one step is proportional to the number of objects. A sparing tree is instead renewed in a copy
-//! ([`super::renewal`]), with a bounded amount of work in each step. No step depends on measured
-//! time, so results are equal on every machine.
+//! one step is proportional to the number of objects. A sparing tree, whose objects seldom change,
+//! is instead renewed in a copy ([`super::renewal`]), with a bounded amount of work in each step.
+//! No step depends on measured time, so results are equal on every machine.
 
 use super::order::{Item, sort, split};
 use super::renewal::Renewal;
@@ -23,15 +23,14 @@ const SORTED_AT_ONCE: usize = 1024;
 /// Least budget of one step for sorting the snapshot, in items times levels of the sort, so that
 /// small trees are renewed in few steps.
 const MIN_BUDGET: usize = 2048;
-/// If the list of objects that were inserted or moved far while the snapshot was being sorted is
-/// longer than 1 / `LATE` of the objects, the snapshot is discarded and all objects are sorted at
-/// once.
+/// If more than one object in `LATE` was inserted or moved far since the snapshot was taken, the
+/// snapshot is discarded and all objects are sorted at once.
 const LATE: usize = 4;
 /// Number of objects that may be inserted or removed in a tree of any size before the order is
 /// renewed.
 const SLACK: usize = 64;
-/// A sparing tree of at most `SMALL` objects is sorted at once. In a larger one, new objects are
-/// sorted in runs of at most about `SMALL` slots.
+/// A sparing tree ([`Tree::is_sparing`]) of at most `SMALL` objects is sorted at once. In a larger
+/// sparing tree, new objects are sorted in runs of at most about `SMALL` slots.
 const SMALL: usize = 1024;
 
 /// The state of the renewal.
@@ -45,7 +44,8 @@ pub(super) struct Schedule<const D: usize> {
     /// First slot whose object has not been sorted yet.
     fresh: usize,
     /// First slots of the runs sorted since the last renewal, ascending. Each run is more than
-    /// twice as long as the next, except where the limit for a sparing tree kept two runs apart.
+    /// twice as long as the next, except that runs of a sparing tree are not merged beyond
+    /// [`SMALL`] slots.
     runs: Vec<usize>,
     /// The centres being sorted, and the parts not yet sorted.
     snapshot: Vec<Item<D>>,
@@ -102,8 +102,9 @@ impl<const D: usize> Tree<D> {
         if new * 3 > self.live {
             self.rebuild();
         } else if self.is_sparing && (new <= LANES || self.renewal.is_some()) {
-            // A sparing tree leaves new objects unsorted while there are at most 16, which are
-            // hardly neighbours, or while a renewal, which sorts them, is in progress.
+            // In a sparing tree new objects stay unsorted while there are at most 16 of them: few
+            // objects are rarely close together, and sorting them gains little. They also stay
+            // unsorted during a renewal, because the renewal puts them in their places.
             return;
         } else if new > LANES {
             let most = if self.is_sparing { SMALL } else { usize::MAX };
@@ -127,7 +128,7 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Records that boxes changed, so that the surface must be measured again.
+    /// Records that boxes changed. The surface must then be measured again.
     pub(super) fn note_use(&mut self) {
         self.schedule.is_used = true;
     }
@@ -158,7 +159,8 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Records the changed objects of escaped blocks, whose positions in a snapshot are wrong.
+    /// Adds the changed objects of escaped blocks to the late objects, because a snapshot in
+    /// progress has them at wrong positions.
     pub(super) fn note_strayed(&mut self) {
         if !self.schedule.snapshot.is_empty() {
             let mut late = core::mem::take(&mut self.schedule.late);

@@ -34,7 +34,7 @@ impl<const D: usize> StillItem<D> {
         self.bounds.lo[axis] * 0.5 + self.bounds.hi[axis] * 0.5
     }
 
-    /// Returns the sort key on an axis: the centre, ties by id. Keys of two boxes differ, so the
+    /// Returns the sort key on an axis: the centre, then the id. Keys of two boxes differ, so the
     /// sorted order is unique.
     #[inline]
     fn key(&self, axis: usize) -> u64 {
@@ -89,7 +89,8 @@ impl<const D: usize> Tree<D> {
 /// Reorders the items for consecutive slots that begin with the first slot of a subtree. The
 /// recursion ends, since both parts are smaller.
 fn arrange<const D: usize>(items: &mut [StillItem<D>]) {
-    // The boxes in one child: the least power of 16 such that at most 16 children hold all items.
+    // Number of boxes in one child: the least power of 16 such that at most 16 children hold all
+    // items.
     let mut child = LANES;
     while child * LANES < items.len() {
         child *= LANES;

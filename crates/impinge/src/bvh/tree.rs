@@ -94,7 +94,8 @@ pub(crate) struct Tree<const D: usize> {
     pub(super) end: usize,
     /// Number of objects.
     pub(super) live: usize,
-    /// Leaf blocks written since the last [`Self::commit_boxes`], as a list and as flags.
+    /// Leaf blocks that were written or got a change bit since the last [`Self::commit_boxes`], as
+    /// a list and as flags.
     pub(super) touched: Vec<u32>,
     pub(super) is_touched: Vec<bool>,
     /// Leaf blocks whose swept bounds leave out old boxes; see [`Self::escaped`].
@@ -105,9 +106,10 @@ pub(crate) struct Tree<const D: usize> {
     pub(super) dirty: Vec<u32>,
     /// Number of lanes with their change bit set.
     pub(super) changed: usize,
-    /// Whether the number of leaf blocks has changed, so that the upper layers must be resized.
+    /// Whether the number of leaf blocks has changed. The upper layers must then be resized.
     pub(super) is_restructured: bool,
-    /// Whether a box was written since the last [`Self::refit`], so that searches would be wrong.
+    /// Whether a box was written or marked as changed since the last [`Self::refit`]. Searches
+    /// would then miss objects.
     pub(super) is_stale: bool,
     pub(super) schedule: Schedule<D>,
     /// The renewal of a sparing tree, while one is in progress.
@@ -159,12 +161,14 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Creates a sparing tree without objects: it uses less memory, for objects that seldom change.
+    /// Creates a tree without objects that stores old boxes only while some box has changed
+    /// ([`Self::is_sparing`]). It uses less memory if objects seldom change.
     pub(crate) fn sparing(lanes: Lanes) -> Self {
         Self { is_sparing: true, remembers: false, ..Self::new(lanes) }
     }
 
-    /// Makes the tree sparing, for objects that seldom change. Its boxes must be committed.
+    /// Makes the tree sparing ([`Self::is_sparing`]), for objects that seldom change. Its boxes
+    /// must be committed.
     pub(crate) fn spare(&mut self) {
         debug_assert_eq!(self.changed, 0, "a tree with committed boxes");
         (self.is_sparing, self.remembers, self.before) = (true, false, Vec::new());

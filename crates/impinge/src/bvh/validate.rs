@@ -39,8 +39,8 @@ impl<const D: usize> Tree<D> {
         Ok(())
     }
 
-    /// Checks that boxes are finite and not inverted, that free lanes are empty now and before, and
-    /// that changed lanes are marked.
+    /// Checks that boxes are finite and not inverted, that a free lane has the empty box now and at
+    /// the last commit, and that changed lanes are marked.
     fn validate_leaves(&self) -> Result<(), String> {
         for (slot, &id) in self.ids.iter().enumerate() {
             let (block, lane) = (slot / LANES, slot % LANES);

@@ -340,8 +340,8 @@ mod tests {
 
     #[test]
     fn pairs_that_seldom_touch_are_asked_last() {
-        // In the first pair one surface is inside the other, so that only the hulls overlap. The
-        // second pair touches in all rows except the last.
+        // In the first pair one surface is inside the other: only the hulls overlap. The second
+        // pair touches in all rows except the last.
         let surfaces = [(8.0, [0.0; 3]), (0.5, [1.0; 3]), (1.0, [20.0; 3]), (1.0, [20.0; 3])];
         let checker = slider(&surfaces, &[[0, 1], [2, 3]]);
         let mut rows = [0.3; 17];

@@ -78,7 +78,7 @@ impl<N: Real, const D: usize> Node<N, D> {
         }
     }
 
-    /// Returns whether the joint is prismatic, so that its value is a length.
+    /// Returns whether the joint is prismatic. Its value is then a length.
     pub(super) const fn slides(&self) -> bool {
         matches!(self.rotation, Swing::Slide(..))
     }

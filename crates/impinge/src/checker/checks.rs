@@ -61,7 +61,7 @@ pub const NO_PAIR: [u32; 2] = [u32::MAX; 2];
 pub struct Checker<N: Real, const D: usize> {
     pub(super) tree: FrameTree<N, D>,
     pub(super) bodies: Vec<Body<N, D>>,
-    /// For each body, its pose on the node that moves it.
+    /// For each body, the node that moves it and its pose relative to that node.
     pub(super) on_nodes: Vec<OnNode<N, D>>,
     /// The pairs of body indices in ascending order, the lower index first.
     pairs: Vec<[u32; 2]>,
@@ -69,8 +69,7 @@ pub struct Checker<N: Real, const D: usize> {
     pub(super) hulls: BodyHulls<N, D>,
     pub(super) robot: RobotFilter<D>,
     pub(super) surroundings: Surroundings<D>,
-    /// The pairs `[body, obstacle]` that may touch, so that no query tests them, in ascending
-    /// order.
+    /// The pairs `[body, obstacle]` that may touch, in ascending order. No query tests them.
     ignored: Vec<[u32; 2]>,
 }
 
@@ -115,8 +114,8 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
     /// Replaces all obstacles; `ignored` has the pairs `[body, obstacle]` that may touch, with both
     /// indices starting at zero.
     ///
-    /// The cost is one distance between a point and an obstacle for each obstacle and each group of
-    /// at most 8 balls that cover the bodies.
+    /// The bodies are covered by groups of at most 8 balls. The cost is one distance query of a
+    /// point and an obstacle for each group and each obstacle.
     ///
     /// # Errors
     /// [`CheckerError::NotFinite`], [`CheckerError::Pair`] or [`CheckerError::TooMany`], for the
@@ -219,8 +218,8 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         entries::are_free(self, (configurations, clearance), control, out)
     }
 
-    /// Writes the first pair of each configuration that is within `clearance`; [`NO_PAIR`] if the
-    /// configuration is free or not finite.
+    /// Writes the first pair of each configuration that touches or is within `clearance`, which is
+    /// treated as in [`Self::are_free`]; [`NO_PAIR`] if the configuration is free or not finite.
     ///
     /// # Errors
     /// [`BatchError::PartialRow`] or [`BatchError::Length`] if `configurations` does not have as

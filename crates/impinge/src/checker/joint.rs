@@ -93,7 +93,8 @@ impl<N: Real, const D: usize> Joint<N, D> {
     }
 
     /// Returns whether the axis is a unit vector, or the generator generates a rotation about a
-    /// unit axis, up to rounding. Other values would scale the bodies.
+    /// unit axis, up to rounding. Another generator would distort the bodies; another axis would
+    /// scale the joint value.
     pub(super) fn has_unit_axis(&self) -> bool {
         let is_one = |x: N| (x - N::ONE).abs() <= N::lit(64.0) * N::EPSILON;
         match &self.motion {

@@ -26,8 +26,8 @@
 //! [`Checker::are_free`] defers a pair whose earlier searches mostly found no contact until all
 //! other pairs are tested.
 //!
-//! Lanes across configurations follow W. Thomason, Z. Kingston and L. E. Kavraki, "Motions in
-//! Microseconds via Vectorized Sampling-Based Planning" (2024).
+//! The use of lanes for configurations follows W. Thomason, Z. Kingston and L. E. Kavraki, "Motions
+//! in Microseconds via Vectorized Sampling-Based Planning" (2024).
 
 mod answers;
 mod body;

@@ -2,7 +2,7 @@
 
 use crate::chunks::Cut;
 
-/// A slice with one row of `width` slots for each configuration, which is cut only between rows.
+/// Slots with one row of `width` values for each configuration. The slice is cut only between rows.
 pub(super) struct RowsOf<'a, T> {
     slots: &'a mut [T],
     width: usize,

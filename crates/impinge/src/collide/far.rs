@@ -260,7 +260,7 @@ mod tests {
     }
 
     /// Asserts that [`separation`] returns `None` for each pair that the balls or the boxes reject,
-    /// and at 17 times for each pair that [`Apart::stays_beyond`] rejects; and that each test
+    /// and at 17 instants for each pair that [`Apart::stays_beyond`] rejects; and that each test
     /// rejects some of the pairs, but not all. The distance of the origins is 0.97 to 1.03 times
     /// the sum of the ball radii and the limit; for the boxes it is then multiplied by 0.4 to 1.
     fn rejects_no_more<N: Space<D>, const D: usize>(

@@ -8,10 +8,10 @@
 //! ```
 //!
 //! The `code` of a point of a box pair identifies its features and its slot in a batch
-//! (`collide/batch/boxes/choose.rs`). A code of 0 says that both are unknown. Code that creates a
-//! point of a convex pair, or changes its features, must set `code` to 0, because the batch kernels
-//! rely on it. Points of composite pieces (`mesh/scene.rs`) may keep a code that does not match
-//! their features; no kernel reads these codes.
+//! (`collide/batch/boxes/choose.rs`). A code of 0 means that both are unknown. A function that
+//! creates a point of a convex pair, or changes its features, must set `code` to 0, because the
+//! batch kernels rely on it. Points of composite pieces (`mesh/scene.rs`) may keep a code that does
+//! not match their features; no kernel reads these codes.
 
 use smallvec::SmallVec;
 
@@ -92,9 +92,10 @@ pub(crate) struct RawManifold<N: Real, const D: usize> {
     pub(crate) ids: PairIds,
     /// Contact points, sorted by id. Empty if the solids are farther apart than the prediction.
     pub(crate) points: SmallVec<[RawPoint<N, D>; 4]>,
-    /// Pose of the second solid in the frame of the first when the points were computed, which
-    /// places old points on the second. `None` for pairs of balls, boxes, segments and capsules,
-    /// whose kernels store no pose, and for a manifold that has only the nearest points.
+    /// Pose of the second solid in the frame of the first when the points were computed; it gives
+    /// the positions of old points on the second solid. `None` for pairs of balls, boxes, segments
+    /// and capsules, whose kernels store no pose, and for a manifold that has only the nearest
+    /// points.
     pub(crate) pose12: Option<Pose<N, D>>,
 }
 

@@ -1,4 +1,4 @@
-//! Size of a pair of solids, to which tolerances for its contact points are proportional.
+//! Size of a pair of solids. The tolerances for contact points of the pair are proportional to it.
 //!
 //! The tolerances in `manifold/ids.rs` (`SHARE`, `REACH`) and in `manifold/mod.rs` (`SLACK`) are
 //! fractions of this size; `batch` has versions that compute it for several pairs at a time.

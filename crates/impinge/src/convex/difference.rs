@@ -52,8 +52,8 @@ pub(crate) trait Difference<N: Real, const D: usize> {
     /// Returns the point of the set that is lowest along the unit vector `normal`.
     fn lowest(&self, normal: &Vector<N, D>) -> Vertex<N, D>;
 
-    /// Returns whether both cores are hulls of points, so that there are no round faces, and no
-    /// branch has a `bend`.
+    /// Returns whether both cores are hulls of points. There are then no round faces, and no branch
+    /// has a `bend`.
     fn is_flat(&self) -> bool;
 
     /// Returns whether neither core has edges or rims, except that one may be a segment. Then local

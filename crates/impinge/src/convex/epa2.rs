@@ -10,8 +10,8 @@
 //!
 //! G. van den Bergen, "Proximity Queries and Penetration Depth Computation on 3D Game Objects"
 //! (2001): a polygon inside the difference grows outwards at its side nearest to the origin. Unlike
-//! there, the polygon need not contain the origin: sides with the origin in front of them have a
-//! negative offset, so they are the nearest and grow first.
+//! in that paper, the polygon need not contain the origin: sides with the origin in front of them
+//! have a negative offset, so they are the nearest and grow first.
 
 use smallvec::SmallVec;
 

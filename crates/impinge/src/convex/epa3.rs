@@ -23,8 +23,7 @@ use crate::math::{Mapped, Real, Vector, cross, max, orthonormal_basis, unit};
 
 /// Cap on the number of local searches after the growth of the hull has ended without an answer.
 const CLIMBS: usize = 6;
-/// Cosine of an angle. If two normals differ by a smaller angle, only one of them starts a local
-/// search.
+/// Cosine of the smallest angle between two normals that both start a local search.
 const SAME_CLIMB: f64 = 0.95;
 /// Cap on the number of support points. Flat faces take about ten, smooth cores about twenty, rims
 /// up to a hundred. Only if a whole ring of normals has nearly the largest height, and no `peak` is
@@ -64,7 +63,7 @@ pub(super) fn deepest<N: Real>(
     }
 }
 
-/// Returns a separation with a larger height than `grown`, from the rings of normals of round
+/// Returns a separation with a larger distance than `grown`, from the rings of normals of round
 /// sides; `None` if there is none.
 fn beside<N: Real>(
     difference: &dyn Difference<N, 3>,
@@ -79,11 +78,11 @@ fn beside<N: Real>(
     })
 }
 
-/// Corners of a tetrahedron to start with; or, as the error, the separation if the difference is
-/// flat.
+/// Corners of a tetrahedron to start with; or, as the error, the separation if the difference has
+/// no volume.
 type Start<N> = Result<[Vertex<N, 3>; 4], Separation<N, 3>>;
 
-/// Smallest thickness of a simplex to build on, as a fraction of its length.
+/// Smallest thickness of a simplex that is extended, as a fraction of its length.
 const THICK: f64 = 1.0 / 1024.0;
 
 /// Extends the simplex that contains the origin, or nearly does, to a tetrahedron by support
@@ -224,8 +223,8 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
     }
 }
 
-/// Local maxima of the height that Newton's method found from faces of the hull; used only in a
-/// smooth difference.
+/// The highest of the local maxima of the height that Newton's method found from faces of the hull;
+/// used only in a smooth difference.
 struct Summits<N: Real> {
     highest: Option<Summit<N>>,
     /// Largest gap of a face from which Newton's method is tried; 0 if the difference is not
@@ -288,9 +287,9 @@ struct Summit<N: Real> {
 }
 
 impl<N: Real> Summit<N> {
-    /// Returns whether this maximum may be used for `face` without another run of Newton's method,
-    /// since their normals nearly agree and `gap`, the distance from the face to its support point,
-    /// is small.
+    /// Returns whether this maximum may be used for `face` without another run of Newton's method:
+    /// whether their normals nearly agree and `gap`, the distance from the face to its support
+    /// point, is small.
     fn stands_for(&self, face: &EpaFace<N>, gap: N) -> bool {
         gap <= N::lit(FINE) && -self.top.normal.dot(&face.outward) >= N::lit(SAME_PLACE)
     }

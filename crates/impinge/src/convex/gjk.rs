@@ -62,14 +62,14 @@ struct GjkSearch<N: Real, const D: usize> {
     /// on the height of `best`.
     for_points: bool,
     /// The search ends with [`Outcome::Near`] at a point whose distance from the origin is below
-    /// this value; never if it is zero.
+    /// this value; never if the value is not positive.
     near: N,
 }
 
 /// Result of a search for two cores.
 pub(super) enum Answer<N: Real, const D: usize> {
     Signed(Separation<N, D>),
-    /// The cores, inflated by their radii, overlap for certain; the depth was not requested.
+    /// The cores, inflated by their radii, certainly overlap; the depth is not computed.
     Overlap,
 }
 
@@ -202,8 +202,8 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
 
     /// Returns whether the difference inflated by `radius` certainly contains the origin, by the
     /// proofs of [`overlaps`]. For solids that lie symmetrically, the search along the line of
-    /// their centres ends with the origin on a corner, edge or face of the simplex, which proves
-    /// nothing. A second search from a skew axis avoids this case.
+    /// their centres may end with the origin on a corner, edge or face of the simplex. Such a
+    /// simplex proves nothing. A second search from a skew axis avoids this case.
     fn clears(&self, difference: &impl Difference<N, D>, radius: N) -> bool {
         self.is_clear() || overlaps(difference, &skew_axis(), radius, N::ZERO)
     }
@@ -331,7 +331,8 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         }
         let raised = best.height > self.best.height;
         if !raised && !mix.meets(&best) {
-            // The points of a sliver do not prove that its plane is as near as computed.
+            // The simplex is a sliver, and the mix of its vertices does not confirm the computed
+            // nearest point.
             if converges(difference, &mut best) {
                 return locate(difference, &best, &[best.vertex]);
             }

@@ -27,8 +27,7 @@ pub(super) struct EpaFace<N: Real> {
     /// Signed distance of the face's plane from the origin along `outward`, negative if the origin
     /// is in front of the face; infinite if the face is too thin to have a normal.
     pub(super) offset: N,
-    /// Whether `offset` has been set from the height of the face's normal; the face then grows no
-    /// more.
+    /// Whether [`Hull::finalize`] has set `offset`; the face then grows no more.
     pub(super) is_final: bool,
 }
 

@@ -18,9 +18,9 @@
 //! much. The signed distance is the largest height over all unit vectors. For curved cores that
 //! provide their curvature, Newton's method computes the last digits (`polish`).
 //!
-//! All computations use units in which the size of the pair is about 1 (`difference`), reached by
-//! an exact power of two. So every tolerance is a plain multiple of the machine epsilon, and
-//! scaling both solids by a power of two scales the result exactly.
+//! All computations use units in which the size of the pair is about 1 (`difference`). The unit is
+//! a power of two. So the conversion is exact, every tolerance is a plain multiple of the machine
+//! epsilon, and scaling both solids by a power of two scales the result exactly.
 //!
 //! [`gjk`], `epa2` and `epa3` find a normal without a good guess. `refine` (support points),
 //! `climb` (proximal points), `newton` and `polish` (curvature) and `side` (the ring of normals of
@@ -67,11 +67,11 @@ use gjk::Answer;
 /// beyond rounding. At a distance of exactly `limit` the result is `Some`. With an infinite limit
 /// and finite input it is always `Some`. NaN or infinity in the pose gives `None`.
 ///
-/// `distance` is the height of `normal`. Let `s` be the sum of the bounding radii of the cores and
-/// of the distance of their origins. `distance` falls short of the exact value by a few
-/// `N::EPSILON · s` for flat-faced cores and for curved ones that provide their curvature
-/// ([`SupportMap::curved_support`]); for other curved cores by about the larger of that and
-/// `2⁻⁴⁰ · s`. If a whole ring of normals is nearly as good, as for deep overlaps of nearly coaxial
+/// `distance` is the height of `normal` minus both radii. Let `s` be the sum of the bounding radii
+/// of the cores and of the distance of their origins. `distance` falls short of the exact value by
+/// a few `N::EPSILON · s` for flat-faced cores and for curved ones that provide their curvature
+/// ([`SupportMap::curved_support`]); for other curved cores by about the larger of that and `2⁻⁴⁰ ·
+/// s`. If a whole ring of normals is nearly as good, as for deep overlaps of nearly coaxial
 /// cylinders or cones, the ring of a round side is searched ([`SupportMap::round_side`]). If there
 /// is no round side, and all normals nearby are about as good, as in the middle of a ball, a local
 /// search gives the result; then `distance` may fall short by more. The points lie on the cores to

@@ -9,8 +9,9 @@ use crate::math::{Vector, unit};
 /// usually suffice.
 const STEPS: usize = 6;
 
-/// Runs Newton's method on the sphere of normals, raising `best`. Returns whether the method ended
-/// at a normal along which the two support points face each other, up to 64 rounding errors.
+/// Runs Newton's method on the sphere of normals, starting from `best`, which each accepted step
+/// replaces. Returns whether the method ended at a normal along which the two support points face
+/// each other, up to 64 rounding errors.
 ///
 /// The height of a normal `n` is `n·w` for its lowest point `w`, so the slope of the height is the
 /// part of `w` perpendicular to `n`. At the maximum, this slope is zero. A step is accepted only if

@@ -16,7 +16,7 @@ pub(crate) struct Peak<N: Real, const D: usize> {
     /// Unit vector from the first core to the second. No other normal has a height larger by more
     /// than the requested gap.
     pub(crate) normal: Vector<N, D>,
-    /// Whether `normal` is the normal of a flat face, so that no normal close to it is slightly
+    /// Whether `normal` is the normal of a flat face. No normal close to it is then slightly
     /// better.
     pub(crate) is_exact: bool,
     /// Whether `normal` belongs to the ring of normals of a round side, where another normal may be

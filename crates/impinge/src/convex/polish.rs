@@ -1,5 +1,5 @@
-//! Newton's method for curved cores: refines a normal with an error of about the square root of the
-//! tolerance to rounding error.
+//! Newton's method for curved cores: reduces the error of a normal from about the square root of
+//! the tolerance to rounding error.
 //!
 //! With support points alone, the error of a normal of curved cores is about the square root of the
 //! error of its height, and the height itself converges slowly. If a core provides how its support
@@ -99,7 +99,7 @@ pub(super) fn polish<N: Simplicial<D>, const D: usize>(
 }
 
 /// Replaces `best` by the exact normal of a round face close to it if that normal has a larger
-/// height. At such a normal the height has a maximum without a derivative.
+/// height. The height may have a maximum at such a normal, where it is not differentiable.
 fn try_round_faces<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &mut SupportCandidate<N, D>,

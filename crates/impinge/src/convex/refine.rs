@@ -21,10 +21,10 @@ const KEPT: usize = 8;
 ///
 /// The height of a normal over a few support points is at least its height over the whole set. So
 /// the normal with the largest height over the bundle is computed, among the normals of its points,
-/// edges and facets. The support point of this normal is added to the bundle, until its heights
-/// over the bundle and over the set agree. This is the cutting-plane method of J. Kelley (1960) on
-/// the sphere of normals. The method finds the global maximum only if the set does not contain the
-/// origin. All points found are added to `support_points`.
+/// edges and facets. The support point of this normal is added to the bundle. The search ends if
+/// the heights of the normal over the bundle and over the set agree. This is the cutting-plane
+/// method of J. Kelley (1960) on the sphere of normals. The method finds the global maximum only if
+/// the set does not contain the origin. All points found are added to `support_points`.
 pub(super) fn refine<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     support_points: &mut Bundle<N, D>,

@@ -26,8 +26,8 @@ const TOPS: usize = 3;
 /// A ring is searched only if the component of the known normal along the axis differs from the
 /// component of the side's normals by at most this value.
 const NEAR: f64 = 1.0 / 16.0;
-/// A ring is searched only if the height of the normal opposite to the known normal is lower than
-/// the known height by at most this value, in units of the pair.
+/// A ring is searched only if the height of its normal at angle π from the known normal is lower
+/// than the known height by at most this value, in units of the pair.
 const MAX_UNEVENNESS: f64 = 1.0 / 8.0;
 /// Fraction of an interval that is left after a step of the golden section.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;

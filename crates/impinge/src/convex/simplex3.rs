@@ -51,8 +51,8 @@ fn nearest_on_triangle<N: Real>(
     let squared = normal.norm_squared();
     let longest = max(max(e.norm_squared(), f.norm_squared()), (c - b).norm_squared());
     let flat = squared <= rounding_error::<N>() * rounding_error::<N>() * longest;
-    // Barycentric coordinates of the origin's projection. Their errors grow only in inverse
-    // proportion to the triangle's size.
+    // Barycentric coordinates of the origin's projection. Their errors are inversely proportional
+    // to the triangle's smallest height, not to its square.
     let (on_b, on_c) = (-normal.dot(&cross(a, &f)) / squared, -normal.dot(&cross(&e, a)) / squared);
     let on_a = N::ONE - on_b - on_c;
     let mut best: Option<NearestOfSimplex<N, 3>> = None;

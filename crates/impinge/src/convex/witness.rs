@@ -19,7 +19,7 @@ const ROUNDS: usize = 32;
 /// Cap on the number of nearest-point searches in [`search`].
 const SEARCHES: usize = 16;
 
-/// A point of each core, which is a weighted mean of other points of that core.
+/// A point of each core: a weighted mean of points of that core.
 #[derive(Clone, Copy)]
 pub(super) struct Mix<N: Real, const D: usize> {
     on1: Vector<N, D>,

@@ -94,8 +94,8 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
 
     /// Draws the area of a manifold as triangles. Each triangle has the mean of the points and two
     /// neighbouring points as its corners; a point is midway between the two points of a contact,
-    /// and the points are sorted by their angle around the first normal. Does nothing for less than
-    /// three contacts.
+    /// and the points are sorted by their angle around the first normal. Does nothing for fewer
+    /// than three contacts.
     fn area(&self, contacts: &[Contact<N, D>], renderer: &mut dyn DebugRender<N, D>) {
         let (Some(style), [first, _, _, ..]) = (self.options.manifold, contacts) else { return };
         let between =

@@ -91,7 +91,7 @@ fn round_ends<N: Real>(sketch: &mut Sketch<N, 3>, capsule: &TaperedCapsule<N, 3>
     let axis = unit_or(&(capsule.segment().b() - capsule.segment().a()), Vector::<N, 3>::y());
     let (u, v) = orthonormal_basis(&axis);
     let [radius1, radius2] = capsule.radii();
-    // The 2D capsule that generates the solid by revolution. If it cannot be constructed, since
+    // The 2D capsule that generates the solid by revolution. If it cannot be constructed because
     // numbers overflow, there are no outlines.
     let flat = TaperedCapsule::<N, 2>::try_new(capsule.half_height(), radius1, radius2);
     for (flat, across) in flat.iter().flat_map(|flat| [(flat, u), (flat, v)]) {

@@ -140,8 +140,8 @@ pub(crate) fn volume(a: &P3, b: &P3, c: &P3, q: &P3) -> f64 {
         + v.z.abs() * (wu.abs() + uw.abs())
         + w.z.abs() * (uv.abs() + vu.abs());
     // Shewchuk's bound is 7 half-units. Requiring a million times this bound also limits the
-    // relative error of the magnitude to 1e-6, which heights over slivers need. The exact stage is
-    // still rare.
+    // relative error of the magnitude to 1e-6. Heights over slivers need this accuracy. The exact
+    // stage is still rare.
     if det.abs() > MARGIN * permanent { -det } else { volume_exact([a, b, c], q) }
 }
 

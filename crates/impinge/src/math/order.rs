@@ -29,9 +29,9 @@ const FEW: usize = 20;
 /// [`FEW`] items.
 ///
 /// The sorts of the standard library are faster for long lists, but have forty times the machine
-/// code, once for each type and key. This function uses insertion sort, and for more than [`FEW`]
-/// items heapsort (Williams, "Algorithm 232: Heapsort", 1964): O(n log n) in the worst case, in
-/// place.
+/// code, and are compiled for each type and key. This function uses insertion sort, and for more
+/// than [`FEW`] items heapsort (Williams, "Algorithm 232: Heapsort", 1964): O(n log n) in the worst
+/// case, in place.
 pub(crate) fn sort_few<T>(items: &mut [T], is_less: impl Fn(&T, &T) -> bool) {
     let count = items.len();
     if count <= FEW {

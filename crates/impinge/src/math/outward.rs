@@ -1,7 +1,7 @@
 //! Sums and products that are rounded in a known direction, for bounding volumes.
 //!
 //! The rounding error of a sum is representable (Knuth, "The Art of Computer Programming", volume
-//! 2, theorem 4.2.2 B), so a sum with an error of zero can be left unchanged. Therefore boxes with
+//! 2, theorem 4.2.2 B), so a sum with an error of zero is left unchanged. Therefore boxes with
 //! representable corners are exact.
 
 use core::ops::{Add, Sub};

@@ -35,8 +35,8 @@ use super::halves::Halves;
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Level {
     Wide(Vectors),
-    /// Vectors of four `f32`. Kernels with independent lanes run lane by lane instead, which halves
-    /// the code.
+    /// Vectors of four `f32`, for kernels with interacting lanes. Kernels with independent lanes
+    /// run lane by lane, to halve the code.
     #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
     Sse2(fearless_simd::Sse2),
     /// No vectors: arrays of numbers; also used in tests.

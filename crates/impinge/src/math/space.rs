@@ -8,7 +8,7 @@ use core::fmt::Debug;
 /// A scalar `Self` in `D` dimensions: implemented for every [`Real`] with `D` = 2 and `D` = 3.
 ///
 /// Generic code that needs an operation which depends on the dimension has the bound `N: Space<D>`.
-/// A function for one dimension needs only `N: Real`, which implies it.
+/// A function for one dimension needs only `N: Real`, which implies `Space<2>` and `Space<3>`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not known to be a scalar of impinge in {D} dimensions",
     label = "`Space<{D}>` is not implemented for `{Self}`",

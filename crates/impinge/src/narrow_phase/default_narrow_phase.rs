@@ -29,8 +29,8 @@ use crate::shape::Shape;
 /// Pairs of the library's own algorithms are stored in dense arrays: one for each query and each
 /// pair of shape kinds, and one for the contacts of all pairs with composites. They are updated in
 /// batches, without a virtual call or an allocation for each pair. Pairs of a custom dispatcher are
-/// updated one by one. A pair is skipped if neither of its objects changed and the pair is not
-/// marked as dirty, as new pairs are.
+/// updated one by one. A pair is updated only if one of its objects changed, or if the pair is
+/// marked as dirty, as each new pair is.
 ///
 /// ```
 /// use impinge::dim3::narrow_phase::DefaultNarrowPhase;

@@ -65,7 +65,7 @@ impl<N: Space<D>, const D: usize> ProximityDetector<N, D> for PairProximityDetec
     }
 }
 
-/// Chooses the library's own algorithm for every two solids.
+/// Chooses the library's own algorithm for every pair of solids.
 ///
 /// ```
 /// use impinge::dim2::events::Proximity;

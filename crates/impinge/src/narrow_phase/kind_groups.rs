@@ -9,8 +9,9 @@ const KIND_PAIRS: usize = ShapeKind::COUNT * ShapeKind::COUNT;
 /// Entry of a number that has no group, because no pair has had these kinds.
 const NONE: u8 = u8::MAX;
 
-/// Groups by the number of their kinds ([`kind_pair`](super::pair_groups::kind_pair)), without gaps and in
-/// ascending order of these numbers.
+/// Groups by the number of their pair of shape kinds
+/// ([`kind_pair`](super::pair_groups::kind_pair)), without gaps and in ascending order of these
+/// numbers.
 ///
 /// A group is made for its first pair and then kept. Most worlds have pairs of few kinds, so
 /// clones, marks and updates visit a few groups instead of hundreds of empty groups.

@@ -31,8 +31,8 @@ const NONE: u32 = u32::MAX;
 /// are constant, so manifolds that are read then are those of the last update. When the last pair
 /// of the object stops, its row becomes free for another object.
 ///
-/// The table also records which rows were written in the current update: pairs of unchanged rows
-/// need no new query.
+/// The table also records which rows were written in the current update. A pair needs no new query
+/// if the rows of both objects are unchanged.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -77,8 +77,8 @@ pub struct ObjectTable<N: Space<D>, const D: usize> {
     changed: Vec<u32>,
     /// Number of rows acquired since the last [`Self::compact`].
     acquired: usize,
-    /// Pairs computed since the last update, sorted by key, with the poses at which they were
-    /// computed.
+    /// Pairs that were computed one by one since the last update, sorted by key, with the poses at
+    /// which they were computed.
     pub(super) substeps: Vec<PairSolids<N, D>>,
     /// By handle index, up to the largest index of an object with a skin: the skin, as of the last
     /// update.
@@ -246,7 +246,8 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         }
     }
 
-    /// Replaces the pose in an object's row without marking it as written, and returns the old one.
+    /// Replaces the pose in an object's row without marking it as written, and returns the old
+    /// pose.
     pub(super) fn replace_pose(
         &mut self,
         index: u32,

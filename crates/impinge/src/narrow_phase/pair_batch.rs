@@ -23,8 +23,9 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// Adds the pairs that began and removes those that ended, as
     /// [`pair_started`](Self::pair_started) and [`pair_stopped`](Self::pair_stopped) do.
     ///
-    /// Pairs are scattered in memory, so several are prefetched at once. A pair that begins takes
-    /// the index of a pair that ends, if both are in the same group, so that no other pair moves.
+    /// Pairs are scattered in memory, so several are prefetched at once. If a pair that begins and
+    /// a pair that ends are in the same group, the first takes the index of the second, and no
+    /// other pair moves.
     pub(crate) fn begin_and_end_pairs(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -102,7 +103,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     }
 
     /// Writes the pair `new` at the index and row of the pair `old`, and pushes the final event of
-    /// `old` if that was touching. `None`, without a change, if `old` does not exist, if `new`
+    /// `old` if `old` was touching. `None`, without a change, if `old` does not exist, if `new`
     /// exists, or if they do not belong to the same group of built-in contacts of convex solids.
     fn replace(
         &mut self,

@@ -51,8 +51,9 @@ pub enum GeometricQueryType<N: Real> {
 pub struct ContactQuery<N: Real> {
     /// The object's contribution to the distance up to which there are contact points.
     pub prediction: N,
-    /// The object's contribution, in radians, to the angle up to which rotations of the solids are
-    /// predicted: points that would come within that distance are contact points too.
+    /// The object's contribution, in radians, to the angular prediction of a pair. Points that come
+    /// within the distance up to which there are contact points, if the solids rotate by up to that
+    /// angle, are contact points too.
     pub angular_prediction: N,
 }
 

@@ -58,7 +58,7 @@ pub(super) fn usable_tolerance<N: Real>(tolerance: N) -> Result<N, ReuseError> {
 pub(crate) struct Reference<N: Real, const D: usize> {
     /// Pose of the solid in whose frame contacts are stored, relative to the other solid.
     pub(super) pose21: Pose<N, D>,
-    /// Largest distance from the origin, in the frame in which contacts are stored, of the points
+    /// Bounding radius, about the origin of the frame in which contacts are stored, of the points
     /// whose motion matters. Infinite if the contacts cannot be reused.
     pub(super) reach: N,
     /// Number of further updates in which the reference is neither compared nor set, because the
@@ -83,10 +83,10 @@ impl<N: Real, const D: usize> Default for Reference<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Reference<N, D> {
-    /// Updates the distances of the contacts of a pair and returns `true`, if the pair has moved by
-    /// less than the limit, and has no contacts or at least one contact within the prediction or
-    /// within its old distance. Otherwise returns `false`. `pose21` returns the present relative
-    /// pose.
+    /// Measures the distances of the contacts again if the pair has moved by less than the limit
+    /// since the last query. Returns `true` if it did, and a contact is within the prediction or
+    /// within its old distance, or there are no contacts. Returns `false` during a pause. `pose21`
+    /// returns the present relative pose.
     ///
     /// The limit is the smaller of `tolerance` and `prediction`, so that no contact of overlapping
     /// solids is missed.
@@ -144,14 +144,15 @@ impl<N: Space<D>, const D: usize> Reference<N, D> {
 
     /// Measures the distance of each contact along its normal, which is fixed to the first solid;
     /// both points are fixed to their solids. Returns `true` if a contact is within `limit` or
-    /// within its old distance, or if there is no contact. Of many contacts, some leave the
-    /// prediction at every step; that alone does not end the reuse.
+    /// within its old distance, or if there is no contact. A single contact that leaves the
+    /// prediction does not end the reuse, because in a pair with many contacts this happens at most
+    /// steps.
     ///
     /// `pose21` maps x to R x + t, and the reference maps x to R' x + t'. A point p of the first
     /// solid and its opposite point, at distance d along n, were at R' p + t' and R' (p + d n) +
     /// t'. The new distance is the component along R n of the vector from the present position of
     /// the first point to the opposite point: (R' − R) p + (t' − t) + d R' n. Only small
-    /// differences occur, so that little precision is lost far from the origin.
+    /// differences occur, so little precision is lost far from the origin.
     fn measure<S: KeptPoints<N, D>>(&self, pose21: &Pose<N, D>, state: &mut S, limit: N) -> bool {
         let rotation_change = self.pose21.rotation - pose21.rotation;
         let translation_change = self.pose21.translation - pose21.translation;
@@ -181,9 +182,9 @@ type KeptRows<'a, N, S, V, const D: usize> =
     Rows<'a, ContactEntry<N, S>, ContactView<V>, Reference<N, D>>;
 
 impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
-    /// Updates the distances of the contacts of a pair and returns `true`, if the group has
-    /// references and [`Reference::keeps`] returns `true`. Otherwise returns `false`. The number of
-    /// contacts does not change, so there are no events.
+    /// Returns `true` if the group has references and [`Reference::keeps`] returns `true`; the
+    /// contacts then have their new distances. The number of contacts does not change, so there are
+    /// no events.
     #[inline]
     pub(super) fn keeps<S: KeptContacts<N, D>>(
         &self,

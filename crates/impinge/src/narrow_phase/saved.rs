@@ -1,8 +1,8 @@
 //! The narrow phase in a saved world: its pairs, in the order in which contacts are read.
 //!
-//! The requests of pairs and the copies of their solids are not saved, but computed from the object
-//! table. The touching flags are computed from the contacts. The algorithm of each pair is chosen
-//! again, so that data cannot assign a pair to another algorithm.
+//! The manifold requests of pairs and the copies of their solids are not saved, but computed from
+//! the object table. The touching flags are computed from the contacts. The algorithm of each pair
+//! is chosen again, so that data cannot assign a pair to another algorithm.
 
 use serde::{Deserialize, Serialize};
 
@@ -94,7 +94,7 @@ impl<N: Real, const D: usize> Reference<N, D> {
 }
 
 impl<N: Real> ReferenceRecord<N> {
-    /// Restores the reference of a pair with this number of contacts.
+    /// Restores the reference of a pair that has `contacts` contacts.
     fn restore<const D: usize>(&self, contacts: usize) -> Result<Reference<N, D>, Damage> {
         let (pose21, reach) = self.numbers.all(|n| Ok((n.pose()?, n.number()?)))?;
         // A paused reference is set again before it is used, so its distances may belong to earlier

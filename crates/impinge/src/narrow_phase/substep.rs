@@ -82,8 +82,8 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.substep_solids(key).is_some() || self.skins_of(key) != [N::ZERO; 2]
     }
 
-    /// Returns `true` if there are no substeps and no skins, so that no pair [needs built
-    /// manifolds](Self::needs_built_manifolds).
+    /// Returns `true` if there are no substeps and no object has had a skin. No pair then [needs
+    /// built manifolds](Self::needs_built_manifolds).
     pub(super) fn reads_in_place(&self) -> bool {
         self.substeps.is_empty() && self.skins.is_empty()
     }

@@ -7,8 +7,8 @@ use crate::math::{Real, Space};
 use crate::query::{ContactManifold, Proximity};
 use crate::shape::Shape;
 
-/// The distance up to which contacts are requested, and the rotations of both solids that are
-/// predicted.
+/// The distance up to which contacts are requested, and the angle by which each solid is expected
+/// to rotate.
 ///
 /// ```
 /// use impinge::dim3::query::ContactPrediction;

@@ -205,8 +205,7 @@ impl Adjacency {
         &mut self.pool[head.start as usize + beyond / PER_LINE].links[beyond % PER_LINE]
     }
 
-    /// Returns `true` if the object with head `at` is heavy, so that its links are in
-    /// `link_indices`.
+    /// Returns `true` if the object with head `at` is heavy. Its links are then in `link_indices`.
     #[inline]
     fn is_heavy(&self, at: usize) -> bool {
         (HEAVY..NO_RUN).contains(&self.heads[at].class())

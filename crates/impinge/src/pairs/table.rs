@@ -121,9 +121,9 @@ impl PairTable {
         index
     }
 
-    /// Removes the pair `old` and writes `new`, which must not be in the set, at its index, so that
-    /// no other pair moves. Returns the index; `None`, without a change, if `old` is not in the
-    /// set. Constant time.
+    /// Removes the pair `old` and writes `new`, which must not be in the set, at its index. So no
+    /// other pair moves. Returns the index; `None`, without a change, if `old` is not in the set.
+    /// Constant time.
     pub(crate) fn replace(&mut self, old: (u32, u32), new: (u32, u32)) -> Option<usize> {
         let index = self.unlink(old.0, old.1)?;
         debug_assert!(self.index_of(new.0, new.1).is_none(), "the pair {new:?} is in the table");

@@ -13,7 +13,7 @@ use crate::math::{Point, Real, Space, Vector, max};
 ///
 /// All tests are closed: boxes that only touch overlap. Results are exact for the boxes as given, and equal on every
 /// machine. Boxes may coincide, be flat, or be unbounded. A box with a face beyond the range of `f32` is treated as
-/// unbounded: each search tests all of these one by one, so there should be few.
+/// unbounded. Each search tests all unbounded boxes one by one, so there should be few.
 ///
 /// Building costs O(n log n). A search opens O(log n) blocks of sixteen boxes plus the blocks of its results, unless
 /// boxes overlap heavily. In addition to its box, each object takes about 60 bytes in 2D and 85 in 3D, at most twice
@@ -402,7 +402,7 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         Ok(())
     }
 
-    /// Returns an upper bound of the extent of all objects along `direction`, which exceeds the maximum of
+    /// Returns an upper bound of the extent of all objects along `direction`. The bound exceeds the maximum of
     /// `extent_of(id)` by at most a few `f32` rounding units of the coordinates. Minus infinity if there are no
     /// objects. Calls `extent_of` for O(log n) objects on curved surfaces, and for more where many are almost equally
     /// extreme.

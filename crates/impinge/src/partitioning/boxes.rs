@@ -6,8 +6,8 @@ use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::bvh::{Bounds, Lanes, Tree};
 use crate::math::Real;
 
-/// Builds a tree from boxes with distinct ids. Also returns the ids of the boxes that no finite
-/// `f32` box encloses, which the tree leaves out, in input order.
+/// Builds a tree from boxes with distinct ids. The tree leaves out the boxes that no finite `f32`
+/// box encloses; their ids are returned, too, in input order.
 pub(crate) fn packed<N: Real, const D: usize>(
     lanes: Lanes,
     boxes: impl Iterator<Item = (u32, Aabb<N, D>)>,

@@ -25,7 +25,7 @@ pub enum BoxTreeError {
         /// The reason.
         error: AabbError,
     },
-    /// There are more than 2³² − 2 boxes, so an index may not fit in 32 bits.
+    /// There are more than 2³² − 2 boxes: an index has 32 bits, and `u32::MAX` is reserved.
     TooMany {
         /// The number of boxes that the caller passed.
         given: usize,

@@ -149,8 +149,8 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
 
     /// Calls `found` with groups of the objects that the moving box may touch by `limit`, roughly
     /// by ascending time. Each object comes with a lower bound of its time. `found` returns the new
-    /// limit; a limit above the previous one has no effect. The exact boxes are not tested: for
-    /// callers that test the objects themselves.
+    /// limit; a limit above the previous one has no effect. The exact boxes are not tested, since
+    /// the callers test the objects themselves.
     pub(crate) fn groups_by_time(
         &self,
         sweep: &Sweep<N, D>,
@@ -227,8 +227,8 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         }
     }
 
-    /// Returns the largest magnitude of a coordinate in the trees, which scales the rounding
-    /// errors.
+    /// Returns the largest magnitude of a coordinate in the trees; rounding errors are proportional
+    /// to it.
     fn size(&self) -> f32 {
         self.trees.iter().map(|tree| tree.size()).fold(0.0, f32::max)
     }
@@ -256,7 +256,8 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
     }
 }
 
-/// The box with the least key so far, and its key; at equal keys the lowest index.
+/// The box with the least key (a time or a distance) so far, and its key; at equal keys the box
+/// with the lowest index.
 pub(super) struct Best<N: Real> {
     pub(super) of: Option<(usize, N)>,
     limit: N,

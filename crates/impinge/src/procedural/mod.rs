@@ -5,9 +5,9 @@
 //! Half-spaces, which are unbounded, and segments, which have no surface, are left out.
 //!
 //! Common properties:
-//! * every vertex is a point of the true surface, up to a few rounding units, so that the result
-//!   lies inside the solid. Each function states a bound of the gap: the greatest distance of a
-//!   point of the true surface from the result;
+//! * every vertex is a point of the true surface, up to a few rounding units, so the result lies
+//!   inside the solid. Each function states a bound of the gap: the greatest distance of a point of
+//!   the true surface from the result;
 //! * a size of zero changes no vertex count and no triangle: some triangles then have no area.
 //!   Tapered capsules are an exception: their number of vertices depends on their sizes;
 //! * scaling a shape by a power of two scales every vertex exactly, and the results are bitwise

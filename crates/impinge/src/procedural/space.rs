@@ -27,9 +27,9 @@ use crate::shape::{
 #[must_use]
 pub fn ball<N: Real>(ball: &Ball<N>, subdivisions: u32) -> TriangleSurface<N> {
     // Two meridians and two parallels bound a flat trapezoid, which is farther from the centre the
-    // higher its latitude. A trapezoid centred on the equator would have the distance
-    // cos(π / n) · cos(π / 4k) times the radius, which is at least cos²(π / n) times it. None is
-    // centred there, since the equator is a parallel; so all are farther away.
+    // higher its latitude. A trapezoid centred on the equator would have the distance cos(π / n) ·
+    // cos(π / 4k) times the radius, which is at least cos²(π / n) times the radius. None is centred
+    // there, since the equator is a parallel; so all are farther away.
     let count = parts_of_turn(subdivisions);
     let quarter = count.div_ceil(4);
     let sphere =

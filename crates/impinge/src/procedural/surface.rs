@@ -52,7 +52,7 @@ impl<N: Real> TriangleSurface<N> {
         self.triangles.iter().map(|triangle| triangle.map(|index| self.vertices[index as usize]))
     }
 
-    /// Returns a surface with these vertices and without triangles.
+    /// Returns a surface with the given vertices and without triangles.
     pub(super) const fn of_vertices(vertices: Vec<Point<N, 3>>) -> Self {
         Self { vertices, triangles: Vec::new(), normals: Vec::new() }
     }

@@ -23,7 +23,7 @@ use crate::shape::{FeatureId, Geometry};
 /// use impinge::dim2::query::{ContactSide, NeighborhoodGeometry};
 /// use impinge::dim2::shape::FeatureId;
 ///
-/// // The upper side of a box, for a contact that an algorithm of one's own has found.
+/// // The upper side of a box, for a contact that a user's algorithm has found.
 /// let geometry = NeighborhoodGeometry::Plane(Vector::<f32>::y());
 /// let side = ContactSide { feature: FeatureId::Face(1), geometry, rounding: 0.0 };
 /// assert_ne!(side.geometry, NeighborhoodGeometry::Point);
@@ -41,9 +41,9 @@ pub enum NeighborhoodGeometry<N: Real, const D: usize> {
 /// The rule by which the normal of a moved contact is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum NormalRule<N: Real, const D: usize> {
-    /// The normal rotates with the first solid, one of whose faces defines it.
+    /// The normal rotates with the first solid; it is usually the normal of a face of that solid.
     First,
-    /// The normal rotates with the second solid, one of whose faces defines it.
+    /// The normal rotates with the second solid; it is usually the normal of a face of that solid.
     Second,
     /// The points and lines of the contact define the normal: it is perpendicular to the lines, or
     /// along the connection of the points.
@@ -138,13 +138,13 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     ///
     /// At the poses of the last update the result is the contact itself; for a small motion its
     /// error is of second order. The prediction does not detect that other features came nearer, or
-    /// that the contact left its features: query again after a larger motion. A corner keeps its
-    /// nearest point on the plane or line of the other solid. Two crossing lines give their nearest
-    /// points; two points, or a point and a line, give the shortest connection. If the connection
-    /// vanishes, and for nearly parallel lines, the points and the normal at the last update move
-    /// with their solids. A contact on a round rim is fixed to its point of the rim: for the
-    /// deepest contact the errors are of second order in distance and normal, of first order in
-    /// position. If a pose is not finite, the result is not finite.
+    /// that the contact left its features: query again after a larger motion. A corner pairs with
+    /// its nearest point on the plane or line of the other solid. Two crossing lines give their
+    /// nearest points; two points, or a point and a line, give the shortest connection. If the
+    /// connection vanishes, and for nearly parallel lines, the points and the normal at the last
+    /// update move with their solids. A contact on a round rim is fixed to its point of the rim:
+    /// for the deepest contact the errors are of second order in distance and normal, of first
+    /// order in position. If a pose is not finite, the result is not finite.
     #[must_use]
     pub fn contact<R: AbstractRotation<N, D>>(
         &self,
@@ -249,7 +249,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     }
 
     /// Returns whether a line is too far from perpendicular to the manifold's normal to give that
-    /// normal. The limit is larger for the second line, which may be parallel to the first.
+    /// normal. The limit for the second line is larger, as it may be nearly parallel to the first.
     fn is_steep(&self) -> bool {
         let is_tilted = |geometry: NeighborhoodGeometry<N, D>, normal: &Vector<N, D>, least: N| {
             match geometry {

@@ -102,7 +102,7 @@ impl Default for ContactId {
 /// let (_, _, manifold) = world.contact_manifolds().next().expect("they overlap");
 /// for tracked in manifold.contacts() {
 ///     assert_eq!(tracked.contact.depth, 0.25);
-///     // Had the upper one been lifted by an eighth:
+///     // The prediction if the upper square is lifted by an eighth:
 ///     let lifted = tracked.kinematic.contact(&Isometry::identity(), &Isometry::translation(0.0, 1.875));
 ///     assert_eq!(lifted.depth, 0.125);
 /// }
@@ -149,11 +149,11 @@ impl<N: Real, const D: usize> TrackedContact<N, D> {
 ///
 /// Two convex solids have one manifold, composites one for each flat patch of contact. A box that
 /// rests on a plane has one manifold of four points in 3D and two in 2D; a ball gives one point.
-/// [`Self::deepest_contact`] has the depth that the query for one contact returns. The first
-/// manifold of a pair contains its deepest point. In later manifolds an older point may replace the
-/// deepest point, if the depths of the two differ by at most 1/512 of the size of the smaller solid
-/// (half the diagonal of its box). An empty manifold means that the solids are farther apart than
-/// the prediction.
+/// The first manifold of a pair contains its deepest point: [`Self::deepest_contact`] has the depth
+/// that the query for one contact returns. In later manifolds an older point may replace the
+/// deepest point, if their depths differ by at most 1/512 of the size of the smaller solid (half
+/// the diagonal of its box). An empty manifold means that the solids are farther apart than the
+/// prediction.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -213,7 +213,8 @@ impl<N: Real, const D: usize> ContactManifold<N, D> {
         self.contacts.is_empty()
     }
 
-    /// Returns the contacts, in the order in which they began.
+    /// Returns the contacts in the order in which they began; a user's manifold keeps its own
+    /// order.
     #[must_use]
     pub fn contacts(&self) -> &[TrackedContact<N, D>] {
         &self.contacts
@@ -243,8 +244,7 @@ pub(crate) struct Placement<'a, N: Real, const D: usize> {
     pub(crate) pose1: &'a Pose<N, D>,
     /// The id of the pair, for the ids of its contacts.
     pub(crate) pair: u64,
-    /// Whether the user's first solid is the second of the raw pair, so that the result must be
-    /// flipped.
+    /// Whether the user's first solid is the second of the raw pair: the result is then flipped.
     pub(crate) is_swapped: bool,
 }
 

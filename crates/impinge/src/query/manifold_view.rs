@@ -108,7 +108,7 @@ impl<N: Real, const D: usize> ContactPoint<N, D> {
 /// let (_, _, view) = world.contact_views().next().expect("they overlap");
 /// assert_eq!((view.len(), *view.normal()), (2, Vector::y()));
 /// assert!(view.contacts().all(|point| point.contact.depth == 0.25));
-/// // Had the upper one been lifted by an eighth:
+/// // The prediction if the upper square is lifted by an eighth:
 /// let lifted = view.kinematic(0).contact(&Isometry::identity(), &Isometry::translation(0.0, 1.875));
 /// assert_eq!(lifted.depth, 0.125);
 /// # assert!(world.contains(a) && world.contains(b));
@@ -259,7 +259,8 @@ impl<'a, N: Space<D>, const D: usize> ManifoldView<'a, N, D> {
         }
     }
 
-    /// Returns the contacts, in the order in which they began.
+    /// Returns the contacts in the order in which they began; a user's manifold keeps its own
+    /// order.
     #[inline]
     pub fn contacts(self) -> impl ExactSizeIterator<Item = ContactPoint<N, D>> + 'a {
         Contacts { view: self, normal: entries::own_normal(&self), index: 0, count: self.len() }

@@ -7,8 +7,8 @@ use crate::bounding_volume::Aabb;
 use crate::math::{Pose, Real, Space, Vector, filled};
 use crate::shape::{Ball, Cuboid, Geometry, Kind, Shape, ShapeHandle};
 
-/// The radius of a ball or the half extents of a box, the most common shapes. For any other shape
-/// the first component is −1 as a marker.
+/// The half extents of a box, or the radius of a ball followed by −1: the most common shapes. For
+/// any other shape all components are −1.
 ///
 /// ```text
 /// box    h0    h1  [h2]     half extents, none negative

@@ -59,9 +59,10 @@ pub enum ShapeError {
         /// plane.
         dimension: usize,
     },
-    /// The points given as a convex outline turn the wrong way or fold back at one point.
+    /// The points given as a convex outline turn the wrong way, fold back or go around more than
+    /// once.
     NotConvex {
-        /// The index of that point.
+        /// The index of the point at which this is detected.
         index: usize,
     },
     /// A face of a solid refers to a point that does not exist.

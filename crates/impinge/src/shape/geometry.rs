@@ -120,8 +120,8 @@ impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
         }
     }
 
-    /// Returns whether a rotation about the origin may change the solid, so that its pose needs a
-    /// rotation: false only for a ball.
+    /// Returns whether a rotation about the origin may change the solid: false only for a ball,
+    /// whose pose needs no rotation.
     #[inline]
     pub(crate) fn turns(&self) -> bool {
         !matches!(self.0, Kind::Ball(_))

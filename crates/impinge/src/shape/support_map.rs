@@ -125,9 +125,9 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
         }
     }
 
-    /// Writes the supporting feature of the core for the unit vector `direction`, for contact
-    /// manifolds. This is a polygon, a segment or a point that contains every point of the core on
-    /// the supporting plane perpendicular to `direction`.
+    /// Writes the supporting feature of the core for the unit vector `direction`; contact manifolds
+    /// are computed from it. The feature is a polygon, a segment or a point, and should contain
+    /// every point of the core on the supporting plane perpendicular to `direction`.
     ///
     /// The rule for flat faces: among the edges at the support vertex, take the edge with the
     /// smallest tilt out of the supporting plane. Of the two faces beside that edge, take the face

@@ -156,9 +156,10 @@ pub trait ByDimension<N: Real, const D: usize>:
     /// in 2D, for a thin triangle, and where `tolerance` leaves the region uncertain.
     fn over(triangle: &Triangle<N, D>, center: &Point<N, D>, tolerance: N) -> Option<FeatureId>;
 
-    /// Returns the interval of times in which the line of a ray is inside a solid, as far as the
-    /// first hit of the ray needs it. `None` if the line misses the solid, and for a composite;
-    /// possibly also if the line is inside the solid only at times before zero.
+    /// Returns the interval of times in which the line of a ray is inside a solid. If the ray
+    /// enters the solid at time zero or later, the end of the interval may be infinite. `None` if
+    /// the line misses the solid, and for a composite; possibly also if the line is inside the
+    /// solid only at times before zero.
     fn ray_span(solid: Kind<'_, N, D>, ray: &Ray<N, D>) -> Option<Span<N, D>>;
 
     /// Returns the first hit of a ray on a mesh; `None` if there is none by the maximum time.

@@ -110,7 +110,8 @@ fn widest_normal<'a>(
 #[derive(Default)]
 pub(super) struct FaceRings {
     /// For each face, the outward unit normal of its largest triangle. The hull has no point in
-    /// front of that triangle, however far smaller triangles deviate within the tolerance.
+    /// front of that triangle; smaller triangles of the face may deviate from its plane within the
+    /// tolerance.
     pub(super) normals: Vec<Vector<f64, 3>>,
     /// The vertices of each face, counter-clockwise from outside, starting at the lowest vertex in
     /// order of coordinates.
@@ -249,6 +250,7 @@ impl<'a> Merger<'a> {
     /// Grows a face from each facet that is not in a face yet, the largest first.
     fn merged(mut self) -> FaceRings {
         // The bits of nonnegative floats, taken as integers, have the order of the floats.
+        // Inverting them gives descending order.
         let area = |facet: &Facet| !facet.doubled_area.to_bits();
         let mut seeds: Vec<(u64, u32)> = self.facets.iter().map(area).zip(0..).collect();
         sort_keyed(&mut seeds);

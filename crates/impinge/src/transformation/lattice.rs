@@ -133,8 +133,9 @@ mod tests {
         }
     }
 
-    /// Tests that volumes, area vectors and the signs of 2D areas agree with those of [`exact`],
-    /// for random points and for points that are, up to rounding, in the plane of the triangle.
+    /// Tests that volumes, area vectors and the signs of 2D areas agree with the results of
+    /// [`exact`], for random points and for points that are, up to rounding, in the plane of the
+    /// triangle.
     #[test]
     fn volumes_are_those_of_expansions() {
         let mut next = numbers();

@@ -1,7 +1,7 @@
 //! Convex hulls and convex outlines of points.
 //!
-//! Every visibility decision is exact, so that no input, however degenerate, breaks the algorithms.
-//! The tolerance is a few epsilon of the largest coordinate. It only removes points whose effect is
+//! Every visibility decision is exact, so no input, however degenerate, breaks the algorithms. The
+//! tolerance is a few epsilon of the largest coordinate. It only removes points whose effect is
 //! about as small as the rounding error of the coordinates.
 
 mod given;

@@ -27,10 +27,10 @@ pub(super) struct BodyChanges {
     /// Whether the whole row of the object table must be written: the object is new, or its shape,
     /// query type or skin changed.
     row: bool,
-    /// Whether the shape, query type or skin changed, so that the algorithms of the object's pairs
-    /// must be chosen again.
+    /// Whether the shape, query type or skin changed. The algorithms of the object's pairs must
+    /// then be chosen again.
     algorithm: bool,
-    /// Whether the volume in the broad phase is out of date, so that the object is dirty.
+    /// Whether the volume in the broad phase is out of date. The object is then dirty.
     volume: bool,
     /// Whether the pairs of the object must be filtered again.
     filter: bool,

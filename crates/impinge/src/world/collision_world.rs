@@ -25,8 +25,8 @@ use crate::shape::ShapeHandle;
 ///
 /// Objects are added, moved, changed and removed by handle. [`Self::update`] then finds the pairs
 /// (broad phase), computes their contacts and proximities (narrow phase), and collects the events
-/// since the previous update. Queries of the world reflect every change at once; pairs, contacts
-/// and events are those of the last update.
+/// since the previous update. Queries reflect every change at once; pairs, contacts and events are
+/// those of the last update.
 ///
 /// `T` is the user's data, which the world stores and never accesses. It need not be `Send` or
 /// `Sync`; the world is `Send` or `Sync` if `T` is. Results come in canonical order, which is the
@@ -72,12 +72,13 @@ pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
     pub(super) keeps_events: bool,
     /// Removed objects whose handles are in events.
     pub(super) removed: RemovedObjects<N, D, T>,
-    /// Scratch: handle indices of objects whose shape, query type or skin changed, so that the
-    /// algorithms of their pairs must be chosen again.
+    /// Scratch: handle indices of objects whose shape, query type or skin changed. The algorithms
+    /// of their pairs must be chosen again.
     pub(super) algorithms: Vec<u32>,
     /// Scratch: pairs that started or stopped in an update.
     pub(super) interactions: Vec<Interaction>,
-    /// Recent lengths of the scratch lists and of the events, which decide when memory is released.
+    /// Recent lengths of the change list, the scratch lists and the event list, which decide when
+    /// memory is released.
     pub(super) recent: Recent,
     pub(super) history: History<N, D, T>,
 }
@@ -382,8 +383,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns the handle in this world with the index and generation of `handle`, which may come
     /// from another world or from a file. `None` if there is no such object.
     ///
-    /// For worlds that are filled in the same way: a server and its clients, a prediction, a
-    /// replay. The caller must know that both objects correspond.
+    /// Use it for worlds that are filled in the same way, such as a server and its clients. The
+    /// caller must ensure that the two objects correspond.
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;
@@ -408,7 +409,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Iterates over the free indices ([`CollisionObjectHandle::uid`]) of removed objects. New
     /// objects take the last free index first. When no free index is left, they take new indices.
     ///
-    /// Together with the objects, these indices determine the handles of all later objects.
+    /// Together with the objects, these indices determine the indices of all later objects.
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;

@@ -29,8 +29,8 @@ use crate::narrow_phase::CollisionObjectHandle;
 /// world.unregister_broad_phase_pair_filter("teams");
 /// ```
 pub trait BroadPhasePairFilter<N: Space<D>, const D: usize, T>: Send + Sync {
-    /// Returns `true` if the two objects may interact. The handle of `co1` is smaller than that of
-    /// `co2`.
+    /// Returns `true` if the two objects may interact. The handle of `co1` is smaller than the
+    /// handle of `co2`.
     fn is_pair_valid(&self, co1: &CollisionObject<N, D, T>, co2: &CollisionObject<N, D, T>)
     -> bool;
 }

@@ -9,9 +9,9 @@ use crate::narrow_phase::CollisionObjectHandle;
 
 /// Fixed objects and predicted positions.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Marks an object as fixed, or clears the mark. Two fixed objects have no pair: the walls and
-    /// floors of a level, which overlap each other, cost nothing in the narrow phase and have no
-    /// events.
+    /// Marks an object as fixed, or clears the mark. Two fixed objects have no pair. So the walls
+    /// and floors of a level, which overlap each other, cost nothing in the narrow phase and cause
+    /// no events.
     ///
     /// A new object is not fixed. Takes effect at the next update: pairs of two objects that are
     /// both fixed by then stop, with their events, and pairs of two objects that are no longer both

@@ -66,7 +66,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObject<N, D, T> {
         &self.body.groups
     }
 
-    /// Returns `true` if the object is fixed, so that it has no pairs with other fixed objects; see
+    /// Returns `true` if the object is fixed. It then has no pairs with other fixed objects; see
     /// [`CollisionWorld::set_fixed`](super::CollisionWorld::set_fixed).
     #[must_use]
     pub const fn is_fixed(&self) -> bool {

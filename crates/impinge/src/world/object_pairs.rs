@@ -14,10 +14,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// their handles. Includes the object itself if it is tested against itself. Empty for a stale
     /// handle.
     ///
-    /// These are the objects whose loosened boxes overlap that of this object, and that groups and
-    /// filters allow. So the margin of the world decides which pairs without contact are among
-    /// them. [`Self::contact_pair`] and [`Self::proximity_pair`] return the contacts or the
-    /// proximity of such a pair.
+    /// These are the objects that groups and filters allow and whose loosened boxes overlap the
+    /// loosened box of this object. So the margin of the world decides which pairs without contact
+    /// are among them. [`Self::contact_pair`] and [`Self::proximity_pair`] return the contacts or
+    /// the proximity of such a pair.
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;

@@ -201,7 +201,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Replaces the contents of `stream` by all contacts of the last update, in dense lists. Each
-    /// contact also has the index at which `stream` had it before the call, if it had it. The
+    /// contact also has its index in the previous contents of `stream`, if it was there. The
     /// contacts and their order are those of [`Self::contact_views`]; see [`ContactStream`] for an
     /// example.
     pub fn read_contacts(&self, stream: &mut ContactStream<N, D>) {

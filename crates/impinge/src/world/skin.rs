@@ -16,10 +16,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// `depth` exceeds the depth of the shapes by the sum of both skins. Normals and features are
     /// those of the shapes; kinematics include the skins. There are contact points, and the pair is
     /// in contact, while the grown solids overlap or are no farther apart than the sum of the
-    /// predictions. So a solver that brings depths to zero keeps the shapes apart by both skins,
-    /// where normals are exact and cheap. This corresponds to the `contact_skin` of rapier, the
-    /// radius of a polygon in Box2D, and the dilation of ncollide. It works for any shape: each
-    /// part of a composite is grown.
+    /// predictions. So a solver that brings depths to zero keeps the shapes apart by the sum of
+    /// both skins. At that distance normals are exact and cheap. This corresponds to the
+    /// `contact_skin` of rapier, the radius of a polygon in Box2D, and the dilation of ncollide. It
+    /// works for any shape: each part of a composite is grown.
     ///
     /// Proximities, queries and the algorithms of a custom dispatcher ignore the skin. Takes effect
     /// at the next update; contacts keep their ids. Costs nothing in a world without skins. The box

@@ -94,9 +94,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
     }
 
-    /// Begins the batch of events of an update with the queued events. The batch follows the last
-    /// one if that is kept, else replaces it. Drops the removed objects whose handles are in no
-    /// event any more.
+    /// Starts the batch of events of an update with the queued events. If the events of the last
+    /// update are kept, the batch is appended to them; otherwise it replaces them. Drops the
+    /// removed objects whose handles are in no event any more.
     fn begin_events(&mut self) {
         if !core::mem::take(&mut self.keeps_events) {
             self.events.clear();
@@ -136,7 +136,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Writes the changes since the last update to the object table and the broad phase. Starts or
-    /// stops pairs of objects with themselves, and passes changed objects to the narrow phase.
+    /// stops pairs of objects with themselves. The narrow phase then chooses the algorithms again
+    /// for the pairs of objects whose shape, query type or skin changed.
     fn write_changes(&mut self) {
         self.objects.flush(&mut *self.broad_phase, &mut self.algorithms);
         for index in self.objects.changes.take_self_changed() {
@@ -221,7 +222,8 @@ pub(super) fn in_order(
     if handle2 < handle1 { (handle2, handle1) } else { (handle1, handle2) }
 }
 
-/// The status of a pair with contacts, or the proximity of a pair that is not disjoint.
+/// The status of a pair: `Touching` if it has contact points, `Near` with its proximity if that is
+/// not `Disjoint`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum StepStatus {
     Touching,
@@ -231,8 +233,8 @@ enum StepStatus {
 /// Replacing the phases. The present phases are used until the next update, which creates all
 /// proxies anew.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Replaces the broad phase by an empty broad phase of any type that is `Clone`, `Send` and
-    /// `Sync`.
+    /// Replaces the broad phase. The new broad phase must be empty; it can have any type that is
+    /// `Clone`, `Send` and `Sync`.
     ///
     /// The new broad phase takes over at the next update, which reports changes as any other update
     /// does, and ends all marks.
@@ -246,7 +248,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         &*self.broad_phase
     }
 
-    /// Replaces the narrow phase by a narrow phase without pairs, of any type that is `Clone`.
+    /// Replaces the narrow phase. The new narrow phase must have no pairs; it can have any type
+    /// that is `Clone`.
     ///
     /// The new narrow phase takes over at the next update, which reports changes as any other
     /// update does, and ends all marks. Contacts get new ids.
@@ -255,9 +258,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Updates with a new broad phase or a new narrow phase. All proxies are new, so the broad
-    /// phase reports every pair as started. If the narrow phase stays, it already has most of these
-    /// pairs; those that the broad phase does not report again are stopped. A new narrow phase
-    /// starts without pairs; its events are the differences between the old and the new statuses.
+    /// phase reports every pair as started. If the narrow phase stays, it keeps its pairs: most
+    /// started pairs are already there, and old pairs that the broad phase no longer reports are
+    /// stopped. A new narrow phase starts without pairs; its events are the differences between the
+    /// old and the new statuses.
     fn update_with_other_phases(&mut self, filter: Option<UpdateFilter<'_, N, D, T>>) {
         self.end_marks();
         let Some(mut narrow_phase) = self.next_narrow_phase.take() else {
@@ -285,8 +289,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         push_differences(&before, &self.statuses(), &mut self.events);
     }
 
-    /// Creates a proxy for every object, in the next broad phase if there is one. Returns the pairs
-    /// of the old proxies.
+    /// Removes all proxies and creates new ones, in the next broad phase if there is one. Returns
+    /// the pairs of the removed proxies.
     fn renew_proxies(&mut self) -> Vec<HandlePair> {
         let known = self.objects.bodies().map(|body| (body.handle, body.proxy));
         let (handles, proxies): (Vec<_>, Vec<_>) = known.unzip();
@@ -324,7 +328,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
     }
 
-    /// Returns the pairs that are touching or near, sorted, with their statuses.
+    /// Returns the pairs that have contacts or are not disjoint, with their statuses, in ascending
+    /// order.
     fn statuses(&self) -> Vec<(HandlePair, StepStatus)> {
         let contacts = self.narrow_phase.contact_pairs(&self.objects);
         let touching = contacts.filter(|(_, _, pair)| pair.num_contacts() > 0);

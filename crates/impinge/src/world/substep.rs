@@ -9,7 +9,7 @@ use crate::narrow_phase::CollisionObjectHandle;
 /// Continuous collision: single pairs at new positions.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Computes the contacts or the proximity of two objects at their present positions, without an
-    /// update. The handles may be in either order. For the substeps of a solver that moves a fast
+    /// update. The handles may be in either order. A solver can use it in substeps that move a fast
     /// body to the position of its impact.
     ///
     /// Returns `false`, without a change, if the two objects had no pair at the last update. The

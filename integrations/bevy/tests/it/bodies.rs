@@ -103,7 +103,8 @@ fn layers_change_at_run_time() {
     app.world_mut().entity_mut(b).insert(CollisionLayers::NONE);
     app.update();
     assert_eq!(told::<3>(&mut app), [(false, a, b)]);
-    // Four frames without a step, after which messages of removal are dropped.
+    // Four frames without a step. Bevy drops its record of the removed component before the next
+    // step.
     app.world_mut().entity_mut(b).remove::<CollisionLayers>();
     for _ in 0..4 {
         app.world_mut().clear_trackers();

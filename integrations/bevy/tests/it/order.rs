@@ -68,7 +68,7 @@ fn the_fixed_schedule_is_the_default() {
         positions.0.push(pose.translation.x);
     };
     app.add_systems(FixedPostUpdate, note.after(ImpingeSystems::Step));
-    // The first frame has no elapsed time.
+    // The first frame has no elapsed time, so the world does not step.
     for _ in 0..3 {
         app.update();
     }

@@ -7,7 +7,7 @@ use impinge_record::Registry;
 use crate::prelude::*;
 
 /// The number of links. Each link is a capsule whose axis has length 1. The axis begins at a joint
-/// and ends at the next joint; that of the last link has a free end.
+/// and ends at the next joint; the axis of the last link ends freely.
 const LINKS: usize = 5;
 const RADIUS: f32 = 0.15;
 
@@ -99,7 +99,7 @@ where
 
     fn build(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         *self = Self::default();
-        // The registry contains the filter under this name, so that the recording can be replayed.
+        // The registry contains the filter under this name, so the recording can be replayed.
         world.register_broad_phase_pair_filter("joints")?;
         let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
         for (n, place) in

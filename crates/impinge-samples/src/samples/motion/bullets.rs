@@ -45,7 +45,7 @@ where
         for bounces in 0..MAX_BOUNCES {
             let options = ImpactOptions::new().with_max_time(length);
             let from = f32::isometry(&pose);
-            // The direction is a unit vector, so that the time of impact is a length.
+            // The direction is a unit vector, so the time of impact is a length.
             let hit = world.cast_shape(&from, &self.direction, &ball, &options, &filter);
             let way = hit.as_ref().map_or(length, |(_, hit)| hit.toi);
             pose.translation += self.direction * way;

@@ -34,12 +34,12 @@ where
     /// penetrate the object.
     fn close(&mut self, world: &World<D>, mut pose: Pose<f32, D>) -> Pose<f32, D> {
         let inward = vector([-SPEED.copysign(pose.translation[0]), 0.0, 0.0]);
-        // The casts ignore both fingers, so that only the object can stop a finger.
+        // The casts ignore both fingers, so only the object can stop a finger.
         let mut others = QueryFilter::new();
         for finger in &self.fingers {
             others = others.exclude(*finger);
         }
-        // The velocity is the motion of a step, so that time 1 is the end of the step.
+        // The velocity is the motion of a step, so time 1 is the end of the step.
         let options = ImpactOptions::new().with_max_time(1.0);
         let hit = world.cast_shape(&f32::isometry(&pose), &inward, &finger(), &options, &others);
         let hit = hit.map(|(_, hit)| hit);

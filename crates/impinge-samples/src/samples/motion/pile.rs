@@ -29,8 +29,8 @@ where
         let spread = |stream| (WALL - 1.0) * (2.0 * scattered(n, stream) - 1.0);
         let position = turned([spread(0), height, spread(1)], TAU * scattered(n, 2));
         let (kind, size) = (KINDS[n % KINDS.len()], 0.4 + 0.2 * scattered(n, 3));
-        // Contacts begin at a gap of 0.02, which is the sum of both predictions, so that the solver
-        // gets them before objects touch.
+        // Contacts begin at a gap of 0.02, the sum of both predictions: the solver gets them before
+        // objects touch.
         let (groups, query) = (CollisionGroups::new(), ContactQuery::new(0.01));
         let body = world.add(position, solid(kind, size), groups, query, format!("{kind} {n}"))?;
         self.bodies.add(body, size);

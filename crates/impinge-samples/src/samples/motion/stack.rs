@@ -26,7 +26,7 @@ where
     fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         *self = Self::default();
         let (groups, query) = (CollisionGroups::new(), ContactQuery::new(0.01));
-        // The floor is a half-space, so that nothing falls off its edge.
+        // The floor is a half-space, so it has no edge from which boxes could fall.
         let floor = ShapeHandle::new(Plane::new(up()));
         world.add(at([0.0; 3]), floor, groups, query, "floor".to_owned())?;
         // All boxes share one shape: clones of a handle are reference-counted.

@@ -71,8 +71,8 @@ where
         self.changed(world, panel)
     }
 
-    /// Computes the impact without stepping, so that no contact is missed, however thin or fast the
-    /// bars are.
+    /// Computes the impact without stepping, so no contact is missed, however thin or fast the bars
+    /// are.
     fn changed(&mut self, _: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let (bar, [left, right]) = (bar(), Self::motions(panel));
         let options = ImpactOptions::new().with_max_time(SECONDS);

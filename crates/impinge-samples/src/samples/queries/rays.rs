@@ -40,7 +40,7 @@ where
     f32: Dimension<D>,
 {
     /// Casts a ray of length `reach` at the angle `direction`, in radians from x to y. The recorder
-    /// runs the query, so that the recording contains the query and its result.
+    /// runs the query, so the recording contains the query and the hash of its result.
     fn shoot(
         &self,
         world: &mut World<D>,
@@ -49,8 +49,8 @@ where
     ) -> Result<Shot<D>, SampleError> {
         let direction = turn::<D>([0, 1], direction) * vector::<D>([1.0, 0.0, 0.0]);
         let ray = Ray::new(self.eye, direction);
-        // The direction has length 1, so that times are lengths. A ray that starts inside a solid
-        // hits it at time zero.
+        // The direction has length 1, so times are lengths. A ray that starts inside a solid hits
+        // it at time zero.
         let asked = RayQuestion { ray, max_time: reach, solid: true };
         let answer = world.ask(&Query::new(Question::FirstRayHit(asked)))?;
         let hit = answer.first().and_then(|found| match found.detail {

@@ -5,8 +5,8 @@ use crate::prelude::*;
 /// The number of solids, which are in a row.
 const COUNT: usize = 6;
 
-/// Solids that move up and down on a slab. All lengths are multiplied by a power of two, so that
-/// the results scale exactly.
+/// Solids that move up and down on a slab. All lengths are multiplied by a power of two, so the
+/// results scale exactly.
 #[derive(Debug, Default)]
 pub(crate) struct Scaling {
     /// The objects of the solids on the slab.
@@ -18,8 +18,7 @@ pub(crate) struct Scaling {
 /// Returns the factor of all lengths, a power of two.
 fn scale(panel: &Panel) -> f32 {
     let exponent = panel.value("exponent").floor();
-    // Products with a power of two are exact, so that each length has the same mantissa at every
-    // size.
+    // Products with a power of two are exact, so each length has the same mantissa at every size.
     let factor = if exponent < 0.0 { 0.5 } else { 2.0 };
     (0..).take_while(|n| number(*n) < exponent.abs()).fold(1.0, |scale, _| scale * factor)
 }

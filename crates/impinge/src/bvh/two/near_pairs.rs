@@ -2,11 +2,11 @@
 //!
 //! The search is best first over pairs of blocks, one of each tree (Hjaltason and Samet,
 //! "Incremental distance join algorithms for spatial databases", 1998). It begins with a descent
-//! straight to one object of each tree; the distance of these two rejects other pairs. The lanes of
-//! both blocks are compared with each other, or only the lanes of the wider block if it is much
-//! wider. A box of one tree is transformed into the frame of the other, so that the axes of both
-//! frames separate blocks. Other directions separate further blocks: along these, the extent of a
-//! block is bounded by its box and its slab.
+//! straight to one object of each tree; their distance is a first limit, which rejects other pairs.
+//! The lanes of both blocks are compared with each other, or only the lanes of the wider block if
+//! it is much wider. A box of one tree is transformed into the frame of the other, so that the axes
+//! of both frames separate blocks. Other directions separate further blocks: along these, the
+//! extent of a block is bounded by its box and its slab.
 //!
 //! ```text
 //!  queue: pairs (block1, block2) by distance
@@ -32,8 +32,9 @@ use crate::math::{Mapped, Point, Real, Vector, filled, max, unit};
 
 /// Initial capacity of the queue: enough for most searches.
 const EXPECTED: usize = 64;
-/// If the surface of one block is larger by this factor, about the ratio between two layers, only
-/// that block is opened.
+/// If the surface of one block is more than this many times the surface of the other block, only
+/// the larger block is opened. The factor is about the ratio of the surfaces of blocks in
+/// successive layers.
 const MUCH_WIDER: f64 = 8.0;
 
 /// The direction from each tree toward the other tree: a unit vector in the frame of the first
@@ -104,8 +105,8 @@ struct BlockPair {
     blocks: [u32; 2],
     /// Whether the boxes of the two blocks are disjoint.
     are_apart: bool,
-    /// Whether `distance` is only the distance of the boxes or of the parent pair, so that
-    /// [`PairSearch::gap`] may raise it.
+    /// Whether `distance` is only the distance of the boxes or of the parent pair.
+    /// [`PairSearch::gap`] may then raise it.
     is_rough: bool,
 }
 
@@ -140,8 +141,8 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
     /// Searches all pairs of objects, beginning with `whole`, the pair of the top blocks. If
     /// [`TreePair::limit`] is positive and [`Self::near`] finds children of the first top block,
     /// first passes two objects that are probably near each other to [`TreePair::guess`], one of
-    /// each tree. Then opens pairs of blocks in the order of their lower bounds, until the lowest
-    /// exceeds [`TreePair::bound`] or this bound is negative.
+    /// each tree. Then opens pairs of blocks in the order of their lower bounds. The search ends
+    /// when the least lower bound exceeds [`TreePair::bound`], or this bound is negative.
     fn run(&mut self, whole: BlockPair) {
         self.queue.push(Reverse(whole));
         let near = || self.near(0, whole.layers[0], 0, &self.other_box(0, &whole));
@@ -307,9 +308,9 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
     }
 
     /// Returns directions that may separate single objects from all of leaf block `which`, each
-    /// with the extent of the block along it. The directions are the two normals of the block's
-    /// slab and, if the limit is positive, the direction of [`TreePair::best`], with the extent of
-    /// the block's objects.
+    /// with an upper bound of the extent of the block's objects along it. If the limit is positive,
+    /// the direction of [`TreePair::best`] comes first, with the largest extent of an object. The
+    /// two normals of the block's slab follow, with the extent of the block.
     fn sides(&self, which: usize, pair: &BlockPair) -> SmallVec<[(Toward<N, D>, N); 3]> {
         let block = self.slab_box(which, pair);
         let across = block.slab.and_then(|slab| Some(unit(&slab.across::<N>())?.0));

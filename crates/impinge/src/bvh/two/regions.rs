@@ -40,9 +40,9 @@ pub(super) struct RotatedBox<const D: usize> {
     extent: Option<Extent<D>>,
 }
 
-/// A set that contains a region; the extent of the set along any direction bounds the extent of the
-/// region. It is the convex hull of `points`, plus the segments from `-w` to `w` for each `w` of
-/// `wider` (a Minkowski sum), widened by `margin`.
+/// A set that contains a region, so its extent along any direction bounds the extent of the region.
+/// The set is the convex hull of `points`, plus (Minkowski sum) a segment from `-w` to `w` for each
+/// `w` of `wider`, widened by `margin`.
 struct Extent<const D: usize> {
     middle: [f32; D],
     points: SmallVec<[[f32; D]; 3]>,

@@ -2,10 +2,10 @@
 //!
 //! The search is depth first over pairs of blocks. The box of one block is transformed once into
 //! the frame of the other tree, and compared with all boxes in the other block. The boxes are
-//! compared along the axes of both frames and along the normal of the first block's slab. The axes
-//! of both frames separate most disjoint boxes (Gottschalk, Lin and Manocha, "`OBBTree`", 1996,
-//! also test the cross products of edges). The larger of two blocks is opened; its children go on a
-//! stack, and the child with the deepest overlap comes next.
+//! compared along the axes of both frames and along the normal of the transformed block's slab. The
+//! axes of both frames separate most disjoint boxes (Gottschalk, Lin and Manocha, "`OBBTree`",
+//! 1996, also test the cross products of edges). The larger of two blocks is opened; its children
+//! go on a stack, and the child with the deepest overlap comes next.
 //!
 //! A search for the nearest pair is best first (Hjaltason and Samet, "Incremental distance join
 //! algorithms for spatial databases", 1998). Before it begins, a descent straight to one object of
@@ -236,8 +236,9 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
         }
     }
 
-    /// Visits near objects of two leaf blocks: each near object of the block with fewer near
-    /// objects, paired with the near objects of the other block.
+    /// Visits the near objects of two leaf blocks. For each near object of the block with fewer
+    /// near objects, finds the near objects of the other block that may be within the maximum
+    /// distance of it.
     fn meet(&mut self, pair: &OpenPair, mut margin: f32) {
         let mut masks = [0; 2];
         for which in [0, 1] {

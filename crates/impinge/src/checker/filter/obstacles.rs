@@ -84,8 +84,8 @@ impl<const D: usize> Surroundings<D> {
             let gap =
                 distance_from(&path.anchor, obstacle).as_f64() - path.length - f64::from(margin);
             let gap = N::lit(gap).as_f32_below();
-            // The gap of an unbounded obstacle is NaN. It becomes minus infinity, so that the
-            // obstacle is always tested.
+            // A NaN gap (infinity minus infinity) becomes minus infinity, so that the obstacle is
+            // always tested.
             let gap = if gap.is_nan() { -f32::INFINITY } else { gap };
             all.push(CloseObstacle { gap, obstacle: index, number, wanted, radius });
         }

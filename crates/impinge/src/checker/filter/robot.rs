@@ -132,7 +132,7 @@ pub(super) fn shift_of<N: Real, const D: usize>(tree: &FrameTree<N, D>) -> Vecto
 }
 
 /// Returns a bound of the region that a ball on a node can occupy. `center` is in the frame of the
-/// node; on the world it is relative to [`shift_of`].
+/// node; if `node` is 0, the world, it is relative to [`shift_of`].
 pub(super) fn path_to<N: Real, const D: usize>(
     tree: &FrameTree<N, D>,
     node: usize,

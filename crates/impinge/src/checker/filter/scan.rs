@@ -119,7 +119,7 @@ impl<const D: usize> Scan<'_, D> {
     }
 
     /// Tests each group against its obstacles in ascending order of `gap`, until the gap exceeds
-    /// the limits of all lanes.
+    /// the greatest limit of a lane plus the greatest slide.
     #[inline(always)]
     fn meet_obstacles<S: Simd, V: Wide<S, Scalar = f32>>(
         self,

@@ -64,8 +64,8 @@ pub(in crate::checker) struct CollisionSearch {
     mode: SearchMode,
     /// A bit mask of the lanes that are not decided yet.
     live: u8,
-    /// A bit mask of the lanes that the scan cannot evaluate, since numbers are too large for `f32`
-    /// or not finite.
+    /// A bit mask of the lanes that the scan cannot evaluate because numbers are too large for
+    /// `f32` or not finite.
     pub(in crate::checker) blind: u8,
     /// A bit mask of the lanes in which a pair is certainly within the limit, in the mode
     /// [`SearchMode::Any`].
@@ -163,8 +163,9 @@ impl CollisionSearch {
     }
 
     /// Returns a bit mask of the live lanes in which a bounding ball is not certainly beyond the
-    /// limit. `squared` has the squared distances of its centre from a centre or core; `radius`
-    /// includes the margins. NaN counts as near.
+    /// limit. `squared` has the squared distances of its centre from the centre of another ball or
+    /// from the core of an obstacle. `radius` is the sum of both radii and the margins. NaN counts
+    /// as near.
     #[inline(always)]
     pub(super) fn candidate_lanes<S: Simd, V: Wide<S, Scalar = f32>>(
         &self,
@@ -177,8 +178,8 @@ impl CollisionSearch {
     }
 
     /// Returns a bit mask of the balls that are not certainly beyond the limit of lane `lane`. The
-    /// radius of each pair is `radii` plus `radius`, which includes the margins. NaN counts as
-    /// near.
+    /// sum of the two radii of each pair is `radii` plus `radius`, which includes the margins. NaN
+    /// counts as near.
     #[inline(always)]
     pub(super) fn candidate_balls<S: Simd, V: Wide<S, Scalar = f32>>(
         &self,

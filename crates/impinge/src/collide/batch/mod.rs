@@ -97,12 +97,11 @@ pub(crate) trait KeptPairs<N: Real, const D: usize> {
     /// Begins the update of the pair at `index` and returns its inputs. Called once for each pair.
     fn begin(&mut self, index: usize) -> PairQuestion<'_, N, D>;
 
-    /// Returns the inputs of the pair at `index`, whose update has begun, and the manifold that its
-    /// last update wrote, which the caller replaces.
+    /// Returns the inputs of the pair at `index`, whose update has begun, and the manifold of its
+    /// last update, which [`update`] overwrites.
     fn parts(&mut self, index: usize) -> (PairQuestion<'_, N, D>, &mut RawManifold<N, D>);
 
-    /// Returns the manifold that the last update of the pair at `index` wrote, which the caller
-    /// replaces.
+    /// Returns the manifold of the last update of the pair at `index`, which [`update`] overwrites.
     fn raw(&mut self, index: usize) -> &mut RawManifold<N, D>;
 
     /// Ends the update of the pair at `index`: its manifold is complete.

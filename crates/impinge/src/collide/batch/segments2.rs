@@ -156,7 +156,7 @@ struct LaneSide<V, M> {
     /// For the core's end nearest to the other solid: its depth below the solid's nearest point,
     /// along the normal, then its coordinate along the tangent.
     top: (V, V),
-    /// Lanes where the segment is tilted against the tangent by more than 60°, so that only its end
+    /// Lanes where the segment is tilted against the tangent by more than 60°. There only its end
     /// nearest to the other solid is used.
     is_point: M,
     /// Lanes where the coordinates of both ends differ by more than rounding.

@@ -115,7 +115,8 @@ impl<V> SegmentPoints<V> {
 }
 
 /// Computes the nearest points of two segments, as the scalar `nearest_of_segments` does. The mask
-/// has the lanes whose lengths are in the range of [`scaled`].
+/// has the lanes where both segments can be scaled: the largest component of each direction vector,
+/// by magnitude, is at least 2⁻¹⁶ and less than 2¹⁶ (see [`scaled`]).
 #[inline(always)]
 pub(super) fn nearest_of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -155,8 +156,8 @@ fn power_of_two_below<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 }
 
 /// Divides a vector by the largest power of two that does not exceed its largest component by
-/// magnitude. Also returns the reciprocal of that power, which is exact, and the lanes where the
-/// component is in the range of [`power_of_two_below`].
+/// magnitude. Also returns the reciprocal of that power, which is exact. The mask has the lanes
+/// where the component is at least 2⁻¹⁶ and less than 2¹⁶, as [`power_of_two_below`] requires.
 #[inline(always)]
 fn scaled<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, v: &[V; 3]) -> ([V; 3], V, V::Mask) {
     let largest = v[2].abs().larger(v[1].abs().larger(v[0].abs()));
@@ -167,7 +168,8 @@ fn scaled<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, v: &[V; 3]) -> ([V;
 
 /// Computes the ends of the common perpendicular of two lines, as the scalar `common_perpendicular`
 /// does. The first mask has the lanes where the lines are not parallel and both ends lie on the
-/// segments, the second the lanes whose lengths are in the range of [`scaled`].
+/// segments. The second has the lanes where both segments can be scaled: the largest component of
+/// each direction vector, by magnitude, is at least 2⁻¹⁶ and less than 2¹⁶ (see [`scaled`]).
 #[inline(always)]
 fn common_perpendicular<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

@@ -63,8 +63,8 @@ pub(crate) fn build_along<N: Space<D>, const D: usize>(
 
 /// Builds the manifold of a pair whose separation has the normal of a face of a surface, up to
 /// rounding, and the signed distance `distance`. Returns `false` if the caller has to use
-/// [`build_between`] instead: always in 2D and if `distance` is beyond the prediction, and in the
-/// cases that [`on_face3`] lists.
+/// [`build_between`] instead: in 2D, for a `distance` that is NaN or beyond the prediction, and in
+/// the cases that [`on_face3`] lists.
 pub(crate) fn build_on_face<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     normal: &Vector<N, D>,

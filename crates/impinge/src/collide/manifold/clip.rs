@@ -12,14 +12,14 @@
 //! ```
 //!
 //! Both features are [rings](super::ring) projected along the normal. Both solids are treated
-//! alike: there is no reference face that could flip, and the ids of a point do not depend on which
-//! solid is first. A point within the tolerance of a side lies on the side, which keeps ids stable
-//! where sides or corners coincide. A segment has one side; a corner counts as inside it only on
-//! its line. A point, and two segments that are not parallel, have a contact at the nearest points
-//! only.
+//! alike: there is no reference face that could flip, and the features of a point do not depend on
+//! which solid is first. A point within the tolerance of a side lies on the side. So features are
+//! stable where sides or corners coincide. A segment has one side; a corner counts as inside it
+//! only on its line. If a feature is a point, or both are segments that are not parallel, [`build`]
+//! keeps only the contact at the nearest points.
 //!
-//! The clip of Sutherland and Hodgman ("Reentrant polygon clipping", 1974) clips one polygon
-//! against the sides of the other, which makes one solid the reference; it is not used here.
+//! The algorithm of Sutherland and Hodgman ("Reentrant polygon clipping", 1974) is not used: it
+//! clips one polygon against the sides of the other, so one solid would be the reference.
 //!
 //! This module clips all pairs in 3D with flat features, alone or as parts of a composite, along
 //! the pair's own normal or the normal of a face. Boxes, segments and capsules also have SIMD
@@ -37,7 +37,8 @@ use crate::math::simd::{Level, Simd};
 use crate::math::{Mapped, Point, Pose, Real, Vector, Wide, cross2, max};
 use crate::shape::{FeatureId, Kind};
 
-/// Builds the manifold of two solids within the prediction whose nearest points are known.
+/// Builds the manifold of two solids within the prediction; the witness of `frame` is their nearest
+/// points.
 pub(super) fn build<N: Real>(
     pair: &Pair<'_, N, 3>,
     frame: &ContactFrame<N, 3>,
@@ -73,8 +74,9 @@ pub(super) fn part_at_witness<N: Real>(
     ring_part(ring, insides.row(0), &Vector::<N, 2>::zeros(), frame.tolerance).unwrap_or(ring.id)
 }
 
-/// Adds the corners of the overlap area, projected along the normal of `frame`, whose witness need
-/// not be the nearest points. Adds none if the supporting features do not overlap in projection.
+/// Adds the corners of the overlap area, projected along the normal of `frame`, that the request
+/// admits. The witness of `frame` need not be the nearest points. Adds none if the supporting
+/// features do not overlap in projection.
 pub(super) fn candidates<N: Real>(
     pair: &Pair<'_, N, 3>,
     frame: &ContactFrame<N, 3>,
@@ -312,8 +314,8 @@ impl<'a, N: Real> RingClip<'a, N> {
         }
     }
 
-    /// Adds a contact of a corner of ring `which` (0 or 1) and the point `under` of the other ring,
-    /// which is opposite along the normal and lies on the part `on`.
+    /// Adds a contact of a corner of ring `which` (0 or 1). `under` is the point of the other ring
+    /// opposite to it along the normal; `on` is the part of that ring that contains `under`.
     fn push_corner(
         &self,
         which: usize,
@@ -329,9 +331,10 @@ impl<'a, N: Real> RingClip<'a, N> {
         }
     }
 
-    /// Adds the crossings of sides whose ends are farther than the tolerance from each other's
-    /// lines. If a side ends on the line of another, this end is a corner on the other ring or
-    /// outside it, so there is no crossing.
+    /// Adds each crossing of a side of the first ring with a side of the second. The line of each
+    /// side must separate the ends of the other side, both farther from the line than the
+    /// tolerance. A side that ends on the other's line has no crossing: [`Self::corners`] tests
+    /// that end.
     fn crossings(&self, out: &mut Candidates<N, 3>) {
         let (one, in_other) = (&self.rings[0], &self.insides[1]);
         for side1 in 0..one.side_count() {
@@ -390,7 +393,7 @@ impl<'a, N: Real> RingClip<'a, N> {
     }
 
     /// Returns the part of a segment beside a point: an end, if it is within twice the tolerance
-    /// along the segment, else the segment; `None` beyond the ends.
+    /// along the segment, else the segment; `None` farther beyond the ends.
     fn beside(&self, flat: &Vector<N, 2>, segment: &SupportRing<'_, N>) -> Option<FeatureId> {
         let (side, tolerance) = (segment.side(0), N::TWO * self.frame.tolerance);
         let length = side.norm();
@@ -399,10 +402,10 @@ impl<'a, N: Real> RingClip<'a, N> {
         part_beside(along, length, tolerance, ends, segment.id)
     }
 
-    /// Adds the contact at the surface points over two points of the cores, if the request admits
-    /// it. Skips a duplicate of a contact in `out`, because corners that coincide are found from
-    /// both rings. Contacts count as duplicates only at one position: different points on round
-    /// rims may have the same ids.
+    /// Adds the contact whose points lie on the rounded surfaces, above two points of the cores, if
+    /// the request admits it. Skips a duplicate of a contact in `out`, because corners that
+    /// coincide are found from both rings. Contacts count as duplicates only at one position:
+    /// different points on round rims may have the same features.
     fn push(
         &self,
         [core1, core2]: [Point<N, 3>; 2],

@@ -16,8 +16,9 @@
 //! `batch` keep no old pose, so they compare positions on the first solid only.
 //!
 //! If the normal turned by more than 45°, the distance is infinite, because a solid that fell on
-//! another side begins new contacts. It is zero nevertheless for the same pair of features with a
-//! vertex among them, because such a pair has only one point.
+//! another side begins new contacts. Then only points on the same pair of features still match,
+//! unless both features are edges. For such a pair with a vertex the distance is zero, because the
+//! pair has only one point.
 //!
 //! ```text
 //!           ┌─────────┐            ┌─────────┐
@@ -27,10 +28,9 @@
 //! ```
 //!
 //! Each id goes to one point. Ties go to the older id, then to the candidate that comes first. The
-//! result does not depend on the order of the two solids, and scaling by a power of two changes no
-//! choice. If each pair of features has at most one point, as for two boxes, points with the same
-//! features are the same point, and positions are compared only for crossings of two edges
-//! ([`is_same_point`]).
+//! distance treats both solids alike. Scaling by a power of two changes no choice. If each pair of
+//! features has at most one point, as for two boxes, points with the same features are the same
+//! point, and positions are compared only for crossings of two edges ([`is_same_point`]).
 
 use smallvec::SmallVec;
 
@@ -41,13 +41,13 @@ use crate::math::order::askew;
 use crate::math::{Point, Pose, Real, Vector, max_component};
 use crate::shape::FeatureId;
 
-/// Largest distance that a contact may move in one step and stay the same contact, as a fraction of
-/// the pair's size (`collide/size.rs`).
+/// Near length, as a fraction of the pair's size (`collide/size.rs`): an old and a new point at
+/// most this distance apart are near each other.
 pub(super) const SHARE: f64 = 1.0 / 16.0;
 
-/// Largest distance, along each axis and as a fraction of the pair's size, between crossings of the
-/// same two edges that are one point. The crossing of edges that nearly coincide may jump from one
-/// end to the other.
+/// Largest distance, as a fraction of the pair's size, that a crossing of two edges may move and
+/// stay the same contact; [`is_same_point`] compares it with each coordinate. A crossing of edges
+/// that nearly coincide may jump farther, from one end to the other.
 pub(super) const REACH: f64 = 1.0 / 2.0;
 
 /// Returns whether both features are edges.
@@ -67,14 +67,14 @@ pub(in crate::collide) fn is_same_point<N: Real, const D: usize>(
     !are_edges(features) || max_component(moved) <= N::lit(REACH) * size()
 }
 
-/// Returns the reciprocal of the largest distance that a contact may move in one step and keep its
-/// id; `size` is the size of the pair.
+/// Returns the reciprocal of the near length, [`SHARE`] of the pair's `size`.
 #[inline(always)]
 pub(in crate::collide) fn near_scale<N: Real>(size: N) -> N {
     N::ONE / (N::lit(SHARE) * size)
 }
 
-/// Data by which a contact point is matched: its features, and its position on either solid.
+/// Data by which a contact point is matched: its features, its position on either solid, and the
+/// normal.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::collide) struct Anchors<N: Real, const D: usize> {
     /// Indices of the parts of composites, zero for a convex solid, and the features of these
@@ -126,8 +126,8 @@ pub(in crate::collide) struct Inherited {
     pub(in crate::collide) is_old: bool,
 }
 
-/// Returns whether an old and a new point are close enough to be the same contact. `size` is the
-/// size of the pair.
+/// Returns whether an old and a new point are near each other: at most the near length apart.
+/// `size` is the size of the pair.
 pub(in crate::collide) fn are_near<N: Real, const D: usize>(
     old: &Anchors<N, D>,
     new: &Anchors<N, D>,
@@ -167,8 +167,8 @@ pub(super) fn moved<N: Real, const D: usize>(
 /// Cosine of the largest angle, 45°, between the old and new normal of one contact.
 const TURN: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
-/// Returns whether two contacts may be the same one by their normals, in the frame of the first
-/// solid: whether the angle between the normals is at most 45°. `false` for NaN.
+/// Returns whether the angle between an old and a new normal, both in the frame of the first solid,
+/// is at most 45°. `false` for NaN.
 #[inline(always)]
 pub(in crate::collide) fn normals_agree<N: Real, const D: usize>(
     old: &Vector<N, D>,
@@ -202,9 +202,9 @@ pub(in crate::collide) fn inherit_by_features<N: Real, const D: usize>(
     }
 }
 
-/// Passes ids on by position ([`each_match`]). Considers the candidates with the indices `some`:
-/// those without an id are matched to the old points whose ids none of these candidates has. `pose`
-/// is the new pose; `size` computes the size of the pair.
+/// Passes ids on by position ([`each_match`]). `some` holds the indices of the candidates that may
+/// get an id. Matches the candidates without an id to the old points whose ids no candidate in
+/// `some` has. `pose` is the new pose; `size` computes the size of the pair.
 pub(in crate::collide) fn inherit_by_position<N: Real, const D: usize>(
     old: &RawManifold<N, D>,
     pose: &PairPose<'_, N, D>,

@@ -190,7 +190,7 @@ impl<N: Real> FeatureInterval<N> {
     }
 
     /// Returns the part at a tangent coordinate: an end within twice the tolerance, measured along
-    /// the side, or the side; `None` beyond the ends.
+    /// the tangent, or the side; `None` farther beyond the ends.
     #[inline(always)]
     fn beside(&self, coordinate: N, tolerance: N) -> Option<FeatureId> {
         let along = (coordinate - self.corners[0].flat.x) * self.along / self.length;

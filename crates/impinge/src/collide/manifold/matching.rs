@@ -18,12 +18,12 @@ use crate::math::order::{order_of, sort_keyed};
 use crate::math::{Mapped, Real};
 use crate::shape::FeatureId;
 
-/// Class of a pair: the same features, and near: at most the near length (`SHARE` of the pair's
-/// size) apart.
+/// Class of two points with the same features that are near: at most the near length apart, which
+/// is `SHARE` of the pair's size.
 const SAME: u64 = 0;
-/// Class of a pair: other features, but near.
+/// Class of two points with different features that are near.
 const NEAR: u64 = 1;
-/// Class of a pair: same features, but far.
+/// Class of two points with the same features that are farther apart than the near length.
 const FAR: u64 = 2;
 /// Position of the class in a key.
 const CLASS_AT: u32 = 62;
@@ -90,9 +90,9 @@ fn least<K: PartialOrd>(among: u32, never: K, key: impl Fn(usize) -> K) -> (K, u
     least
 }
 
-/// Visits pairs of old and new points in the order of their keys, smallest first; each point occurs
-/// at most once. `old` and `new` are masks of points. Ties go to the old point with the lower
-/// index, then to the new point with the lower index. Pairs with a key not below `never` are
+/// Matches old and new points greedily, smallest key first, each point at most once. Visits the
+/// matches in any order. `old` and `new` are masks of points. Ties go to the old point with the
+/// lower index, then to the new point with the lower index. Pairs with a key not below `never` are
 /// skipped.
 ///
 /// `nearest` returns the [`least`] key of an old point among the new points in a mask.
@@ -155,9 +155,9 @@ fn match_many<N: Real, const D: usize>(
     }
 }
 
-/// Visits matches by position: features count only through `same_vertex`. Points do not match if
-/// their distance exceeds the near length (`SHARE` of the pair's size). `old` and `new` are masks
-/// of points.
+/// Matches points by position and visits the matches; features count only through `same_vertex`.
+/// Points do not match if their distance exceeds the near length (`SHARE` of the pair's size).
+/// `old` and `new` are masks of points.
 ///
 /// `moved` returns the squared distance of an old and a new point in units of the squared near
 /// length. `same_vertex` returns, for an old point and a mask of new points, the new points on the
@@ -249,7 +249,7 @@ fn between(keys: &[(u64, u32)], [low, high]: [u64; 2]) -> impl Iterator<Item = u
 
 impl<N: Real, const D: usize> Anchors<N, D> {
     /// Returns a hash of the parts and features of a point; points with equal parts and features
-    /// are adjacent if sorted by it.
+    /// have equal hashes.
     fn ids_key(&self) -> u64 {
         let ([part1, part2], features) = self.ids;
         let [feature1, feature2] = features.mapped(|id| match id {

@@ -161,7 +161,7 @@ fn build_witness_manifold<N: Space<D>, const D: usize>(
     out.pose12 = None;
 }
 
-/// Returns two directions that complete the normal to a right-handed basis.
+/// Returns two unit vectors that complete the normal to a right-handed basis.
 pub(crate) fn tangents3<N: Real>(normal: &Vector<N, 3>) -> [Vector<N, 3>; 2] {
     let (u, v) = orthonormal_basis(normal);
     [u, v]
@@ -199,11 +199,10 @@ pub(crate) fn contacts_of_separation2<N: Real>(
     }
 }
 
-/// An old point (a point of the previous manifold) may stand for the deepest point if its distance
-/// exceeds the smallest distance by at most this fraction of the pair's size (`collide/size.rs`).
-/// So a solid that vibrates at rest keeps its points although the deepest corner changes in each
-/// step. Such an old point gets the distance of the pair; it is off the surfaces by at most the
-/// difference.
+/// Slack of the deepest point, as a fraction of the pair's size (`collide/size.rs`). A candidate
+/// that continues a point of the previous manifold may stand for the deepest point if its distance
+/// exceeds the smallest one by at most the slack. It then gets the distance of the pair. So a solid
+/// that vibrates at rest keeps its points although its deepest corner changes in each step.
 const SLACK: f64 = 1.0 / 512.0;
 
 /// Up to this number of candidates, all are kept if the limit on the number of points allows. More
@@ -226,9 +225,8 @@ pub(in crate::collide) struct PointChoice<'a, N: Real, const D: usize> {
     pub(in crate::collide) limit: usize,
 }
 
-/// Returns the distance up to which an old point may stand for the deepest point: `distance`, the
-/// distance of the pair, plus `SLACK` times `size`, the size of the pair, or plus `tolerance` if
-/// that is larger.
+/// Returns the largest distance with which an old point may stand for the deepest point: `distance`
+/// of the pair plus the larger of `tolerance` and `SLACK` times the pair's `size`.
 pub(in crate::collide) fn slack_level<N: Real>(distance: N, size: N, tolerance: N) -> N {
     distance + max(size * N::lit(SLACK), tolerance)
 }
@@ -317,8 +315,9 @@ fn chosen<N: Real, const D: usize>(
 }
 
 /// Adds the nearest points, which lie on `features`, as a candidate. If exactly one candidate has
-/// the same features, and they are not two faces, the new candidate replaces it. Several candidates
-/// with the same features lie on round rims at different positions, so they all stay.
+/// the same features, and at least one of them is not a face, the new candidate replaces it.
+/// Several candidates with the same features lie on round rims at different positions, so they all
+/// stay.
 fn add_witness<N: Real, const D: usize>(
     witness: &Separation<N, D>,
     features: [FeatureId; 2],
@@ -341,9 +340,9 @@ fn deepest<N: Real, const D: usize>(candidates: &[Candidate<N, D>], limit: N) ->
     })
 }
 
-/// Returns the index of the candidate that gets the distance of the pair: the lowest of the
-/// candidates that continue an old point and have a distance of at most `limit`; if there are none,
-/// the lowest of all. The first wins a tie. `what` returns, for each candidate, whether it
+/// Returns the index of the candidate that gets the distance of the pair: the one with the smallest
+/// distance among those that continue an old point and have a distance of at most `limit`, or among
+/// all if there are none. The first wins a tie. `what` returns, for each candidate, whether it
 /// continues an old point, and its distance.
 #[inline]
 pub(in crate::collide) fn deepest_of<N: Real>(

@@ -31,11 +31,11 @@ const NEW: f64 = 63.0 / 64.0;
 /// Bonus of an old point if more than four points are chosen, as a fraction of the hull's area.
 const KEPT: f64 = 1.0 / 256.0;
 
-/// Fraction of the best area, or length of points in a row, that old points must span to be kept.
+/// Fraction of the best area (length for points in a row) that old points must span to be kept.
 const ENOUGH: f64 = 0.9;
 
-/// Points in a strip narrower than this fraction of its length count as a row: their lengths are
-/// compared, not their areas, which small offsets change much.
+/// Points in a strip narrower than this fraction of its length count as a row. Rows are compared by
+/// length instead of area, because small offsets change their area much.
 const THIN: f64 = 1.0 / 4096.0;
 
 /// A candidate projected along the normal.
@@ -44,7 +44,7 @@ pub(in crate::collide) struct Projected<N: Real> {
     pub(in crate::collide) at: Vector<N, 2>,
     /// Index of the candidate.
     pub(in crate::collide) index: usize,
-    /// Whether the candidate's distance is the smallest, up to rounding or, if old, the slack.
+    /// Whether the candidate counts as deepest by the levels of [`projected`].
     pub(in crate::collide) is_deepest: bool,
     /// Whether the candidate is old: continues a point of the previous manifold.
     pub(in crate::collide) is_kept: bool,
@@ -56,9 +56,9 @@ pub(in crate::collide) type Projections<N> = SmallVec<[Projected<N>; FEW]>;
 /// Indices of chosen candidates.
 pub(in crate::collide) type Indices = SmallVec<[usize; 8]>;
 
-/// Lists candidates from (tangent coordinates, distance, whether the candidate is old). A candidate
-/// is deepest if its distance is at most `level` or is the smallest. If no old candidate is deepest
-/// in this sense, old candidates with a distance up to `slack` are deepest, too.
+/// Projects the `candidates`, each given as (tangent coordinates, distance, whether it is old). A
+/// candidate is deepest if its distance is at most `level` or is the smallest. If no old candidate
+/// is deepest in this sense, old candidates with a distance up to `slack` are deepest, too.
 #[inline]
 pub(in crate::collide) fn projected<N: Real>(
     candidates: impl Iterator<Item = (Vector<N, 2>, N, bool)> + Clone,
@@ -130,7 +130,7 @@ fn span<N: Real>(points: &Projections<N>) -> [N; 2] {
 }
 
 /// Computes [`chosen`] from the corners of the convex hull and, if none of them is deepest, a
-/// deepest candidate; drops all others even if there are few. Cost: O(n log n).
+/// deepest candidate. Keeps others only as old points ([`old_or`]). Cost: O(n log n).
 #[inline(never)]
 pub(in crate::collide) fn spanning<N: Real>(
     points: &mut Projections<N>,
@@ -155,7 +155,7 @@ fn best_spanning<N: Real>(points: &mut Projections<N>, limit: usize, tolerance: 
     }
     ring.extend(inner);
     if ring.is_empty() {
-        // The hull has no corners only if areas are NaN.
+        // [`largest_polygon`] finds no polygon if all areas are NaN.
         ring.push(points[a_deepest(points)]);
     }
     if ring.len() > limit {
@@ -209,8 +209,8 @@ fn best_four<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> In
     chosen
 }
 
-/// Returns the positions of a deepest point and the point farthest from it beyond the tolerance, if
-/// any and `limit` > 1; if the former is inside a row and `limit` > 2, also of its other end.
+/// Returns the positions of a deepest point and, if `limit` > 1, of the point farthest from it, if
+/// beyond `tolerance`. If `limit` > 2, also of a row's other end beyond the deepest point.
 fn farthest<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> Indices {
     let mut chosen = Indices::from_slice(&[a_deepest(points)]);
     let mut most = tolerance;
@@ -294,8 +294,8 @@ impl<N: Real> CoordinateRows<N> {
     }
 }
 
-/// Returns the positions of the ends of the best diagonal and, if `is_four`, of the farthest point
-/// on each side, else of the farther of these two. `None` if all points lie in a row.
+/// Returns [`with_sides`] of the diagonal that spans the largest weighted area: with the triangles
+/// on both sides if `is_four`, else with the larger one. `None` if all points lie in a row.
 fn best_diagonal<N: Real>(points: &[Projected<N>], is_four: bool, tolerance: N) -> Option<Indices> {
     let (mut ends, mut most) = ([0; 2], N::ZERO);
     let rows = CoordinateRows::of(points);
@@ -381,7 +381,7 @@ fn twice_area<N: Real>(a: &Projected<N>, b: &Projected<N>, c: &Projected<N>) -> 
     cross2(&(b.at - a.at), &(c.at - a.at))
 }
 
-/// Removes corners between their neighbours, up to rounding: new ones, then old ones, deepest last.
+/// Removes corners in line with their neighbours: new, old, new deepest, and old deepest ones last.
 fn thin<N: Real>(ring: &mut Projections<N>, tolerance: N) {
     for rank in 0..4 {
         let mut at = 0;
@@ -408,7 +408,7 @@ fn is_between<N: Real>(own: &Projected<N>, ends: [&Projected<N>; 2], tolerance: 
     is_in_row && along >= -slack && along <= length * length + slack
 }
 
-/// Reduces a hull to `count` corners: a deepest one, old ones, and those that add the most area.
+/// Reduces a hull to `count` corners at most: a deepest, old ones, and those that add most area.
 fn coarsen<N: Real>(ring: &mut Projections<N>, count: usize) {
     if ring.len() <= count {
         return;
@@ -424,8 +424,8 @@ fn coarsen<N: Real>(ring: &mut Projections<N>, count: usize) {
     *ring = indices.iter().map(|&index| ring[index]).collect();
 }
 
-/// Returns the corner that adds the most area to `indices`, and its position there; `indices[0]`
-/// must be 0. `None` if no corner adds area.
+/// Returns the position in `indices` and the index of the corner that adds the most area to the
+/// polygon of `indices`; `indices[0]` must be 0. `None` if no corner adds area.
 fn best_addition<N: Real>(ring: &[Projected<N>], indices: &[usize]) -> Option<(usize, usize)> {
     let (mut best, mut most) = (None, N::ZERO);
     for (at, &from) in indices.iter().enumerate() {

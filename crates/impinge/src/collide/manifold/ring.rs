@@ -69,8 +69,8 @@ pub(super) struct SupportRing<'a, N: Real> {
     turn: N,
     /// Radius around the feature.
     radius: N,
-    /// Cosine of the angle between the frame's normal and the face's, or between a segment and the
-    /// contact plane.
+    /// Cosine of the angle between the face's normal and [`Which::outward`], or between a segment
+    /// and the contact plane; 1 for a point.
     cosine: N,
     /// Only for a solid with a radius: depth, below the supporting plane, of the corner nearest to
     /// the other solid, and the tangent coordinates of that corner.
@@ -304,8 +304,8 @@ impl<'a, N: Real> SupportRing<'a, N> {
         }
     }
 
-    /// Returns twice the signed area and the index of the longest side; `None` if adjacent corners
-    /// coincide.
+    /// Returns twice the signed area and the index of the longest side, in projection; `None` if
+    /// adjacent corners coincide or a coordinate is NaN.
     fn extent(&self, tolerance: N) -> Option<(N, usize)> {
         let (mut area, mut longest, mut most) = (N::ZERO, 0, N::ZERO);
         let origin = self.flat(0);
@@ -357,8 +357,8 @@ impl<'a, N: Real> SupportRing<'a, N> {
         self.id = if has_ends { self.id } else { id };
     }
 
-    /// Reduces a face without width to the two ends of its projection, with the id of its longest
-    /// side.
+    /// Reduces a face without width to its two extreme corners along its longest side, with the id
+    /// of that side.
     fn flatten(&mut self, longest: usize) {
         let (along, from) = (self.side(longest), self.flat(longest));
         let (mut low, mut high) = (0, 0);

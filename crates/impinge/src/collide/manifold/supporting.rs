@@ -124,8 +124,8 @@ fn fill_triangle<N: Real>(
     true
 }
 
-/// Fills a ring with a point or line of a cylinder or cone; returns `false` if `part` is `None`,
-/// because the part is a cap.
+/// Fills a ring with a point or line of a cylinder or cone. `part` is `None` for a cap; then
+/// returns `false`.
 fn fill_round<N: Real>(part: Option<RoundPart<N>>, face: &mut FaceRing<N>) -> bool {
     match part {
         Some(RoundPart::Point(id, point)) => fill_point(id, &point, face),
@@ -155,7 +155,8 @@ pub(super) fn contact_feature<N: Real, const D: usize>(
     let lowest = map.core_support(direction);
     let height = |point: &Point<N, D>| point.coords.dot(direction);
     let top = out.vertices.iter().map(height).fold(-N::INFINITY, max);
-    // How far the lowest point of the rim lies beyond the farthest corner, along `direction`.
+    // Distance by which the lowest point of the rim lies beyond the farthest corner, along
+    // `direction`.
     let (lower, reach) = (height(&lowest) - top, map.reach());
     if lower > N::lit(SLACK) * reach {
         map.core_feature(direction, out);
@@ -178,8 +179,9 @@ fn start_after<N: Real, const D: usize>(point: &Point<N, D>, out: &mut Feature<N
     out.vertices.rotate_left((before + 1) % count);
 }
 
-/// Fills the rings with the supporting feature of any solid, in the form used for contacts. A
-/// feature without corners, as user-defined solids may have, becomes the support point.
+/// Fills the rings with the supporting feature of any solid, with the corners of
+/// [`contact_feature`]. A feature without corners, as user-defined solids may have, becomes the
+/// support point.
 fn fill_feature<N: Real>(
     map: &dyn SupportMap<N, 3>,
     direction: &Vector<N, 3>,

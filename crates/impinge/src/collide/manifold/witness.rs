@@ -187,7 +187,8 @@ pub(in crate::collide) fn beside_ball<N: Real, const D: usize>(
     }
 }
 
-/// Returns one of the two solids, and its pose in the frame of the first; `None` for the identity.
+/// Returns one of the two solids, and its pose in the frame of the first; the pose is `None` for
+/// the first solid.
 fn solid<'a, N: Real, const D: usize>(
     pair: &'a Pair<'_, N, D>,
     is_second: bool,

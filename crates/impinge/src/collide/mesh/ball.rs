@@ -83,8 +83,8 @@ struct CenteredTriangle<N: Real> {
 }
 
 impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
-    /// Makes the input for a ball and a surface; `None` if the first shape is not a ball, or the
-    /// second is not a composite with a surface.
+    /// Prepares the search for a ball and a surface; `None` if the first shape is not a ball, or
+    /// the second is not a composite with a surface.
     fn new(between: &'b Between<'a, N, 3>, request: &ManifoldRequest<N>) -> Option<Self> {
         let Kind::Ball(ball) = between.pair.first else { return None };
         let [_, parts] = between.composites();
@@ -143,11 +143,11 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         self.rounding_of_hidden(&candidates, around, part_contacts)
     }
 
-    /// Returns the largest `tolerance` of the hidden triangles that the ball may touch. The generic
-    /// path, which does not skip them, merges points within the largest tolerance of all parts, and
-    /// the result must be the same. Zero with at most one contact, because nothing is merged then.
-    /// `None`, so that the generic path is used, if a hidden triangle may be nearer than all
-    /// contacts or its coordinates overflow.
+    /// Returns the largest `tolerance` of the hidden triangles that can be touched from the
+    /// reference point. The generic path, which does not skip them, merges points within the
+    /// largest tolerance of all parts, and the result must be the same. Zero with at most one
+    /// contact, because nothing is merged then. `None` if a hidden triangle may be nearer than all
+    /// contacts, or if its coordinates overflow; the generic path is then used.
     fn rounding_of_hidden(
         &self,
         candidates: &CandidateTriangles<N>,
@@ -219,8 +219,8 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     }
 
     /// Computes the contact of a triangle without the generic path. `Some(None)` if there is no
-    /// contact; `None` if the result depends on rounding or needs points along a face's normal, so
-    /// that the generic path must compute it.
+    /// contact. `None` if the result depends on rounding or needs points along a face's normal;
+    /// then the generic path must compute it.
     #[expect(clippy::option_option, reason = "no answer is not the answer that there is none")]
     fn certain_contact(
         &self,
@@ -281,9 +281,9 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     }
 }
 
-/// Calls `visit` with the index of each triangle that `bits` selects, in ascending order. `bits`
-/// receives the two masks of a packet, near and hidden, and returns a mask. If `visit` returns
-/// `None`, stops and returns `None`.
+/// Calls `visit` with the index of each selected triangle, in ascending order. For each packet,
+/// `bits` receives the masks of the near and of the hidden triangles, and returns the mask of the
+/// selected triangles. Returns `None`, without further calls, as soon as `visit` returns `None`.
 fn each_lane<N>(
     candidates: &CandidateTriangles<N>,
     bits: impl Fn([u8; 2]) -> u8,

@@ -33,9 +33,9 @@ fn heights<N: Real>(random: &mut Random, kind: usize) -> Vec<N> {
     (0..POINTS * POINTS).map(&mut next).collect()
 }
 
-/// Returns a mesh over a grid. In some meshes, each triangle has its own vertices; some triangles
-/// are left out, turned over or without area; two vertices are moved, one of them to the position
-/// of another vertex; or contacts with internal edges are kept.
+/// Returns a mesh over a grid, with some of these variations at random: each triangle has its own
+/// vertices; some triangles are left out, turned over or without area; two vertices are moved, one
+/// of them to the position of another vertex; contacts with internal edges are kept.
 fn mesh_of<N: Space<3>>(random: &mut Random, heights: &[N]) -> TriMesh<N, 3> {
     let vertex_at = |at: u32| {
         let [x, z] = [at % POINTS, at / POINTS].map(|n| N::lit(f64::from(n) * 0.5 - 2.0));

@@ -142,14 +142,15 @@ struct ChainLink<'c, 'b, 'a, N: Real> {
     segment: Segment<N, 2>,
     /// The segment and its neighbours, to filter the normals of its contacts.
     known: KnownSegment<'c, N>,
-    /// Separation of the segment and the solid, in the order of kinds.
+    /// Separation of the segment and the solid, in the order of kinds and in the frame of the first
+    /// of them.
     found: Separation<N, 2>,
     /// Bound of the rounding errors of lengths computed for the segment and the solid.
     tolerance: N,
 }
 
 impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
-    /// Makes the input for a solid and a chain; `None` for solids other than balls, segments,
+    /// Prepares the search for a solid and a chain. `None` for solids other than balls, segments,
     /// capsules, triangles, boxes and polygons, and if the second shape has no surface.
     fn new(between: &'b Between<'a, N, 2>, request: &ManifoldRequest<N>) -> Option<Self> {
         let solid = between.pair.first;
@@ -186,9 +187,9 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
 
     /// Fills the cache with all parts near the solid, and returns a box around all points within
     /// the prediction of the solid. This is the box of the solid's bounding ball, which a rotation
-    /// does not change; but if that box is not cached and more than twice as large as the box of
-    /// the solid itself, it is the latter. `None` if the box is unbounded or a cached part is not a
-    /// segment with corners.
+    /// does not change, if its parts are cached or its half extent is at most twice the largest
+    /// half extent of the solid's own box. Otherwise it is the solid's own box. `None` if the box
+    /// is unbounded or a cached part is not a segment with corners.
     fn box_within(&self, around: &mut PartCache<N, 2>) -> Option<Aabb<N, 2>> {
         let max_distance = self.size + self.request.prediction;
         let whole = Aabb::around(self.origin, Vector::<N, 2>::repeat(max_distance));

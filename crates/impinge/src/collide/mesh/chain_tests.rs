@@ -106,9 +106,9 @@ pub(super) fn assert_same<N: Real, const D: usize>(
     }
 }
 
-/// Asserts that the deepest contact within `limit` does not depend on the path, specialised or
-/// generic and, up to rounding, not on whether the distance of the shapes is computed first.
-/// Asserts that [`contact_in_world`] finds a contact in the same cases.
+/// Asserts that the specialised path and the generic path find the same deepest contact within
+/// `limit`. Up to rounding, the contact must not depend on whether the distance of the shapes is
+/// computed first. Asserts that [`contact_in_world`] finds a contact in the same cases.
 pub(super) fn assert_one_contact<N: Space<D>, const D: usize>(
     [placed1, placed2]: [&Placed<'_, N, D>; 2],
     limit: N,

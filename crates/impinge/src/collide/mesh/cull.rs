@@ -1,10 +1,9 @@
 //! Lower bounds of the distances from a convex solid to 8 parts of a surface at a time.
 //!
-//! Most parts whose boxes are near the solid are farther than the limit. A plane
-//! perpendicular to the shortest segment from the part to the solid's centre rejects such parts at
-//! the cost of a few products. Any plane gives a valid lower bound of the distance, so only
-//! rounding needs care. The core of the solid is replaced by a box: its half extents along the axes
-//! of the solid.
+//! Most parts whose boxes are near the solid are farther than the limit. A plane perpendicular to
+//! the shortest segment from the part to the solid's centre rejects such parts at the cost of a few
+//! products. Any plane gives a valid lower bound of the distance, so only rounding needs care. A
+//! box along the axes of the solid replaces its core.
 //!
 //! ```text
 //!   part                          solid
@@ -25,8 +24,8 @@ use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Matrix, Point, Real, Space, Vector, Wide, filled, max, max_component, min};
 use crate::shape::{Geometry, Kind};
 
-/// Slack of the bounds, relative to the sum of all lengths: 128 rounding units, and at least
-/// `CURVED`, which exceeds the tolerance of the distance search of curved solids.
+/// Slack of the bounds, relative to the sum of all lengths: 128 epsilon, and at least `CURVED`,
+/// which exceeds the tolerance of the distance search of curved solids.
 const ROUNDING: f64 = 128.0;
 const CURVED: f64 = 1.0e-10;
 
@@ -230,7 +229,8 @@ fn shorter<S: Simd, V: Wide<S>, const D: usize>(first: &[V; D], second: &[V; D])
     either(dot(second, second).simd_lt(dot(first, first)), second, first)
 }
 
-/// Returns the extent of the core along the vectors `toward`, multiplied by their lengths.
+/// Returns the extent of the core from its centre along the vectors `toward`, times the lengths of
+/// these vectors.
 #[inline(always)]
 fn extent<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,

@@ -6,9 +6,9 @@
 //!                      8 lanes             cached `FaceSeams`     8 lanes
 //! ```
 //!
-//! `FaceSeams` holds the front normals of a triangle and of its neighbours. The contact of a
-//! triangle falls back to [`part_contact`], the path of any two parts, if a kernel leaves the gap
-//! or the points undecided, which happens where rounding may decide.
+//! `FaceSeams` holds the front normals of a triangle and of its neighbours. Where rounding may
+//! decide, a kernel leaves the gap or the points undecided. The contact of that triangle then falls
+//! back to [`part_contact`], the path of any two parts.
 
 use smallvec::SmallVec;
 
@@ -29,9 +29,9 @@ use crate::shape::{FaceSeams, FeatureId, Geometry, Kind, SurfaceAccess};
 use core::cell::Cell;
 
 /// Appends the contacts of a box or a hull with the nearby triangles of a surface. Returns `false`,
-/// and appends nothing, for other solids, for hulls with fewer than 4 faces, and if the parts are
-/// not the cached triangles of a surface without bodies. `prediction` is that of the whole shapes;
-/// the request for pairs of parts in `query` may have a larger prediction.
+/// and appends nothing, for other solids, for hulls with fewer than 4 faces, for shapes with
+/// bodies, and unless the parts are cached triangles of a surface. `prediction` is that of the
+/// whole shapes; the request for pairs of parts in `query` may have a larger prediction.
 pub(crate) fn face_contacts<N: Real>(
     query: &Query<'_, N, 3>,
     scene: &Scene<'_, N, 3>,
@@ -100,7 +100,7 @@ struct KeptTriangle<'a, N: Real> {
     tolerance: N,
 }
 
-/// A contact that the surface admits, in the frame of the surface.
+/// Contact of a triangle after the normal filter, in the frame of the surface.
 struct FaceContact<N: Real> {
     /// Unit normal from the triangle to the solid.
     normal: Vector<N, 3>,
@@ -119,9 +119,9 @@ enum SurfaceAnswer<N: Real> {
 }
 
 impl<'a, N: Real> FaceConfiguration<'a, N> {
-    /// Returns `None` unless the solid is a box or hull and all cached parts of the surface are
-    /// triangles. Also `None` if the second shape has no surface, and if one shape has bodies,
-    /// because a solid inside a body has contacts too.
+    /// Returns `None` unless the solid is a box or hull and the cache holds the corners of all
+    /// parts, which must be triangles. Also `None` if the second shape has no surface, and if one
+    /// shape has bodies, because a solid inside a body has contacts too.
     fn new(
         query: &'a Query<'a, N, 3>,
         scene: &'a Scene<'a, N, 3>,
@@ -211,8 +211,8 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
         if is_own && distance > self.query.request.prediction {
             return None;
         }
-        // If the parts are apart or overlap by no more than rounding, no point gets a smaller
-        // distance than the parts.
+        // Unless the contact is [`PartStatus::Own`], no point gets a smaller distance than the
+        // parts, except if these overlap by more than rounding.
         let least = if !is_own && distance > -tolerance { distance } else { -N::INFINITY };
         let normal = self.query.between.pair.pose12.vector(&contact.normal);
         ClipRequest::new(self.solid, normal, is_own.then_some(distance), least)

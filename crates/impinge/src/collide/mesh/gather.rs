@@ -34,8 +34,8 @@ pub(crate) struct CulledParts<N: Real> {
 }
 
 /// Finds the parts of a convex solid and a composite, or of two composites, that may be within
-/// `max_distance`. If the parts of a composite have cached corners, those that a separating plane
-/// proves to be farther are culled.
+/// `max_distance`. A part of the composite with cached corners is culled if a separating plane
+/// proves that it is farther from the solid.
 ///
 /// `around` must be the cache of the second shape. It is refilled if its box is too small.
 pub(super) fn culled<N: Space<D>, const D: usize>(

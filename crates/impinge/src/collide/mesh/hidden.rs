@@ -12,8 +12,9 @@
 //! ```
 //!
 //! Where two faces meet, each is behind the plane of the other (a ridge), each is in front of it (a
-//! valley), or only one of them is in front of the other's plane. In the last case no solid near
-//! both faces is in front of both, and the face behind the other's plane is hidden.
+//! valley), or only one of them is in front of the other's plane. In the last case, this face
+//! covers the front side of the other face. So the other face, which is behind its plane, is
+//! hidden.
 
 use smallvec::SmallVec;
 
@@ -47,7 +48,7 @@ struct TouchedFace<N: Real, const D: usize> {
     contact: usize,
     /// Signed distance of the face's part from the solid.
     distance: N,
-    /// Unit normal on the touched side.
+    /// Unit normal on the touched side, in the frame of the composite.
     normal: Vector<N, D>,
     /// Corners in the frame of the composite; for a segment the second end occurs twice.
     corners: [Point<N, D>; 3],

@@ -1,20 +1,19 @@
 //! Contacts of composites: the contacts of their parts that are also contacts of the whole shapes.
 //!
-//! 1. [`gather`] finds the parts within the prediction: for a convex solid, the parts in
-//!    [`part_cache`], which is refilled if the solid has left its box, without the parts that a
-//!    lower bound culls ([`cull`]).
-//! 2. [`part_contact`] computes the contact of each pair of parts. [`normal_filter`] rejects
-//!    normals that a surface does not admit at a seam; at such a seam, only contacts along the
-//!    normal of the face count.
+//! 1. [`gather`] finds the pairs of parts that may be within the prediction. For a convex solid,
+//!    these are the cached parts of the composite ([`part_cache`]) that no lower bound rejects
+//!    ([`cull`]). The cache is refilled when the solid leaves its box.
+//! 2. [`part_contact`] computes the contact of each pair of parts. If a surface does not admit its
+//!    normal at a seam (an edge or corner where parts meet), [`normal_filter`] takes the normal of
+//!    the face, or drops the contact.
 //! 3. [`hidden`] drops contacts with faces that a neighbour hides; [`resolve`] drops contacts whose
 //!    overlap ends if another contact is resolved. Solids that overlap keep at least one contact,
-//!    except beside a ghost.
-//! 4. [`inside`] adds the contacts of connected pieces that lie wholly inside a body (a solid that
-//!    a closed surface bounds) and touch no part of its boundary.
+//!    except beside a ghost (a part that stands for a part of a neighbouring shape).
+//! 4. [`inside`] adds contacts of pieces wholly inside a body (a solid with a closed surface).
 //! 5. [`patch`] merges the remaining contacts into flat patches.
 //!
-//! For boxes and hulls, [`faces`] does step 2 for 8 triangles of a surface at a time. [`chain`]
-//! does all steps for a chain in 2D, [`ball`] for a ball in 3D.
+//! For boxes and hulls, [`faces`] does step 2 for 8 triangles of a surface at a time. [`chain`] (a
+//! solid and a chain in 2D) and [`ball`] (a ball and triangles in 3D) do steps 1 and 2.
 //!
 //! The classes of normals at a seam follow Catto's chain shapes (Box2D, 2023), whose edges store
 //! their neighbours.
@@ -79,7 +78,8 @@ use crate::shape::{Geometry, Kind, PartSolid, SupportMap};
 /// Points kept for each pair of parts before merging; enough for two facets of common solids.
 const PART_POINTS: usize = 16;
 
-/// Parts farther than the nearest part by up to this fraction of its distance are searched, too.
+/// A query also searches parts farther than the nearest part by up to this fraction of its
+/// distance.
 const NEARLY: f64 = 1.0 / 64.0;
 
 /// Largest limit, as a fraction of a solid's bounding radius, for which [`is_within_solid`] returns
@@ -92,10 +92,10 @@ const SMALL: f64 = 1.0 / 4.0;
 pub(crate) struct CompositeContacts<N: Real, const D: usize> {
     patches: Vec<Patch<N, D>>,
     ids: PairIds,
-    /// Centre of the first shape, in the frame of the second, at the last update in which it had
-    /// not crossed the surface. The side of this point counts: a solid that was pushed halfway
-    /// through a two-sided surface, or jumped across it, still counts as being on its old side.
-    /// `None` if there is no such update, or the first shape is not convex.
+    /// Point, in the frame of the second shape, that decides on which side of the surface the first
+    /// shape is: its centre. If the centre crosses the surface in a step of at most twice the
+    /// bounding radius, the old point stays while the shapes overlap, so the solid is pushed back.
+    /// `None` before an update, after [`Self::flip`], and unless the first shape is convex.
     reference: Reference<N, D>,
     /// Pose of the second shape in the frame of the first at the last update.
     pose12: Pose<N, D>,
@@ -116,7 +116,7 @@ impl<N: Real, const D: usize> Default for CompositeContacts<N, D> {
 }
 
 impl<N: Real, const D: usize> CompositeContacts<N, D> {
-    /// Clears the cache of the shapes, which may have changed; the contacts and their ids stay.
+    /// Clears the cached parts, after a shape has changed. The contacts and their ids stay.
     pub(crate) fn forget_shapes(&mut self) {
         self.around = PartCache::default();
     }
@@ -169,9 +169,9 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
-    /// Computes the contacts for new poses, of two shapes or, if `is_self`, of one with itself;
-    /// contact points that persist keep their ids. If a shape has changed, [`Self::forget_shapes`]
-    /// must be called first.
+    /// Computes the contacts of two shapes (or of one shape with itself, if `is_self`) for new
+    /// poses; contact points that persist keep their ids. If a shape has changed,
+    /// [`Self::forget_shapes`] must be called first.
     pub(crate) fn update(
         &mut self,
         between: &Between<'_, N, D>,
@@ -240,8 +240,8 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
 }
 
 /// Returns whether [`Query::resolve_contacts`] would change nothing: all contacts are
-/// [`PartStatus::Own`], the normals of their faces are alike ([`are_alike`]), and the smallest
-/// distance of a point is not above that of the nearest parts, or not above zero if these overlap.
+/// [`PartStatus::Own`], successive faces have similar normals ([`are_alike`]), and the smallest
+/// distance of a point is at most that of the nearest parts (at most zero if these overlap).
 fn is_resolved<N: Real, const D: usize>(contacts: &[PartContact<N, D>]) -> bool {
     let (mut distance, mut lowest) = (N::INFINITY, N::INFINITY);
     let mut face: Option<Vector<N, D>> = None;
@@ -365,10 +365,10 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
     }
 }
 
-/// Returns the request for each pair of parts. Its prediction is larger by the distance by which
-/// the rotation of `request` can bring points nearer. The nearest point, about which the shape
-/// rotates, may lie on another part. So [`merge`] later drops the points that even the rotation
-/// does not bring within the prediction of `request`.
+/// Returns the request for each pair of parts, without a rotation: the shape rotates about its
+/// nearest point, which may lie on another part. The prediction is larger by the distance by which
+/// the rotation of `request` can bring points nearer. [`merge`] later drops the points that the
+/// rotation does not bring within the prediction of `request`.
 fn of_parts<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     request: &ManifoldRequest<N>,
@@ -408,7 +408,7 @@ pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
         }
         return Some(found).filter(|found| found.distance <= limit).map(in_world);
     }
-    // Any touching pair of two composites will do: their deepest contact is searched below.
+    // Two composites need only some touching pair here: `deepest` finds their deepest contact.
     let nearest = match between.composites() {
         [Some(_), Some(_)] => touching_of_ordered(&ordered, limit)?,
         _ => of_ordered(&ordered, limit)?,
@@ -438,9 +438,9 @@ fn has_own_path<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> boo
     matches!(between.pair.first, Kind::Ball(_)) || is_chain()
 }
 
-/// Returns the deepest contact of shapes whose distance is known. If they are apart, only parts
-/// about as near as the nearest part are searched, unless the surface admits no contact with any of
-/// these parts; then all parts within `limit` are searched.
+/// Returns the deepest contact of shapes whose distance is known; `None` beyond `limit`. Searches
+/// only the parts that are about as near as the nearest part. If the surface admits no contact with
+/// any of them, searches all parts within `limit`.
 ///
 /// The distance of the contact is corrected if the correction is not larger than rounding. If the
 /// shapes touch or overlap but the contact is apart, the distance becomes zero. If the shapes are
@@ -476,7 +476,7 @@ fn touching<N: Real, const D: usize>(found: &Separation<N, D>) -> Separation<N, 
 fn rounding<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> N {
     let size = |kind: Kind<'_, N, D>| {
         let aabb = aabb_of(kind, &Pose::identity());
-        // Points far from the origin also have large coordinates.
+        // Rounding errors grow with the coordinates, so the distance from the origin counts.
         let far = || aabb.half_extents().norm() + aabb.center().coords.norm();
         if aabb.is_bounded() { far() } else { N::ZERO }
     };

@@ -1,14 +1,14 @@
 //! Decides whether the normal of a contact with one part of a surface is a normal of the whole
-//! surface.
+//! surface. At a seam, an edge or corner where parts meet, it may not be.
 
 use crate::math::{Point, Real, Space, Vector, unit};
 use crate::shape::{FeatureId, SurfaceAccess};
 
 /// Largest length of the difference between a contact's normal and the face's normal, in epsilons,
-/// at which they count as equal.
+/// at which the two normals count as equal.
 const ROUNDING: f64 = 4096.0;
-/// Largest length of the difference between a contact's normal and the face's normal at which they
-/// count as equal if the contact is inside the face.
+/// Largest length of the difference between a contact's normal and the face's normal at which the
+/// two normals count as equal if the contact is inside the face.
 const ON_FACE: f64 = 1.0 / 64.0;
 /// A contact's normal whose component along the face's normal is below this belongs to the back of
 /// the face.
@@ -29,8 +29,8 @@ pub(super) enum FilteredNormal<N: Real, const D: usize> {
     /// The contact's normal is the face's normal, up to rounding or, inside a face, up to
     /// `ON_FACE`. The exact normal of the face is given here.
     Face(Vector<N, D>),
-    /// The seam does not admit the contact's normal. The contact becomes one with the face itself,
-    /// whose normal is given here.
+    /// The seam does not admit the contact's normal. A contact with the face, whose normal is given
+    /// here, replaces the contact.
     Snapped(Vector<N, D>),
     /// The face of this part ends at a ridge (a convex seam), and the contact's normal lies beyond
     /// all normals that the ridge admits, on the side of the adjacent part. The contact with this

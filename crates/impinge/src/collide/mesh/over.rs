@@ -22,8 +22,9 @@ pub(crate) fn over2<N: Real>(_: &Triangle<N, 2>, _: &Point<N, 2>, _: N) -> Optio
 
 /// Returns the feature of a triangle in 3D nearest to the centre of a ball, with the id that
 /// supporting features have: for the face, 0 if the centre is in front, 1 if it is behind. `None`
-/// if the triangle is thin, or the centre is close to a border: within `CERTAIN · tolerance` across
-/// a side or from the plane, `CERTAIN² · tolerance` along a side.
+/// if the triangle is thin or a coordinate is NaN. Also `None` if the centre is close to a border:
+/// within `CERTAIN · tolerance` perpendicular to a side (or, above the face, to the plane), or
+/// within `CERTAIN² · tolerance` along a side.
 pub(crate) fn over3<N: Real>(
     triangle: &Triangle<N, 3>,
     center: &Point<N, 3>,

@@ -48,7 +48,8 @@ impl CacheMargin {
 enum KeptSeams<N: Real> {
     /// Not computed yet.
     Unasked,
-    /// The surface does not provide the seams of this part, so it must be called for each contact.
+    /// The surface does not provide the seams of this part, so the surface must be called for each
+    /// contact.
     Unknown,
     Known(FaceSeams<N>),
 }
@@ -285,7 +286,8 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         })
     }
 
-    /// Returns a part from its cached corners; `None` if it is not cached.
+    /// Returns a part from its cached corners; `None` if it is not cached, or if the cache holds no
+    /// corners.
     pub(super) fn part(&self, part: u32) -> Option<Part<'static, N, D>> {
         if self.tiles.is_empty() {
             return None;

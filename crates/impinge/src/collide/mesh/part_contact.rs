@@ -22,7 +22,8 @@ use crate::shape::{FeatureId, Kind, SurfaceAccess};
 /// Whether a contact of two parts is a contact of the shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum PartStatus {
-    /// The contact holds with its own normal.
+    /// The contact holds, with the normal of the two parts. If this normal is about that of a face,
+    /// the exact normal of the face replaces it.
     Own,
     /// The contact is along the normal of a face, because the seam does not admit the normal of the
     /// parts. [`resolve`](super::resolve) drops it if a shallower contact explains the overlap.
@@ -39,14 +40,15 @@ pub(crate) enum PartStatus {
 /// Contact of two parts that are within the prediction of each other.
 #[derive(Clone, Debug)]
 pub(crate) struct PartContact<N: Real, const D: usize> {
-    /// Signed distance of the two parts alone.
+    /// Signed distance of the two parts alone. [`contact_of_solids`] stores the smallest distance
+    /// of the points instead.
     pub(super) distance: N,
     /// Unit vector along which `distance` is measured, from the first shape to the second, in the
     /// frame of the first; zero for a contact that [`contact_of_solids`] computed.
     pub(super) normal: Vector<N, D>,
     /// Manifold of the pair, in the frame of the first shape. It has no points if the filter drops
-    /// the contact, or while [`Self::is_owing`] returns `true`, until [`nearest_points`] computes
-    /// them.
+    /// the contact, nor while [`Self::is_owing`] returns `true`: [`nearest_points`] computes these
+    /// points later.
     pub(super) piece: Piece<N, D>,
     /// Smallest distance of the points in `piece`; infinite without points.
     pub(super) lowest: N,
@@ -85,8 +87,8 @@ impl<N: Real, const D: usize> PartContact<N, D> {
         self.piece.parts
     }
 
-    /// Returns whether the contact holds but has no points yet, because the points along the normal
-    /// of a face did not represent it.
+    /// Returns whether the contact holds but has no points yet: [`resolve`](super::resolve)
+    /// restored it as the contact of the nearest parts.
     pub(super) fn is_owing(&self) -> bool {
         self.status != PartStatus::Left && self.piece.points.is_empty()
     }
@@ -213,8 +215,9 @@ impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
-    /// Returns whether a contact along `normal` would push one shape into a body of the other. A
-    /// face of an inner wall of a body has such a normal: the inside is behind this face, too.
+    /// Returns whether a contact along `normal` would push one shape into a body of the other:
+    /// whether `normal`, taken outward from a part of the body's boundary, makes an angle of more
+    /// than 120° with the front normal of this part.
     ///
     /// `normal` is from the first shape to the second, in the frame of the first.
     fn leads_into_body(&self, scene: &Scene<'_, N, D>, normal: &Vector<N, D>) -> bool {

@@ -13,15 +13,15 @@ const ALIKE: f64 = 0.99;
 /// Largest number of escapes kept at a time; no two of them have about the same direction.
 const MAX_ESCAPES: usize = 32;
 
-/// A translation that resolves the overlap, according to one contact: the second shape moves along
-/// `normal` by `depth`.
+/// A translation that resolves the overlap, according to one contact: the second shape moves by
+/// `depth` along the unit vector `normal`, which is in the frame of the first shape.
 struct Escape<N: Real, const D: usize> {
     normal: Vector<N, D>,
     depth: N,
 }
 
-/// Escapes in the order of their depths, the shallowest first. Of several escapes with about the
-/// same direction, only the deepest is kept.
+/// Escapes in the order of their depths, the shallowest first. Only the deepest of several escapes
+/// with about the same direction is kept.
 struct Escapes<N: Real, const D: usize>(SmallVec<[Escape<N, D>; MAX_ESCAPES]>);
 
 /// Drops the contacts that do not hold for the whole shapes.
@@ -52,9 +52,9 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
     keep_one(scene, contacts, arena);
 }
 
-/// Drops contacts that are explained by other contacts, whose escapes separate the two parts: first
-/// the `Snapped` contacts, then the `Beyond` contacts. Only a contact that is not deeper can
-/// explain another.
+/// Drops each contact that another contact explains: the escape of the other contact separates the
+/// two parts. First drops `Snapped` contacts, then `Beyond` contacts. Only a contact that is not
+/// deeper can explain another.
 ///
 /// Cost: O(n log n) in the number of contacts; each is compared with at most `MAX_ESCAPES` escapes.
 fn leave_explained<N: Space<D>, const D: usize>(

@@ -13,7 +13,7 @@ use crate::collide::{Pair, RawManifold, RawPoints};
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector, min};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Plane, SurfaceAccess};
 
-/// Two shapes, at least one of them a composite, of which pairs of parts are placed.
+/// Two shapes, at least one of them a composite, whose parts can be placed in pairs.
 pub(crate) struct Scene<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     /// The surface of each shape, if it has one.
@@ -31,7 +31,7 @@ struct SharedPlacement<N: Real, const D: usize> {
     /// The pose of the part in the frame of its shape.
     pose: Pose<N, D>,
     is_segment: bool,
-    /// Anchor of the solid and the part, in the frame of the part.
+    /// The anchor, which is the origin of the first shape, in the frame of the part.
     local: Vector<N, D>,
     /// Anchor in the frame of the first shape, and in the frame of the second.
     origins: [Point<N, D>; 2],
@@ -241,9 +241,10 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         PlacedPair::new(bodies, self.turn(), origins)
     }
 
-    /// Returns the pair of a half-space and one part: a part of the first shape (0) or of the
-    /// second (1). The half-space replaces the other shape. The `plane` is in the frame of the
-    /// shape that it replaces; its boundary runs through `point`, in the frame of the first shape.
+    /// Returns the pair of a half-space and one part. `which` is the shape of the part: the first
+    /// (0) or the second (1); the half-space replaces the other shape. The `plane` is in the frame
+    /// of the shape that it replaces; its boundary runs through `point`, in the frame of the first
+    /// shape.
     pub(super) fn above<'p>(
         &'p self,
         plane: &'p Plane<N, D>,
@@ -322,8 +323,9 @@ impl<N: Space<D>, const D: usize> RelativePose<N, D> {
     fn new([pose1, pose2]: [&Pose<N, D>; 2], turn: Pose<N, D>, is_swapped: bool) -> Self {
         let (frame1, frame2) = (*pose1, turn.compose(pose2));
         let pose12 = Pose::relative(&frame1, &frame2);
-        // If the order of kinds is opposite to the order of shapes, the pose is inverted, as for a
-        // whole pair of shapes, so that the result agrees bit for bit with the separation.
+        // In the opposite order of kinds, `pose12` is the inverse of the pose in the order of
+        // shapes, as for a pair of whole shapes. Composed directly, it would differ by rounding,
+        // and the contact would not agree bit for bit with a separation query.
         let (frame, pose12) =
             if is_swapped { (frame2, pose12.inverse()) } else { (frame1, pose12) };
         Self { pose12, is_swapped, frame, turn }
@@ -371,7 +373,7 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
     }
 
     /// Returns points well inside the part of the first shape and the part of the second, each in
-    /// the frames of both shapes; `None` if one part is a half-space.
+    /// the frames of both shapes, as `[part][frame]`. `None` if one part is a half-space.
     pub(super) fn centers(&self) -> Option<[[Point<N, D>; 2]; 2]> {
         let [center1, center2] = self.swapped([self.bodies[0].center()?, self.bodies[1].center()?]);
         let [origin1, origin2] = self.origins.mapped(|origin| origin.coords);
@@ -380,9 +382,9 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         Some([[center1 + origin1, in1 + origin2], [in2 + origin1, center2 + origin2]])
     }
 
-    /// Returns the centre of a convex first shape, or `from` if that is `Some`, and the centre of
-    /// the part of the second shape, both in the frame of the second shape. `None` if a centre is
-    /// needed but does not exist.
+    /// Returns `from` or, if that is `None`, the centre of a convex first shape, and the centre of
+    /// the part of the second shape. Both are in the frame of the second shape. `None` if a centre
+    /// is needed but does not exist.
     pub(super) fn centers_in_second(&self, from: &Option<Point<N, D>>) -> Option<[Point<N, D>; 2]> {
         let [first, second] = if self.relative.is_swapped { [1, 0] } else { [0, 1] };
         let origin = self.origins[1].coords;

@@ -16,7 +16,8 @@ use crate::convex::Separation;
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Segment, Triangle};
 
-/// Two shapes, at least one of them a composite, and the pose of each in the frame of the other.
+/// Two shapes, usually at least one of them a composite, and the pose of each in the frame of the
+/// other.
 #[derive(Clone, Copy)]
 pub(crate) struct Between<'a, N: Real, const D: usize> {
     pub(crate) pair: Pair<'a, N, D>,

@@ -37,12 +37,12 @@ pub(crate) struct InsidePiece<N: Real, const D: usize> {
     piece: u32,
     /// Index range of the parts of the other shape that bound the body.
     boundary: Range<u32>,
-    /// Nearest pair of a part of the piece and a part of the boundary, of the pairs for which
-    /// [`Self::leads_out`] returns `true`; `None` before such a pair is found.
+    /// Nearest pair of a part of the piece and a part of the boundary for which [`Self::leads_out`]
+    /// returns `true`; `None` before such a pair is found.
     nearest: Option<PartSeparation<N, D>>,
-    /// Nearest pair of those for which [`Self::leads_out`] returns `false`, because the body
-    /// continues behind the boundary. Used only if `nearest` is `None`; meaningless otherwise,
-    /// because later pairs are stored without a call of [`Self::leads_out`].
+    /// Nearest pair for which [`Self::leads_out`] returns `false`: the body continues behind the
+    /// boundary. Used only if `nearest` is `None`, and meaningless otherwise: farther pairs than
+    /// `nearest` are stored here without a call of [`Self::leads_out`].
     blocked: Option<PartSeparation<N, D>>,
 }
 
@@ -70,8 +70,8 @@ pub(crate) struct Exit<N: Real, const D: usize> {
 /// body of the other shape. Such a piece is inside the body or crosses its boundary. A piece occurs
 /// once for each such body.
 ///
-/// Cost: a winding number for each body and each piece of the other shape that has parts in the box
-/// of the body's shape.
+/// Cost: one winding number for each pair of a body and a piece of the other shape with parts in
+/// the box of the body's shape.
 pub(crate) fn held_pieces<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
 ) -> InsidePieces<N, D> {
@@ -85,11 +85,11 @@ pub(crate) fn held_pieces<N: Space<D>, const D: usize>(
     pieces
 }
 
-/// Finds the exits of the pieces from their bodies, and drops the pieces that clearly cross a
-/// boundary.
+/// Finds the exits of the pieces from their bodies, and drops the pieces without an exit, which
+/// cross the boundary by more than rounding.
 ///
 /// Cost: one search for nearest parts, shared by all pieces; each pair of parts is compared with
-/// each piece, so that many pieces take quadratic time.
+/// each piece, so many pieces take quadratic time.
 pub(crate) fn find_exits<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     pieces: &mut InsidePieces<N, D>,
@@ -257,8 +257,8 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
     }
 
     /// Returns the exit from the body. `None` if no pair with the boundary was found, or if the
-    /// piece clearly crosses the boundary; then the contacts of its parts with the boundary are
-    /// valid.
+    /// piece crosses the boundary by more than rounding; then the contacts of its parts with the
+    /// boundary are valid.
     pub(crate) fn exit(&self) -> Option<Exit<N, D>> {
         self.exit_at(&self.nearest.or(self.blocked)?)
     }

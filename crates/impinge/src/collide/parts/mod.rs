@@ -1,5 +1,5 @@
-//! Searches of composites, which are collections of parts: for the pairs of parts near each other,
-//! and for the nearest pair.
+//! Searches for the near pairs of parts of two shapes, and for the nearest pair. A composite is a
+//! collection of parts; a convex solid counts as a single part.
 //!
 //! Nested composites are flattened: their parts have consecutive indices on one level. The result
 //! for a pair of parts is computed by the convex algorithms. [`between`] makes a pair of two parts.

@@ -14,8 +14,8 @@ pub(crate) enum Wanted {
     /// The nearest pair, or the deepest if parts overlap; in a tie, the pair with the lowest
     /// indices.
     Deepest,
-    /// The nearest pair or, if parts touch or overlap, any such pair: enough for the distance of
-    /// shapes that are apart, and to know whether shapes touch.
+    /// The nearest pair or, if parts touch or overlap, any pair that does. This suffices for the
+    /// distance of shapes that are apart, and for the test whether shapes touch.
     Touching,
 }
 
@@ -91,8 +91,8 @@ impl<N: Space<D>, const D: usize> TouchingVisitor<N, D> for TouchingPart<'_, '_,
 }
 
 impl<N: Space<D>, const D: usize> TouchingVisitor<N, D> for NearestPart<'_, N, D> {
-    /// Visits a pair. Once a pair touches, returns `None`, which ends the search, because overlaps
-    /// need the search by depth.
+    /// Visits a pair. Once a pair touches, returns `None`, which ends the search: only
+    /// [`visit_near_pairs`] finds the deepest of several overlapping pairs.
     fn visit(&mut self, parts: [u32; 2]) -> Option<N> {
         PairVisitor::visit(self, parts);
         Some(self.limit()).filter(|max_distance| *max_distance > N::ZERO)

@@ -1,12 +1,12 @@
 //! Tests 8 pairs of parts at a time: which are certainly farther apart than a limit, and which
 //! certainly are not.
 //!
-//! Separating axes (Gottschalk, Lin and Manocha, "`OBBTree`", 1996). Two shapes overlap iff none of
-//! these axes separates them: for triangles in 3D, the two normals and the nine cross products of a
-//! side of each; for coplanar triangles, the in-plane normals of the six sides; for segments and
-//! triangles in 2D, the normals of all sides. If they overlap, the shortest separating translation
-//! is along one of these axes. An axis may have any length `l`: gaps are compared with `limit * l`
-//! instead of being divided.
+//! The test uses separating axes (Gottschalk, Lin and Manocha, "`OBBTree`", 1996). Two parts
+//! overlap iff none of these axes separates them: for triangles in 3D, the two normals and the nine
+//! cross products of a side of each; for coplanar triangles, the in-plane normals of the six sides;
+//! for segments and triangles in 2D, the normals of all sides. If they overlap, the shortest
+//! separating translation is along one of these axes. An axis may have any length `l`: gaps are
+//! compared with `limit * l` instead of being divided.
 //!
 //! ```text
 //! axis                          lanes             stops when all are beyond

@@ -53,7 +53,8 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
     ) -> Self {
         let Pose { translation: origin, .. } = between.pose21;
         let along = between.pose21.vector(plane.normal());
-        // A half-space has no box; its sweep is bounded by the spread of the motion alone.
+        // A half-space has an infinite bounding radius, so its sweep has no direction (see
+        // [`PartSweep::anywhere`]) and only the spread counts.
         let highest = sweep.map_or(N::ZERO, |sweep| sweep.spread);
         let slab = Slab { along, lowest: -N::INFINITY, highest };
         Self { origin, size: highest, slabs: smallvec![slab], corners: None }

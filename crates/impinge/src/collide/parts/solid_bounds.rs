@@ -52,8 +52,9 @@ impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
     }
 
     /// Returns a direction from the solid toward the centre of a box, computed by
-    /// [`Self::outward_at`], and an upper bound of the solid's extent along this direction. `None`
-    /// if the direction is not a unit vector or the extent has no finite bound.
+    /// [`Self::outward_at`]. Also returns an upper bound of the largest coordinate of the solid
+    /// along this direction, in the frame of the composite. `None` if the direction is not a unit
+    /// vector or the bound is not finite.
     pub(crate) fn toward(&self, aabb: &Aabb<N, D>) -> Option<(Vector<N, D>, N)> {
         let outward = self.outward_at(&aabb.center());
         let extent = -self.gap(&outward, N::ZERO, largest_coordinate(aabb));

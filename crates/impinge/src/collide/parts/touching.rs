@@ -44,7 +44,7 @@ pub(crate) enum Touching {
     Nearest,
 }
 
-/// Visits those pairs of parts within `max_distance` that `wanted` names, and possibly pairs that
+/// Visits the pairs of parts within `max_distance` that `wanted` selects, and possibly pairs that
 /// are farther apart. Returns `false`, without a visit, if one shape is not a composite with a
 /// tree, or if the translation between them overflows `f32`, the type of the boxes.
 ///

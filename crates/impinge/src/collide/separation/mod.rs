@@ -18,9 +18,9 @@
 //!   apart, for one pair or for 8;
 //! - [`hulls`] is the separating axis test of triangles, boxes and hulls in 3D; `triangles` and
 //!   `chain` test 8 triangles of a surface or 8 segments of a chain at a time;
-//! - `revolved` handles cylinders and cones by the signed distance of a point from them, `ridges`
-//!   their overlaps with flat-sided solids that this does not prove, and `revolved::coaxial` pairs
-//!   with a common axis;
+//! - `revolved` handles cylinders and cones by the signed distance of a point from them. If this
+//!   proves no result, `ridges` handles overlaps with flat-sided solids, and `revolved::coaxial`
+//!   handles pairs with a common axis;
 //! - `shared_corner` sets the distance to zero if corners coincide exactly but rounding leaves a
 //!   small distance;
 //! - `plane_any` handles half-spaces, and `rounded` handles inflated solids. `general` handles all
@@ -112,7 +112,7 @@ fn look_up<N: Real, const D: usize>(table: &Table<N, D>, pair: &Pair<'_, N, D>) 
 }
 
 /// Entry below the diagonal of a table: exchanges the solids, computes their separation, and flips
-/// it back to the frame of `pair.first`.
+/// it back to the frame of `pair.first`. `None` above `limit`.
 fn flipped<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,

@@ -375,7 +375,7 @@ mod tests {
 
     type Solids<N, const D: usize> = [Box<dyn Shape<N, D>>];
 
-    /// Asserts that the distances that `known` returns are bit-identical to those of the
+    /// Asserts that the distances that `known` returns are bit-identical to the distances of the
     /// separation.
     fn are_parts<N: Space<D>, const D: usize>(
         firsts: &Solids<N, D>,

@@ -8,7 +8,7 @@ use crate::math::{Point, Pose, Real, Vector, unit_or};
 use crate::shape::{Geometry, Kind, Plane, SupportMap};
 
 /// Returns the separation of a convex solid from a half-space, at the solid's point deepest in the
-/// half-space.
+/// half-space; `None` above `limit`.
 ///
 /// Exact for every support map, including curved ones. If several points are equally deep, the
 /// solid's support map chooses one of them.
@@ -61,7 +61,7 @@ impl<N: Real, const D: usize> Deepest<N, D> {
     }
 }
 
-/// Returns the separation of two half-spaces.
+/// Returns the separation of two half-spaces; `None` above `limit`.
 ///
 /// If they face each other, exactly or up to the rounding of rotations (an angle below 16 epsilon),
 /// they have a gap or a finite depth. All other pairs overlap without bound: then the distance is

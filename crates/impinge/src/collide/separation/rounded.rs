@@ -5,7 +5,7 @@ use crate::convex::Separation;
 use crate::math::{Real, Space};
 use crate::shape::Kind;
 
-/// Returns the separation of two solids of which one or both are rounded.
+/// Returns the separation of two solids of which one or both are rounded; `None` above `limit`.
 ///
 /// Exact for overlapping solids as well: inflating a solid moves each supporting plane outwards by
 /// the radius, so the normal of least depth stays the same.
@@ -21,7 +21,7 @@ pub(super) fn separation<N: Space<D>, const D: usize>(
 }
 
 /// Returns the inner solid of a rounded solid, and the radius around it; for other solids the solid
-/// itself and zero. Of nested rounded solids it removes only the outermost.
+/// itself and zero. Removes only the outermost radius of nested rounded solids.
 pub(crate) fn bare<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> (Kind<'_, N, D>, N) {
     match kind {
         Kind::Rounded(solid) => (solid.inner().0, solid.radius()),

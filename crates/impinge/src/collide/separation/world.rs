@@ -52,9 +52,9 @@ pub(crate) fn touching_of_ordered<N: Space<D>, const D: usize>(
     Some(placed(&found, ordered.first, ordered.swapped))
 }
 
-/// Returns the distance of [`touching_in_world`]. If `limit` is zero or more, the result for two
-/// overlapping convex solids may be any number that is not positive, so that the depth need not be
-/// computed.
+/// Returns the distance of [`touching_in_world`]; `None` above `limit`, and if a pose is not
+/// finite. If `limit` is zero or more, the result for two overlapping convex solids may be any
+/// number that is not positive, so that the depth need not be computed.
 pub(crate) fn distance_in_world<N: Space<D>, const D: usize>(
     placed1: &Placed<'_, N, D>,
     placed2: &Placed<'_, N, D>,

@@ -86,8 +86,8 @@ where
 
 /// Returns the factor by which the error `name` may exceed the tolerance: for the two points 1000
 /// in `f64` and 4 in `f32`, else 1. Points on curved surfaces are accurate only to about the square
-/// root of the accuracy of distances, which is 1e-7 of the size in `f64`. In `f32`, the tolerance
-/// of curved solids is already wide enough for this.
+/// root of the accuracy of distances: to 1e-7 of the size in `f64`. In `f32`, the tolerance of
+/// curved solids is already wide enough for this.
 fn slack<N: Real>(name: &str) -> f64 {
     match name.starts_with("point ") {
         true if size_of::<N>() == 8 => 1e3,

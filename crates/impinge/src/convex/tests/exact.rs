@@ -1,5 +1,5 @@
 //! Tests separations against results computed by hand, and the distances of boxes against the
-//! largest height over all axes along which two boxes can be separated.
+//! largest height over all axes of the separating axis test.
 
 use super::super::{Separation, Simplicial, separation};
 use super::generator::{Generator, Sample};

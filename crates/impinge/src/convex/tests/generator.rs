@@ -99,8 +99,8 @@ where
     f64: Simplicial<D> + Own<D>,
 {
     /// Draws a rotation, then moves the second solid in 12 steps until the distance is about
-    /// `target`. All steps are along one random direction, but along the normal where the distance
-    /// grows by less than a tenth of the step in that direction.
+    /// `target`. Each step is along one fixed random direction, or along the normal if the angle
+    /// between the two has a cosine of at most 0.1.
     pub(super) fn new(shapes: [Value; 2], target: f64, generator: &mut Generator) -> Self {
         let mut sample = Self { shapes, pose12: generator.rotation(), scale: 0.0 };
         let [a, b] = sample.solids::<f64>();

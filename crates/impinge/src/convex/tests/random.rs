@@ -73,7 +73,7 @@ struct Tally {
     /// Largest error of each sample's distance: against the height of its normal, the largest
     /// height found, and the offset of its points.
     errors: Vec<f64>,
-    /// Larger distance of each sample's two points from the surfaces of their solids.
+    /// The larger of the distances of each sample's two points from the surfaces of their solids.
     astray: Vec<f64>,
     overlaps: usize,
     worst: [f64; 5],

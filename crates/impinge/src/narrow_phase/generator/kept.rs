@@ -59,7 +59,8 @@ impl<N: Real, const D: usize> KeptShape<N, D> {
         })
     }
 
-    /// Returns `true` if `shape` equals the kept shape, so that all queries have the same results.
+    /// Returns `true` if `shape` equals the kept shape; all queries of the two then have the same
+    /// results.
     pub(super) fn is(&self, shape: Geometry<'_, N, D>) -> bool {
         match (self, shape.0) {
             (Self::Solid(kept), _) => kept.is(shape),

@@ -127,9 +127,9 @@ impl<N: Real, const D: usize> PairManifoldGenerator<N, D> {
 
     /// Returns the generator with contact reuse, as
     /// [`DefaultNarrowPhase::try_reusing`](super::DefaultNarrowPhase::try_reusing) describes it.
-    /// While no point of the smaller solid has moved, relative to the other solid and since the
-    /// last computation, by `tolerance` or by the linear prediction, contacts stay fixed to the
-    /// solids, and only their depths are measured again.
+    /// Contacts stay fixed to the solids, and only their depths are measured again, while the pair
+    /// hardly moves. This means that no point of the smaller solid has moved, relative to the other
+    /// solid and since the last computation, by `tolerance` or by the linear prediction.
     ///
     /// A pair of a ball with a ball, a box, a segment or a capsule is always computed, because that
     /// takes no more time. A pair with a convex shape of a user's type is always computed too,
@@ -295,8 +295,8 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
     }
 
     /// Keeps copies of the parts on which the contacts of a composite lie. The contacts must have
-    /// just been computed. Returns `false` if a shape or a part cannot be kept, so that the
-    /// manifolds must be built before the shapes are gone.
+    /// just been computed. Returns `false` if a shape or a part cannot be kept; the manifolds must
+    /// then be built before the shapes are gone.
     fn keep_touched(&mut self, shapes: [Geometry<'_, N, D>; 2]) -> bool {
         let are_whole = self.wholes().mapped(|whole| whole.is_some());
         let PairContacts::Composite(state) = &self.contacts else { return are_whole == [true; 2] };
@@ -384,7 +384,7 @@ impl<N: Space<D>, const D: usize> ContactManifoldGenerator<N, D> for PairManifol
     }
 }
 
-/// Chooses the library's own algorithm for every two solids.
+/// Chooses the library's own algorithm for every pair of solids.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};

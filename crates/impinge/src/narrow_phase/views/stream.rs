@@ -323,8 +323,8 @@ fn position(index: usize) -> u32 {
 /// Sets [`StreamPoint::previous`] of the points of `pair`. `before` is this pair in the previous
 /// fill, and `old` has all points of that fill.
 ///
-/// The search begins behind the last match, since contacts mostly keep their order. Numbers of
-/// contacts increase, so a point with a larger number than all old points of the pair is new.
+/// The search begins behind the last match, since contacts mostly keep their order. New contacts
+/// get increasing numbers, so a point with a larger number than all old points of the pair is new.
 #[inline]
 fn link<N: Real, const D: usize>(
     pair: PairRange,

@@ -33,9 +33,9 @@ pub(crate) struct PartArrival<N: Real, const D: usize> {
 /// sunk into the floor.
 ///
 /// If both shapes are composites, the one with fewer parts is searched for the parts that the box
-/// of the other composite hits. For each part found, the other composite is searched along the path of that
-/// part; a path ends at the first impact found so far. After a start in contact that is not an
-/// impact, each part that is hit also costs the contacts of the whole shapes at that time.
+/// of the other composite hits. For each part found, the other composite is searched along the path
+/// of that part. A path ends at the first impact found so far. After a start in contact that is not
+/// an impact, each part that is hit also costs the contacts of the whole shapes at that time.
 pub(crate) fn first_arrival<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     path: &Path<N, D>,

@@ -48,7 +48,7 @@ impl<'a, N: Space<D>, const D: usize> Mover<'a, N, D> {
 
     /// Returns a time, zero or more, before which the solid certainly does not touch the part: zero
     /// if the part has no corners. `None` if the two do not touch up to `end`. The time depends
-    /// only on the solid, the part and `end`, so that no result depends on the order of a search.
+    /// only on the solid, the part and `end`, so no result depends on the order of a search.
     pub(super) fn earliest(&self, part: &Part<'_, N, D>, end: N) -> Option<N> {
         let Some(corners) = corners(&part.solid, &part.pose) else { return Some(N::ZERO) };
         let relative = corners.mapped(|corner| corner - self.pose.translation);
@@ -88,7 +88,7 @@ impl<N: Real> ContactSpan<N> {
         let ([low, high], [bottom, top]) = (own, other);
         let (down, up) = (bottom - high - self.slack, top - low + self.slack);
         if speed == N::ZERO {
-            // The intervals never overlap: the span becomes empty.
+            // Intervals that do not overlap now never do: the span becomes empty.
             self.leave = if down > N::ZERO || up < N::ZERO { -N::ONE } else { self.leave };
             return;
         }

@@ -32,7 +32,7 @@ pub(crate) fn each_hit<N: Space<D>, const D: usize>(
     let RayQuestion { ray, max_time, solid } = question;
     let mut latest = *max_time;
     let Some(start) = around_point(&ray.origin, &parts.search().bounds()) else { return };
-    // The comparison is false for NaN, so that a NaN limit finds nothing.
+    // The comparison is false for NaN, so a NaN limit finds nothing.
     let is_valid = latest >= N::ZERO && ray.dir.iter().all(|x| x.is_finite_number());
     if !is_valid {
         return;

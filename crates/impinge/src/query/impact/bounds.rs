@@ -138,7 +138,7 @@ impl<N: Real> Rate<N> {
     }
 
     /// Returns the time in which the motion uses up the length `gap`: infinite if it never does,
-    /// and zero if the rate is infinite or NaN.
+    /// and zero if a coefficient is NaN or the speed is infinite.
     pub(super) fn time_for(&self, gap: N) -> N {
         if !(self.speed <= N::INFINITY && self.bend <= N::INFINITY) {
             return N::ZERO;
@@ -227,8 +227,9 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
 
     /// Returns a bound of the motion of the points of body `which` during `span`, in the frame of
     /// the other body. `rate` bounds the approach of any two points. For constant velocities the
-    /// result is a linear function of the position plus a spread, if that spread is smaller than
-    /// the travel by `rate` alone.
+    /// result is a linear function of the position plus a spread. For other motions, and if the
+    /// travel by `rate` is not larger than that spread, the result is that travel in an unknown
+    /// direction.
     ///
     /// A point at `u` from the other body's centre has the velocity `u' - S u` in the frame of that
     /// body, which rotates with the generator `S`. The velocity is a linear function of the
@@ -271,7 +272,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     }
 
     /// Returns a time span that the bound `safe` covers completely (`safe(span) >= span`), found by
-    /// bisection over all orders of magnitude; zero if there is none. Used if the bound for all the
+    /// bisection over all orders of magnitude; zero if none is found. Used if the bound for all the
     /// remaining time is zero, as when the speed is unbounded.
     fn first_span(&self, remaining: N, safe: &dyn Fn(N) -> N) -> N {
         let (mut low, mut high) = (N::MIN_POSITIVE, min(remaining, N::MAX));
@@ -420,8 +421,10 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         self.closing_observed(points, &arms, size)
     }
 
-    /// Computes the result of [`Self::closing`] from the positions of the points a short time
-    /// later. Zero, with no error, if the bound of the speed is zero or not finite.
+    /// Computes the result of [`Self::closing`] from the positions of the points after a short
+    /// time, in which they move by at most the square root of epsilon times `size`. Zero, with no
+    /// error, if that time is zero or not finite, as when the bound of the speed is zero or
+    /// infinite.
     fn closing_observed(
         &self,
         points: &[Vector<N, D>; 2],

@@ -19,7 +19,8 @@ const MAX_STEPS: usize = 128;
 /// The motion of the second solid of a pair in the frame of the first.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Path<N: Real, const D: usize> {
-    /// The displacement per unit of time; no component exceeds two.
+    /// The displacement per unit of time. Its length is less than four: before the rotation into
+    /// the frame of the first solid, no component exceeds two.
     pub(crate) velocity: Vector<N, D>,
     /// The latest time of an impact, inclusive.
     pub(crate) end: N,
@@ -27,8 +28,8 @@ pub(crate) struct Path<N: Real, const D: usize> {
     pub(crate) target: N,
     /// Whether a contact at the start is an impact for all velocities.
     pub(crate) contact_at_start: bool,
-    /// Whether both solids are equal and at the same pose, so that every normal is equivalent to
-    /// its opposite.
+    /// Whether both solids are equal and at the same pose. Every normal is then equivalent to its
+    /// opposite.
     pub(crate) mirrored: bool,
 }
 
@@ -232,8 +233,8 @@ fn arrival_of_balls<N: Space<D>, const D: usize>(
     let across = middle + velocity * foot;
     let leg = ((contact_distance * contact_distance - across.norm_squared()) / squared).sqrt();
     let along = (foot - leg) * scale;
-    // The comparison is false for NaN, so that balls that pass each other are also left to the
-    // iteration.
+    // The root is NaN for balls that pass each other, and the comparison is false for NaN: these
+    // balls are also left to the iteration.
     let is_in_time = along > N::ZERO && along <= path.end;
     if !is_in_time {
         return None;

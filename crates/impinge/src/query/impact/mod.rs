@@ -104,11 +104,11 @@ pub struct ImpactOptions<N: Real> {
     /// The largest difference from the target distance, a length, at which rotating solids are
     /// treated as touching. The search ends there, which saves steps; the time found is then
     /// earlier, and never late. Negative and NaN are treated as zero. Values below the rounding
-    /// error, 8 epsilon times the sizes and the distance of the bodies, are raised to it.
+    /// error, 8 epsilon times the sum of the bodies' sizes and distance, are raised to it.
     ///
     /// With `None` (the default) the search continues up to rounding. After 256 consecutive steps
-    /// with a gap below 2⁻²⁰ of the sizes plus the distance (`f32`: 2⁻¹⁷), as for surfaces that
-    /// slide on each other, the search accepts that gap. Straight paths ignore this option.
+    /// with a gap below 2⁻²⁰ of the sizes plus the distance (`f32`: 2⁻¹⁷), as for sliding surfaces,
+    /// it accepts that gap. [`impact()`] ignores this option.
     pub tolerance: Option<N>,
     /// Whether solids that touch or overlap at time zero are an impact at time zero, whatever their
     /// velocities. False by default: then the table of [`impact()`] decides.
@@ -180,20 +180,20 @@ impl<N: Real> Default for ImpactOptions<N> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ImpactStatus {
-    /// The solids were apart before and touch at the returned time, up to the tolerance.
+    /// The time is after the start: the solids touch then, up to the tolerance.
     Reached,
-    /// The time is zero: the solids touch, or are at the target distance, up to rounding.
+    /// The time is zero: the solids touch, or are at the target distance, up to the tolerance.
     TouchingAtStart,
     /// The time is zero: the solids overlap, or are nearer than the target distance. If they
     /// overlap, the distance of the two points is the depth.
     PenetratingAtStart,
-    /// The maximum number of steps was reached: the solids certainly do not touch before the
-    /// returned time; whether they touch later is unknown.
+    /// The search ended without a decision, usually at the maximum number of steps: the solids
+    /// certainly do not touch before the returned time; whether they touch later is unknown.
     StepsSpent,
 }
 
 impl ImpactStatus {
-    /// Returns whether the solids overlapped or were within the target distance at time zero.
+    /// Returns whether the impact is a contact or an overlap at time zero.
     #[must_use]
     pub const fn is_at_start(self) -> bool {
         matches!(self, Self::TouchingAtStart | Self::PenetratingAtStart)
@@ -226,8 +226,8 @@ pub struct Impact<N: Real, const D: usize> {
     pub toi: N,
     /// The point on the surface of the first solid.
     pub world1: Point<N, D>,
-    /// The point on the surface of the second solid: equal to `world1`, up to the target distance
-    /// and rounding, unless the solids overlap from the start.
+    /// The point on the surface of the second solid: at the target distance from `world1`, up to
+    /// the tolerance, unless the solids are nearer at the start or the steps are spent.
     pub world2: Point<N, D>,
     /// The unit vector from the first solid to the second.
     pub normal: Unit<Vector<N, D>>,
@@ -288,10 +288,10 @@ impl<N: Real, const D: usize> Impact<N, D> {
 /// For composites the contacts of the whole shapes decide, as in [`contact`](super::contact()) and
 /// in worlds: one along each normal of a surface, none with the inner edges of a floor, and for
 /// shapes without a surface one for each pair of parts. The impact at zero is the deepest contact
-/// that is an impact. If none is, parts in contact at the start are not hit later; other parts are
-/// if the whole shapes then have a contact that is an impact. So a box that has sunk into a floor
-/// of many parts can be moved out of it. Parts that overlap without a contact of the whole shapes,
-/// as behind a one-sided surface, decide by their own normal.
+/// that is an impact. If none is, parts in contact at the start are not hit later. Another part is
+/// hit later unless the whole shapes then have contacts and none of these is an impact. So a box
+/// that has sunk into a floor of many parts can be moved out of it. Parts that overlap without a
+/// contact of the whole shapes, as behind a one-sided surface, decide by their own normal.
 ///
 /// With [`ImpactOptions::contact_at_start`] every entry of the table is an impact at zero, as in
 /// ncollide and, by default, parry. [`Impact::status`] distinguishes the rows of the table.
@@ -364,7 +364,7 @@ pub fn time_of_impact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     entries::time_of_impact(&moving1, &moving2, &ImpactOptions::new())
 }
 
-/// Implements [`impact`] for solids that the pair table supports.
+/// Computes [`impact`] in canonical order, so that swapped solids give the swapped result.
 pub(crate) fn impact_of_pair<N: Space<D>, const D: usize>(
     moving1: &Moving<'_, N, D>,
     moving2: &Moving<'_, N, D>,
@@ -388,7 +388,7 @@ pub(crate) fn time_of_pair<N: Space<D>, const D: usize>(
 /// Two solids in canonical order, with the motion of the second in the frame of the first.
 ///
 /// The relative velocity is divided by a power of two, which brings its largest component between 1
-/// and 2. So nothing overflows, and the result does not depend on the unit of time.
+/// and 2. So the squared speed stays in range, and scaling the time by powers of two is exact.
 struct Course<'m, 'a, N: Real, const D: usize> {
     first: &'m Moving<'a, N, D>,
     ordered: Ordered<'m, 'a, N, D>,
@@ -488,8 +488,8 @@ fn are_parted<N: Real, const D: usize>(
     apart.stays_beyond(options.target_distance, &velocity, options.max_time)
 }
 
-/// Returns whether the first of two otherwise equal solids comes second in canonical order, by the
-/// components of its velocity.
+/// Returns whether the first of two equal solids at equal poses comes second in canonical order:
+/// its velocity is lexicographically larger.
 fn is_later<N: Real, const D: usize>(
     moving1: &Moving<'_, N, D>,
     moving2: &Moving<'_, N, D>,

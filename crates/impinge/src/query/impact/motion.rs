@@ -52,8 +52,8 @@ pub trait RigidMotion<N: Space<D>, const D: usize> {
     fn speed_bound(&self, from: N, to: N) -> N;
 
     /// Returns an upper bound of the angular speed, in radians per unit of time, at all times
-    /// between `from` and `to`; `to` may be infinite. A negative result or NaN is treated as
-    /// infinite.
+    /// between `from` and `to`; `to` may be infinite. Infinite if there is no bound; a negative
+    /// result or NaN is treated as infinite.
     fn turn_bound(&self, from: N, to: N) -> N;
 
     /// Returns the point of the body, in its local frame, whose speed [`Self::speed_bound`] bounds.

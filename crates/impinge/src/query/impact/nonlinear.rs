@@ -25,8 +25,8 @@ const MAX_PART_STEPS: usize = 64;
 /// The maximum number of consecutive steps with a gap below [`NEAR`], if no tolerance is given.
 const MAX_NEAR_STEPS: usize = 256;
 
-/// A gap is near if it is at most the larger of two limits: a fraction (2^-20) of the sum of the
-/// bodies' sizes and distance, and a number of epsilons of that sum.
+/// A gap is near if it is at most the larger of two limits: 2^-20 and 64 epsilon, each times the
+/// sum of the bodies' sizes and distance.
 const NEAR: [f64; 2] = [1.0 / 1_048_576.0, 64.0];
 
 /// Parts of composites are advanced one by one if the gap is less than this fraction of the sum of
@@ -44,21 +44,22 @@ const PARTS_WAY: f64 = 1.0 / 32.0;
 /// bitwise equal result.
 ///
 /// *Never late.* The time is not later than the first touch, up to the rounding error of the
-/// bodies' positions and sizes: fast rotation and thin bodies are not missed. *Hardly early.* With
-/// [`ImpactStatus::Reached`] the bodies are then within [`ImpactOptions::tolerance`] of the target
-/// distance, or so near that they reach the target distance within the resolution of the time. With
-/// [`ImpactStatus::StepsSpent`] 1024 steps did not decide: the bodies do not touch before the
-/// returned time, and whether they touch later is unknown. This happens for bodies that stay in
-/// contact while they rotate, for motions that repeat for ever without an impact and without a
-/// latest time, and for bounds far above the true speeds. Query again from that time, or with a
-/// smaller latest time.
+/// bodies' positions and sizes: fast rotation and thin bodies are not missed. *Early by at most the
+/// tolerance.* With [`ImpactStatus::Reached`] the bodies are, at the returned time, within
+/// [`ImpactOptions::tolerance`] of the target distance, or they reach it within the resolution of
+/// the time. With [`ImpactStatus::StepsSpent`] the search ended without a decision, usually after
+/// 1024 steps: the bodies do not touch before the returned time, and whether they touch later is
+/// unknown. This happens for bodies that stay in contact while they rotate, for motions that repeat
+/// for ever without an impact and without a latest time, for bounds far above the true speeds, and
+/// if a later pose is not finite. Query again from that time, or with a smaller latest time.
 ///
 /// # Starts in contact
 ///
 /// The table of [`impact`](super::impact) applies, with the velocities of the nearest points. But a
-/// rotating body may come back, so a start that is not an impact is not final. The bodies hit where
-/// they touch again after they have separated, or where they get deeper than at the start, by more
-/// than 1024 epsilon times their sizes. For composites the deepest pair of parts decides.
+/// rotating body may come back, so a start that is not an impact is not final. The bodies hit if
+/// they touch again after a gap of more than 1024 epsilon times the sum of their sizes and
+/// distance, or if they get deeper than at the start by half of that. For composites the deepest
+/// pair of parts decides.
 ///
 /// # Cost
 ///
@@ -71,10 +72,10 @@ const PARTS_WAY: f64 = 1.0 / 32.0;
 /// largest bend of its path, or by means of spheres around the bodies while these are apart. A
 /// rotating half-space is fastest far out: its speed is taken where the other body can be.
 /// Composites are bounded as a whole, by their largest speed, until they are within 1/128 of their
-/// sizes. Then, for constant velocities, each two parts whose paths can cross are advanced
-/// separately, with their own normal and speed, until the first two touch. So all parts are
-/// searched twice for each 1/32 of the sizes that the fastest point moves by, however many steps
-/// sliding parts take.
+/// sizes. Then, for constant velocities, each pair of parts whose paths can cross is advanced
+/// separately, with its own normal and speed, until the first pair touches. So all parts are
+/// searched twice while the fastest point moves by 1/32 of the sizes, however many steps sliding
+/// parts take.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -82,13 +83,13 @@ const PARTS_WAY: f64 = 1.0 / 32.0;
 /// use impinge::dim2::shape::{Ball, Cuboid};
 /// use std::f64::consts::FRAC_PI_2;
 ///
-/// // A bar turns by a quarter per second; a ball lies a quarter turn ahead of it, less its radius.
+/// // A bar rotates by a quarter turn per second; a ball's centre lies a quarter turn ahead of it.
 /// let (bar, ball) = (Cuboid::new(Vector::new(2.0, 0.0)), Ball::new(0.5));
 /// let turns = ConstantVelocities::<f64>::new(Isometry::identity(), Vector::zeros(), FRAC_PI_2);
 /// let stays = ConstantVelocities::<f64>::still(Isometry::translation(0.0, 1.0));
 /// let options = ImpactOptions::new().with_max_time(1.0);
 /// let found = nonlinear_time_of_impact(&turns, &bar, &stays, &ball, &options);
-/// // Seen from the origin the ball is half of a sixth of a turn wide: it is hit after 60 degrees.
+/// // Seen from the origin, the ball extends 30° to each side of its centre: it is hit after 60°.
 /// assert!((found.expect("it is in the way").toi - 2.0 / 3.0).abs() < 1e-12);
 /// ```
 #[must_use]
@@ -140,8 +141,8 @@ pub(crate) fn impact_of_flight<N: Space<D>, const D: usize>(
 }
 
 /// Returns whether the second of two bodies that are equal at time zero comes first in canonical
-/// order. They are compared by their positions at the latest time or, if these are equal too, at
-/// one of the times 1, 2¹⁶, 2³², ….
+/// order. They are compared by their poses at the latest time, if it is finite, and then at the
+/// times 1, 2¹⁶, 2³², … until two poses differ.
 fn two_leads<N: Space<D>, const D: usize>(
     one: &MovingBody<'_, N, D>,
     two: &MovingBody<'_, N, D>,
@@ -286,7 +287,8 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
             rate,
             step: Step { time: longest, near_steps: 0 },
         };
-        // The nearest parts probably limit the step, which shortens the search of the others.
+        // The nearest parts probably limit the step. With a short step, fewer other parts are
+        // visited.
         parts.visit(configuration.found.parts);
         visit_near_pairs(&configuration.poses.between, &mut parts);
         if parts.step.time > whole.time { parts.step } else { whole }
@@ -374,8 +376,9 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
-    /// Returns a length. A contact that gets deeper by less than half of it is not an impact, and
-    /// bodies have separated only if the gap exceeds the tolerance by more than it.
+    /// Returns the smallest gap, beyond the tolerance, at which bodies in contact at the start are
+    /// treated as separated. A contact that gets deeper by less than half of this length is not an
+    /// impact.
     fn slack(&self) -> N {
         N::lit(1024.0) * N::EPSILON * self.size
     }

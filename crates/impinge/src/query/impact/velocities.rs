@@ -129,8 +129,8 @@ impl<N: Space<D>, const D: usize> ConstantVelocities<N, D> {
         Matrix::<N, D>::identity() + self.unit_spin * sine + squared * (N::ONE - cosine)
     }
 
-    /// Returns the position of the body's local origin relative to `origin`, once the body has the
-    /// rotation `rotation`.
+    /// Returns the position of the body's local origin relative to `origin`, at the time `since`
+    /// after the start, when the body has the rotation `rotation`.
     fn translation(
         &self,
         origin: &Vector<N, D>,
@@ -193,7 +193,7 @@ impl<N: Real> ConstantVelocities<N, 2> {
     /// use impinge::query::RigidMotion;
     /// use std::f64::consts::FRAC_PI_2;
     ///
-    /// // On a platform that is turned by a quarter, a cart drives to the platform's right.
+    /// // On a platform that is rotated by a quarter turn, a cart drives to the platform's right.
     /// let cart = ConstantVelocities::<f64>::new(Isometry::identity(), Vector::x(), 0.0);
     /// let platform = Isometry::new(Vector::new(5.0, 0.0), FRAC_PI_2);
     /// let seen = cart.append_transformation(&platform).position_at(3.0).translation.vector;
@@ -262,7 +262,7 @@ impl<N: Real> ConstantVelocities<N, 3> {
     /// use impinge::query::RigidMotion;
     /// use std::f64::consts::FRAC_PI_2;
     ///
-    /// // In a frame that is turned by a quarter about x, a top turns about the frame's y.
+    /// // In a frame that is rotated by a quarter turn about x, a top spins about the frame's y.
     /// let top = ConstantVelocities::<f64>::new(Isometry::identity(), Vector::x(), Vector::y());
     /// let frame = Isometry::new(Vector::new(5.0, 0.0, 0.0), Vector::x() * FRAC_PI_2);
     /// let seen = top.append_transformation(&frame);

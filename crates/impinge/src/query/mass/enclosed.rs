@@ -78,8 +78,8 @@ pub(super) fn enclosed2<N: Real>(shape: &dyn Shape<N, 2>) -> Result<Moments<2>, 
 /// Returns the moments of the volume that a closed 3D mesh encloses.
 ///
 /// # Errors
-/// If the mesh bounds no volume, with the first triangle at fault, or the shape is another
-/// composite.
+/// If the mesh bounds no volume (the error names the first triangle at fault), or the shape is
+/// another composite.
 pub(super) fn enclosed3<N: Real>(shape: &dyn Shape<N, 3>) -> Result<Moments<3>, MassError> {
     let Some(mesh) = shape.as_shape::<TriMesh<N, 3>>() else {
         return Err(MassError::NotClosed { part: 0 });
@@ -95,7 +95,7 @@ pub(super) fn enclosed3<N: Real>(shape: &dyn Shape<N, 3>) -> Result<Moments<3>, 
     Ok(units.grown(&cones.moments()))
 }
 
-/// Returns the local units for a shape with these bounds; around the origin for `None`.
+/// Returns the local units for a shape with the box `bounds`; about the origin for `None`.
 fn units<N: Real, const D: usize>(bounds: Option<&Aabb<N, D>>) -> LocalUnits<D> {
     let origin = Point::<N, D>::origin();
     let [low, high] = bounds.map_or([&origin; 2], |bounds| [bounds.mins(), bounds.maxs()]);

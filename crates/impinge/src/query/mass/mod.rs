@@ -75,7 +75,7 @@ use crate::shape::{
 /// let pi = std::f64::consts::PI;
 /// assert!((die.mass() - (8.0 + 12.0 + 1.5 * pi + pi / 6.0)).abs() < 1e-13);
 ///
-/// // Two bricks on each other are one of twice the height.
+/// // Two stacked bricks equal one brick of twice the height.
 /// let brick = ShapeHandle::new(Cuboid::new(Vector::new(1.0, 2.0, 3.0)));
 /// let at = |y: f64| Isometry::translation(0.0, y, 0.0);
 /// let tower = Compound::new(vec![(at(-2.0), brick.clone()), (at(2.0), brick)]);

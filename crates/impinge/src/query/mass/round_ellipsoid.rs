@@ -55,8 +55,8 @@ impl<const D: usize> Shell<D> {
     }
 
     /// Adds the solid angle around the unit vector v. `radii(h, p, a)` returns the product of the
-    /// principal radii from the length h, the ellipsoid's support point p, and the product a of the
-    /// half axes.
+    /// principal radii from `h` (see the module docs), the ellipsoid's support point p, and the
+    /// product a of the half axes.
     fn add(
         &mut self,
         v: &Vector<f64, D>,

@@ -1,9 +1,10 @@
 //! Mass of convex solids in 3D, computed from support points alone.
 //!
-//! A linear map gives the solid the proportions of a ball; the solid is then cut into slices across
-//! its z axis. Each slice is a convex solid in 2D. Its support point in a direction follows from
-//! support points of the solid: the solid is projected to the plane of that direction and the z
-//! axis, and an interval of the outline there is narrowed to the height of the slice.
+//! A linear map gives the solid the proportions of a ball; the mapped solid is then cut into slices
+//! perpendicular to the z axis. Each slice is a convex solid in 2D. Its support point in a
+//! direction follows from support points of the solid: the solid is projected to the plane of that
+//! direction and the z axis, and an interval of the outline there is narrowed to the height of the
+//! slice.
 
 use super::integrals::{Integrals, LocalUnits};
 use super::revolution::NODES;
@@ -118,8 +119,8 @@ impl RoundFrame {
         Self { units, center, axes, widths }
     }
 
-    /// Returns the unit direction of the solid whose support point corresponds to a direction of
-    /// the round frame; y for a zero direction.
+    /// Returns the unit direction in the solid's frame whose support point is also extreme in the
+    /// direction `round` of the round frame; y for a zero direction.
     fn direction(&self, round: &V3) -> V3 {
         let direction = self.axes * round.component_div(&self.widths);
         direction.try_normalize(0.0).unwrap_or_else(V3::y)

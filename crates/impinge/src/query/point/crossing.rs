@@ -21,7 +21,7 @@ pub(super) struct RayDirection {
     pub(super) is_ascending: bool,
 }
 
-/// The contribution of one part to the winding number; `None` if the point lies on it.
+/// The contribution of one part to the winding number; `None` only for a point on the part.
 type Added = Option<i64>;
 
 /// Returns the sign of a determinant: 1, −1, or 0 (also for NaN).
@@ -33,9 +33,9 @@ fn sign(determinant: f64) -> i64 {
     }
 }
 
-/// Returns the contribution of a segment in 2D, whose left is inside. A point on a segment across
-/// the ray may go undetected; the result is then the contribution around a point beside the
-/// segment.
+/// Returns the contribution of a segment in 2D, whose left is inside. A point at an end of the
+/// segment, or on a segment parallel to the ray, may go undetected; the result is then the
+/// contribution around a point beside the segment.
 pub(super) fn of_segment(
     ends: [Point<f64, 2>; 2],
     point: &Point<f64, 2>,
@@ -59,9 +59,9 @@ pub(super) fn of_segment(
     }
 }
 
-/// Returns the contribution of a triangle in 3D, whose front is outside. A point on a triangle
-/// parallel to the ray may go undetected; the result is then the contribution around a point beside
-/// the triangle.
+/// Returns the contribution of a triangle in 3D, whose front is outside. A point on a side of the
+/// triangle, or on a triangle parallel to the ray, may go undetected; the result is then the
+/// contribution around a point beside the triangle.
 pub(super) fn of_triangle(
     corners: [Point<f64, 3>; 3],
     point: &Point<f64, 3>,
@@ -75,8 +75,8 @@ pub(super) fn of_triangle(
         return Some(0);
     }
     let side = sign(volume(&corners[0], &corners[1], &corners[2], point));
-    // A triangle whose corners run counter-clockwise, looking along the negative axis, has its back
-    // towards points with smaller coordinates on the axis.
+    // A triangle whose corners run counter-clockwise, seen from the positive end of the axis, has
+    // its back towards points with smaller coordinates on the axis.
     let is_above = side * around < 0;
     match side {
         0 => None,

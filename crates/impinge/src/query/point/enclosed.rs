@@ -59,14 +59,14 @@ impl<N: Real> TriMesh<N, 3> {
         self.is_volume().then(|| signed(self, point, || self.winding(point)))
     }
 
-    /// Returns the winding number of the mesh around the point; `None` if the point lies on the
-    /// mesh.
+    /// Returns the winding number of the mesh around the point; `None` only for a point on the
+    /// mesh. A point on the mesh may instead get the number of a point beside it.
     fn winding(&self, point: &Point<N, 3>) -> Option<i64> {
         self.winding_of(point, |_| true)
     }
 
     /// Returns the winding number, around the point, of the triangles for which `counts` returns
-    /// `true`; `None` if the point lies on one of these.
+    /// `true`; `None` only if the point lies on one of these triangles.
     pub(crate) fn winding_of(
         &self,
         point: &Point<N, 3>,
@@ -120,14 +120,14 @@ impl<N: Real> Polyline<N, 2> {
         self.is_outline().then(|| signed(self, point, || self.winding(point)))
     }
 
-    /// Returns the winding number of the line around the point; `None` if the point lies on the
-    /// line.
+    /// Returns the winding number of the line around the point; `None` only for a point on the
+    /// line. A point on the line may instead get the number of a point beside it.
     fn winding(&self, point: &Point<N, 2>) -> Option<i64> {
         self.winding_of(point, |_| true)
     }
 
     /// Returns the winding number, around the point, of the segments for which `counts` returns
-    /// `true`; `None` if the point lies on one of these.
+    /// `true`; `None` only if the point lies on one of these segments.
     pub(crate) fn winding_of(
         &self,
         point: &Point<N, 2>,
@@ -172,7 +172,7 @@ fn signed<N: Space<D>, const D: usize>(
 }
 
 /// Sums the contributions of the parts between a point and the nearest face of the overall box; 0
-/// for a point outside that box. `None` if the point lies on a part.
+/// for a point outside that box. `None` only for a point on a part.
 fn winding<N: Space<D>, const D: usize>(
     tree: &BoxTree<N, D>,
     point: &Point<N, D>,
@@ -219,8 +219,8 @@ fn shortest_exit<N: Real, const D: usize>(
     Some((direction, Aabb::try_new(low, high).ok()?))
 }
 
-/// Returns the power of two by which coordinates are divided, so that products of three neither
-/// overflow nor underflow, and the point divided by that power.
+/// Returns a power of two near the largest coordinate, and the point divided by it. Products of
+/// three divided coordinates neither overflow nor underflow.
 fn scaled<N: Space<D>, const D: usize>(
     tree: &BoxTree<N, D>,
     point: &Point<N, D>,

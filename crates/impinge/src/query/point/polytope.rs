@@ -37,9 +37,8 @@ pub(super) fn surface_point2<N: Real>(
     best
 }
 
-/// Returns the nearest point of the boundary. For a point outside, it is the nearest among the
-/// points of all edges and those projections of the point onto planes of faces that lie in the
-/// face.
+/// Returns the nearest point of the boundary. For a point outside, it is the nearest point of all
+/// edges, or a projection onto the plane of a face that lies in the face and is nearer.
 pub(super) fn surface_point3<N: Real>(
     solid: &Polytope<N, 3>,
     point: &Point<N, 3>,

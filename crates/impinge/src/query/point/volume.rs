@@ -23,8 +23,8 @@ impl<N: Real, const D: usize> Aabb<N, D> {
 }
 
 impl<N: Real, const D: usize> BoundingSphere<N, D> {
-    /// Returns the nearest point of the sphere's boundary, and `Face(0)`; NaN if the radius is
-    /// infinite.
+    /// Returns the nearest point of the sphere's boundary, and `Face(0)`. The point is not finite
+    /// if the radius is infinite.
     pub fn project_point_with_feature(
         &self,
         point: &Point<N, D>,

@@ -25,7 +25,7 @@ pub(super) fn span<N: Real>(cone: &Cone<N>, ray: &Ray<N, 3>) -> Option<Span<N, 3
     clipped(side, caps.mapped(|(sign, feature)| cap(half_height, sign, feature, ray)))
 }
 
-/// The infinite cone below the apex, and a line through it.
+/// The infinite cone below the apex, and a line.
 ///
 /// `cosine` and `sine` are the cosine and the sine of half the opening angle. A point at the
 /// distance `x` from the axis and the height `y ≤ 0` over the apex is inside where `cosine · x ≤
@@ -61,8 +61,8 @@ impl<N: Real> Nappe<N> {
     }
 
     /// Returns the span in this nappe, without the opposite nappe except the apex; `None` if the
-    /// line misses the nappe. By rounding the span may extend beyond the apex, which later clipping
-    /// at the apex repairs.
+    /// line misses the nappe. By rounding the span may extend beyond the apex; the caller clips it
+    /// there.
     fn span(&self) -> Option<Span<N, 3>> {
         let quadratic = self.form(self.flat_dir.norm(), self.climb.abs());
         let constant = self.form(self.flat.norm(), self.height.abs());

@@ -90,7 +90,7 @@ fn through<N: Real, const D: usize>(
 }
 
 /// Returns the span of a line that lies in the plane of a flat ellipsoid; `None` if the line lies
-/// beside that plane.
+/// beside that plane or misses the ellipsoid.
 fn lengthwise<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     ray: &Ray<N, D>,

@@ -19,7 +19,8 @@ pub(crate) fn first_on_mesh<N: Space<3>>(
     question: &RayQuestion<N, 3>,
 ) -> Option<RayIntersection<N, 3>> {
     let RayQuestion { ray, max_time, solid } = question;
-    // Constructed in place: a move would read the struct before it is written completely.
+    // Borrowed in place: a move would read the struct right after the stores that write it, which
+    // stalls.
     let mut cast = MeshCast::new(mesh, ray, *max_time, *solid);
     let Some(cast) = &mut cast else {
         return first_that(mesh, question, |_| true);
@@ -86,7 +87,8 @@ struct MeshCast<'a, N: Real> {
     ray: &'a Ray<N, 3>,
     solid: bool,
     own: TriangleRay<N>,
-    /// A box around the ray's origin that contains its rounding error, and half of that error.
+    /// A box around the ray's origin that contains the rounding error of positions; `blur` is half
+    /// of that error.
     around: Aabb<N, 3>,
     blur: N,
     /// The time of the first hit so far, or the latest time of a hit.
@@ -210,7 +212,7 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
 }
 
 /// Rotates a normal by the identity, as `each_hit` does for a part without a pose. The sums in this
-/// rotation determine the sign of zeros, which must be equal for both.
+/// rotation determine the sign of zeros, which must be equal in both results.
 fn as_part<N: Real>(normal: &Vector<N, 3>) -> Vector<N, 3> {
     Pose::<N, 3>::identity().vector(normal)
 }

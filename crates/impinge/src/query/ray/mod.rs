@@ -63,8 +63,8 @@ pub struct RayIntersection<N: Real, const D: usize> {
     /// points out of the solid also where a ray leaves a hollow shape. On a set without thickness
     /// it points against the ray.
     ///
-    /// The normal is zero if the hit is not on a surface: the ray of a solid query starts inside,
-    /// or it starts on the boundary and leads out; or the direction of the ray is zero.
+    /// The normal is zero if the ray of a solid query starts inside, or on the boundary and leads
+    /// out; if a ray starts in a thin set and runs along it; or if its direction is zero.
     pub normal: Vector<N, D>,
     /// The feature that was hit. A hit on a vertex or an edge may have the id of one of the faces
     /// there. A ray that starts inside a solid has the nearer of the two features ahead and behind.
@@ -435,7 +435,7 @@ pub(crate) fn cast_many_on<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns the earliest hit that `counts` accepts, in a tie on the lowest part; `None` if none.
+/// Returns the earliest hit that `counts` accepts; in a tie, on the part of lowest index.
 #[inline]
 pub(crate) fn first_that<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
@@ -467,7 +467,7 @@ pub(crate) fn at_start<N: Real, const D: usize>(feature: FeatureId) -> RayInters
 
 /// Implements the common part of all casts: non-finite and zero directions, and scaling.
 ///
-/// `project` is called if the ray may start inside; it returns `None` if the ray starts outside.
+/// `project` is called if the ray may start inside; it may return `None` if it starts outside.
 /// `span` is called for finite rays whose direction was divided by a power of two, so that its
 /// largest component is between 1 and 2 and its powers stay in range.
 fn cast<N: Real, const D: usize>(

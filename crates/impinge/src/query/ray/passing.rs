@@ -6,11 +6,11 @@ use crate::bounding_volume::Ray;
 use crate::math::{Point, Real, Vector, max, max_component, min};
 use crate::shape::{Geometry, Kind, Triangle};
 
-/// The margin by which a ray must miss a solid, in epsilon of products of coordinates and
-/// directions: several times the margin of the exact test.
+/// The margin by which a ray must miss a solid, in epsilon times products of coordinates and
+/// direction components: several times the margin of the exact test.
 const SLACK: f64 = 64.0;
 
-/// Returns whether a ray certainly misses a ball or a box, so that a cast finds nothing with any
+/// Returns whether a ray certainly misses a ball or a box: a cast then finds nothing with any
 /// options. Always false for other shapes, and near overflow or underflow.
 #[inline(always)]
 pub(crate) fn surely_misses<N: Real, const D: usize>(
@@ -145,8 +145,8 @@ mod tests {
         *state >> 33
     }
 
-    /// Returns a small integer, so that rays touch faces and edges; or a number close to one, so
-    /// that they barely touch or miss; or an arbitrary number.
+    /// Returns a small integer, so that rays touch faces and edges; or a number close to a small
+    /// integer, so that they barely touch or miss; or an arbitrary number.
     fn number<N: Real>(state: &mut u64) -> N {
         let small = bits(state) as f64 % 9.0 - 4.0;
         let any = bits(state) as f64 / f64::from(1_u32 << 30) - 1.0;

@@ -9,9 +9,9 @@ use crate::bounding_volume::Ray;
 use crate::math::{Point, Real};
 use crate::shape::Kind;
 
-/// Returns the span of the ray's line in the solid, in its local frame, as far as the first hit of
-/// the ray needs it. `None` if the line misses the solid, and for a composite; for a solid known by
-/// distances alone (see `RaySolid`) also if the ray certainly has no hit.
+/// Returns the span of the ray's line in the solid, in the solid's local frame. `None` if the line
+/// misses the solid, and for a composite. For a solid known by distances alone, see
+/// `RaySolid::span` for further cases of `None` and for the end of the span.
 pub(crate) fn span<N: Real>(kind: Kind<'_, N, 2>, ray: &Ray<N, 2>) -> Option<Span<N, 2>> {
     match kind {
         Kind::Ball(solid) => ball::span(solid.radius(), ray),

@@ -15,7 +15,7 @@ use crate::shape::{Ball, Feature, FeatureId, SupportMap};
 const ROUNDS: usize = 64;
 
 /// Returns the span of time that the line of a ray spends in a solid; see [`RaySolid::span`]. The
-/// search starts on a ball around the solid, so that the origin of the ray may be at any distance.
+/// search starts on a ball around the solid, so the origin of the ray may be at any distance.
 pub(super) fn span<N: Simplicial<D>, const D: usize>(
     map: &dyn SupportMap<N, D>,
     ray: &Ray<N, D>,

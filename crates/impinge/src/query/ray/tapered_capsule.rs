@@ -39,7 +39,8 @@ struct TaperedSide<'a, N: Real, const D: usize> {
     /// The heights of the two circles over the first end.
     heights: [N; 2],
     /// The time at which the line is nearest to the middle of the capsule. The other quantities are
-    /// relative to the line's point at this time, so that the origin of the ray may be far away.
+    /// relative to the line's point at this time, so they are accurate even if the origin of the
+    /// ray is far away.
     start: N,
     against: Vector<N, D>,
     /// The components, across and along the axis, of the line's point at `start`.

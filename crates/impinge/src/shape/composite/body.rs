@@ -55,7 +55,7 @@ pub(super) fn pieces<const K: usize>(
     number: impl Fn(u32) -> u32,
 ) -> Vec<u32> {
     // Union-find over the vertices (Galler and Fischer, "An improved equivalence algorithm", 1964);
-    // the root of a set is its lowest vertex.
+    // the root of a set is its vertex with the smallest index.
     let mut above: Vec<u32> = (0..).take(vertices).collect();
     for part in parts {
         let roots = part.mapped(|vertex| root(&mut above, number(vertex)));

@@ -32,7 +32,7 @@ use crate::shape::{
 /// use impinge::dim3::math::{Isometry, Vector};
 /// use impinge::dim3::shape::{Ball, Compound, Cuboid, ShapeHandle};
 ///
-/// // A hammer, and a rack of two.
+/// // A hammer, and a rack with two hammers.
 /// let handle = ShapeHandle::new(Cuboid::new(Vector::new(0.5_f32, 0.1, 0.1)));
 /// let head = ShapeHandle::new(Ball::new(0.25));
 /// let hammer = ShapeHandle::new(Compound::new(vec![
@@ -61,8 +61,8 @@ pub struct Compound<N: Space<D>, const D: usize> {
     /// placing its child; see [`search_box`].
     pub(in crate::shape) tree: BoxTree<N, D>,
     sphere: BoundingSphere<N, D>,
-    /// Whether any child is a composite whose parts form a surface ([`CompositeShape::surface`]),
-    /// so that contacts follow the rule for seams.
+    /// Whether any child is a composite whose parts form a surface ([`CompositeShape::surface`]).
+    /// Contacts then follow the rule for seams.
     has_surface: bool,
     /// Whether any child encloses a solid region by a closed surface: has an [`EnclosedBody`].
     has_bodies: bool,

@@ -4,7 +4,7 @@ use crate::math::{Mapped, Point, Real, filled};
 
 /// The joints of a surface, with the parts that meet at each.
 ///
-/// Vertices at the same position form one joint, whose index is the lowest index of these vertices.
+/// Vertices at the same position form one joint. Its index is the smallest index of its vertices.
 /// So pieces with duplicated vertices, as exporters write them, join like pieces that share
 /// vertices.
 ///
@@ -15,7 +15,7 @@ use crate::math::{Mapped, Point, Real, filled};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::shape) struct Joints {
-    /// The joint of each vertex: the index of the lowest vertex at the same position.
+    /// The joint of each vertex: the smallest index of a vertex at the same position.
     of_vertex: Vec<u32>,
     /// For each joint, the index in `parts` where its list starts; the last entry is the length of
     /// `parts`.
@@ -93,7 +93,8 @@ impl Joints {
     }
 }
 
-/// Returns for each vertex the lowest vertex at the same position, where +0 and −0 are equal.
+/// Returns for each vertex the smallest index of a vertex at the same position, where +0 and −0 are
+/// equal.
 fn welded<N: Real, const D: usize>(vertices: &[Point<N, D>]) -> Vec<u32> {
     let key = |vertex: u32| -> [u64; D] {
         filled(|axis| (vertices[vertex as usize][axis] + N::ZERO).bits())

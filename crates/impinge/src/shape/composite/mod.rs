@@ -100,8 +100,9 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
     /// default visits none, for separate solids.
     ///
     /// In a triangle mesh or polyline the numbers are vertex indices, with coinciding positions
-    /// merged. In a height field they are the indices of grid points. A compound passes on the
-    /// numbers of its child; numbers of different children differ as long as they are below 2³².
+    /// merged. In a height field they are the indices of grid points. A compound adds a multiple of
+    /// 2³² to the numbers of each child, so the numbers of different children differ if the
+    /// children use numbers below 2³².
     fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
         let _ = (part, visit);
     }

@@ -198,8 +198,8 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
 
 #[cfg(feature = "serde")]
 impl<N: Real, const D: usize> Polyline<N, D> {
-    /// Replaces the joints by the joints of a saved line whose vertices were moved after
-    /// construction, so that positions no longer determine the joints.
+    /// Replaces the joints by the joints of a saved line. The vertices of that line were moved
+    /// after construction, so positions no longer determine the joints.
     pub(in crate::shape) fn move_joints(&mut self, joints: Joints) {
         let is_whole = joints.are_together(&self.vertices);
         self.is_cycle = is_whole && is_cycle(self.vertices.len(), &self.segments, &joints);
@@ -265,8 +265,8 @@ impl<N: Real, const D: usize> Polyline<N, D> {
         self.front.is_some()
     }
 
-    /// Returns whether the line is solid, so that the enclosed area belongs to the shape: `solid`
-    /// was called, and no joined vertices are apart after a move. Always false in 3D.
+    /// Returns whether the enclosed area belongs to the shape: `solid` was called, and no joined
+    /// vertices are apart after a move. Always false in 3D.
     #[must_use]
     pub const fn is_solid(&self) -> bool {
         self.is_solid && self.is_cycle

@@ -47,7 +47,7 @@ use crate::math::{AbstractRotation, Isometry, Matrix, Point, Pose, Real, Vector}
 /// assert!((hammer.mass() - 4.308).abs() < 1e-3, "kilograms");
 /// assert!((hammer.center_of_mass().x - 0.190).abs() < 1e-3, "near the head");
 ///
-/// // Turned about its centre by a torque of 1 around y: the angular acceleration.
+/// // The angular acceleration by a torque of 1 about y.
 /// let inverse = hammer.inverse_inertia_at(&Isometry::identity());
 /// assert!((inverse * Vector::y() - Vector::y() * 64.2).norm() < 0.1);
 /// # Ok::<(), impinge::query::MassError>(())
@@ -84,8 +84,8 @@ impl<N: Real, const D: usize> MassProperties<N, D> {
         inverse(self.mass)
     }
 
-    /// Returns the centre of mass in the frame of the body. For a shape without mass it is some
-    /// point of the shape.
+    /// Returns the centre of mass in the frame of the body. For a shape without mass it is a point
+    /// at or near the shape, without physical meaning.
     #[must_use]
     pub const fn center_of_mass(&self) -> &Point<N, D> {
         &self.center

@@ -102,8 +102,8 @@ impl<const D: usize> Moments<D> {
     pub(crate) fn plus(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;
         let offset = other.center - self.center;
-        // Measured from the midpoint, equal centres stay equal and the order of the bodies does not
-        // matter.
+        // The centre is computed from the midpoint: then equal centres stay equal, and the order of
+        // the bodies does not matter.
         let lead = if mass > 0.0 { (other.mass - self.mass) / mass * 0.5 } else { 0.0 };
         let center = self.center * 0.5 + other.center * 0.5 + offset * lead;
         if mass <= 0.0 {

@@ -54,7 +54,7 @@ impl<N: Real> MassProperties<N, 2> {
     /// use impinge::dim2::query::mass_properties;
     /// use impinge::dim2::shape::Cuboid;
     ///
-    /// // A door of length 2 and mass 3, about its hinge: m l² / 3, and a little for its thickness.
+    /// // The inertia of a door of length 2 and mass 3 about its hinge: slightly above m l² / 3.
     /// let door = mass_properties(&Cuboid::new(Vector::new(1.0_f64, 0.001)), 1.0)?.with_mass(3.0)?;
     /// assert!((door.inertia_about(&Point::new(-1.0, 0.0)) - 4.0).abs() < 1e-5);
     /// # Ok::<(), impinge::query::MassError>(())

@@ -22,9 +22,8 @@ impl<N: Real> MassProperties<N, 3> {
     /// Returns a body with the given centre of mass, mass, and inertia tensor about that centre, in
     /// the axes of the frame.
     ///
-    /// Only the symmetric part of the tensor is used. A body with this tensor may be unphysical,
-    /// which is not checked: in a physical body no principal moment exceeds the sum of the other
-    /// two.
+    /// Only the symmetric part of the tensor is used. In a physical body no principal moment
+    /// exceeds the sum of the other two; this is not checked.
     ///
     /// # Errors
     /// If a number is not finite, the mass is negative, or a principal moment is negative by more
@@ -135,7 +134,7 @@ impl<N: Real> MassProperties<N, 3> {
     /// use impinge::dim3::query::mass_properties;
     /// use impinge::dim3::shape::Cylinder;
     ///
-    /// // A wheel about y, laid so that it turns about z.
+    /// // A wheel whose axis is y in its own frame, placed so that its axis is z.
     /// let wheel = mass_properties(&Cylinder::new(0.25_f64, 2.0), 1.0)?.with_mass(2.0)?;
     /// let lying = Isometry::new(Vector::zeros(), Vector::x() * std::f64::consts::FRAC_PI_2);
     /// let inverse = wheel.inverse_inertia_at(&lying);

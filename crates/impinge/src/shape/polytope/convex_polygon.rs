@@ -49,8 +49,8 @@ impl<N: Real> ConvexPolygon<N> {
         or_panic(Self::try_from_points(points))
     }
 
-    /// Returns the polygon with the given corners, which must be convex, counter-clockwise and at
-    /// least three.
+    /// Returns the polygon with the given corners: at least three, in counter-clockwise order along
+    /// a convex outline.
     pub(crate) fn from_corners(corners: Vec<Point<N, 2>>) -> Self {
         Self { polytope: Polytope::<N, 2>::from_corners(corners) }
     }

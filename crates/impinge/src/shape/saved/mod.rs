@@ -89,11 +89,13 @@ pub(crate) enum UnsavedShape {
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) enum ShapeRecord<N: Real> {
+    /// The radius.
     Ball(Numbers<N>),
     /// The coordinates of both ends.
     Segment(Numbers<N>),
     /// The coordinates of both ends, then the radius.
     Capsule(Numbers<N>),
+    /// The coordinates of the corners.
     Triangle(Numbers<N>),
     /// The half extents.
     Cuboid(Numbers<N>),
@@ -103,7 +105,9 @@ pub(crate) enum ShapeRecord<N: Real> {
     TaperedCapsule(Numbers<N>),
     /// The outward normal; it is not normalised again.
     HalfSpace(Numbers<N>),
+    /// The number of the inner shape, and the radius.
     Rounded(u32, Numbers<N>),
+    /// The number and the position of each child.
     Compound(Vec<(u32, Numbers<N>)>),
     Polyline(MeshRecord<N>),
     TriMesh(MeshRecord<N>),
@@ -118,8 +122,11 @@ pub(crate) enum ShapeRecord<N: Real> {
     },
     /// Half of the height, then the radius.
     Cylinder(Numbers<N>),
+    /// Half of the height, then the radius.
     Cone(Numbers<N>),
+    /// The coordinates of the corners.
     Tetrahedron(Numbers<N>),
+    /// A shape of a user's type.
     Own(SavedShape),
 }
 
@@ -155,8 +162,8 @@ impl<N: Real> ShapeRecords<N> {
     }
 
     /// Returns the number of a shape. If the shape has no number yet, first saves the shapes that
-    /// it holds, then the shape. An error if one of these is a user's shape that cannot be saved,
-    /// or if there are too many parts or shapes.
+    /// it holds, then the shape. Returns an error if the shape, or a shape that it holds, is a
+    /// user's shape that cannot be saved, or if there are too many parts or shapes.
     pub(crate) fn number<const D: usize>(
         &mut self,
         shape: &ShapeHandle<N, D>,

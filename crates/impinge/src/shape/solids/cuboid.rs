@@ -100,15 +100,15 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
         (free != CuboidPart::<D>::ALL).then(|| part.id())
     }
 
-    /// Returns the id of a part: its set `free` is the lower `D` bits, `corner` the upper `D`.
+    /// Returns the id of a part: `free` is the lower `D` bits of `bits`, `corner` the next `D`.
     #[inline]
     pub(crate) const fn id_of_bits(bits: u8) -> FeatureId {
         CuboidPart::<D>::IDS[bits as usize & ((1 << (2 * D)) - 1)]
     }
 }
 
-/// A vertex, edge or face: the points of the box whose coordinates vary on the `free` axes and
-/// equal those of `corner` on the other axes. Both are bit sets; `corner` has the positive axes.
+/// A vertex, edge or face: the points of the box that agree with a corner on all but the `free`
+/// axes. Both fields are sets of axes; `corner` has the positive axes of that corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::shape) struct CuboidPart<const D: usize> {
     free: u32,
@@ -244,9 +244,9 @@ impl<const D: usize> CuboidPart<D> {
         (part.free <= Self::ALL && part.corner <= Self::ALL && part.id() == id).then_some(part)
     }
 
-    /// Returns the corners in the order documented at [`Cuboid`]: a Gray code over the free axes,
-    /// which changes one coordinate at a time. The axes follow cyclically after a face's own
-    /// axis. The loop is counter-clockwise on the positive side if this permutation is even.
+    /// Returns the corners in the order documented at [`Cuboid`]: a Gray code over the free axes. A
+    /// face's free axes follow its own axis cyclically. The loop is then counter-clockwise on the
+    /// positive side if this order of the axes is an even permutation.
     const fn ring(self) -> CuboidRing {
         let own = self.own_axis();
         let is_face = self.dimension() + 1 == D;

@@ -78,10 +78,10 @@ impl<N: Real> Disk<N> {
         Some(CurvedSupport { point: self.at(radial), bend })
     }
 
-    /// Returns the half extents along the outer axes of this disk, centred at the origin and
-    /// rotated by `rotation`. They are computed from the two columns that span the disk: if they
-    /// were computed from the axis, the extent at a small tilt would lose half of its significant
-    /// digits.
+    /// Returns the half extents, along the outer axes, of this disk after it is centred at the
+    /// origin and rotated by `rotation`. They are computed from the two columns that span the disk.
+    /// If they were computed from the axis, the extent at a small tilt would lose half of its
+    /// significant digits.
     pub(in crate::shape) fn extents(self, rotation: &Matrix<N, 3>) -> Vector<N, 3> {
         Vector::<N, 3>::from_fn(|axis, _| {
             let spans = Vector::<N, 2>::new(rotation[(axis, 0)], rotation[(axis, 2)]);

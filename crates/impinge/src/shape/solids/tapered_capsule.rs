@@ -196,7 +196,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for TaperedCapsule<N, D> {
         };
         let (away, across) = taper.away(direction);
         let climb = direction.dot(&taper.along);
-        // The sine is positive if the second end lies farther along the direction than the first.
+        // The sine is positive if the support point is on the ball around the second end.
         let sine = taper.cosine * climb - taper.sine * across;
         let faces = taper.cosine * across + taper.sine * climb > N::ZERO;
         if !(faces && Tilt::default_limit().admits(sine * sine)) {

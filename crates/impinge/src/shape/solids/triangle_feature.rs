@@ -324,7 +324,7 @@ impl<N: Real> Triangle<N, 3> {
         let longest = max(max(squared[0], squared[1]), squared[2]);
         let across = cross(&scaled_sides[0], &scaled_sides[1]);
         let (area, rise) = (across.norm_squared(), across.dot(direction));
-        // A NaN area fails the comparison, so that the triangle is treated as thin.
+        // A NaN area fails the comparison, so the triangle is treated as thin.
         let is_wide = area > N::lit(THIN_SQUARED) * longest * longest;
         if !is_wide {
             return None;

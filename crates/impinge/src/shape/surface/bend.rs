@@ -225,7 +225,8 @@ mod tests {
                 continue;
             }
             if let Some(answer) = bend.admits(&normal, is_one_sided) {
-                // `rule` expects both triangles to start at the same corner of the edge.
+                // `rule` takes the first two corners of each triangle as the edge, in either
+                // direction.
                 let permuted = [second[0], second[1], second[2]];
                 let expected = rule([&first, &permuted], &fronts, &normal, is_one_sided);
                 assert_eq!(answer, expected, "round {round}: {bend:?} {normal:?}");

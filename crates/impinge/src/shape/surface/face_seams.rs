@@ -31,9 +31,9 @@ pub(crate) struct FaceSeams<N: Real> {
 
 impl<N: Real> FaceSeams<N> {
     /// Computes the seams of a triangle from its front normal. `bend(side)` returns the edge at a
-    /// side, with the front of this triangle before the front of its neighbour. `is_rim(side)` is
-    /// called if `bend` returns `None`. It returns whether the side has no neighbour, or a
-    /// neighbour with its front on the same side.
+    /// side; its `fronts` are the front normal of this triangle, then that of the neighbour. If
+    /// `bend` returns `None`, `is_rim(side)` is called: it returns whether the side has no
+    /// neighbour, or a neighbour with its front on the same side of the surface.
     pub(in crate::shape) fn new(
         front: Vector<N, 3>,
         is_one_sided: bool,

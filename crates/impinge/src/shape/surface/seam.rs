@@ -84,7 +84,7 @@ impl<'a, N: Real, const D: usize> CornerEdges<'a, N, D> {
         self.has_perpendicular |= !is_clear;
     }
 
-    /// Returns whether a side clearly rises along the normal, so that more sides cannot change the
+    /// Returns whether a side clearly rises along the normal. More sides then cannot change the
     /// result.
     pub(in crate::shape) const fn is_refused(&self) -> bool {
         self.has_rising
@@ -122,8 +122,8 @@ pub(in crate::shape) struct Seam<N: Real, const D: usize> {
     /// Whether the normal is a normal of the queried face or segment, and all pieces added so far
     /// are coplanar with that face or segment, within `FLAT_SINE`.
     is_flat: bool,
-    /// Whether a coplanar piece lies on the side to which the normal tilts, so that the seam is not
-    /// a rim there.
+    /// Whether a coplanar piece lies on the side to which the normal tilts: the seam is then not a
+    /// rim there.
     is_hemmed: bool,
     /// Whether every direction into a piece has a component of at most zero along the normal.
     is_in_cone: bool,

@@ -84,7 +84,8 @@ pub(crate) struct KnownSegment<'a, N: Real> {
 }
 
 impl<'a, N: Real> KnownSegment<'a, N> {
-    /// Returns a segment by its ends, whose coordinates must equal exactly those in the surface.
+    /// Returns a segment by its ends. Their coordinates must exactly equal the coordinates in the
+    /// surface.
     pub(crate) fn new(
         surface: SurfaceAccess<'a, N, 2>,
         sidedness: Option<Sidedness>,

@@ -6,7 +6,7 @@ use crate::world::bodies::BodyMotion;
 use crate::world::objects::Slot;
 use crate::world::{CollisionObject, CollisionObjects};
 
-/// A change of the objects, by which a rewind undoes it.
+/// The record of a change of the objects, by which a rewind undoes the change.
 #[derive(Clone, Copy)]
 pub(in crate::world) enum ObjectNote<N: Space<D>, const D: usize> {
     Added(CollisionObjectHandle),

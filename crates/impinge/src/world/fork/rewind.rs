@@ -58,8 +58,8 @@ pub(in crate::world) struct WorldHead<N: Space<D>, const D: usize, T> {
     keeps_events: bool,
     removed: RemovedObjects<N, D, T>,
     filters: Filters<N, D, T>,
-    /// The present broad phase if it is custom; `None` for the library's own, which has a journal.
-    /// `narrow_phase` corresponds.
+    /// The present broad phase if it is custom; `None` for the library's own, whose journal records
+    /// its changes. `narrow_phase` follows the same rule.
     broad_phase: Option<Box<WorldBroadPhase<N, D>>>,
     narrow_phase: Option<Box<dyn WorldsNarrowPhase<N, D, T>>>,
     next_broad_phase: Option<Box<WorldBroadPhase<N, D>>>,

@@ -47,7 +47,7 @@ pub struct QueryFilter<'a, N: Space<D>, const D: usize, T> {
     predicate: Option<&'a Predicate<'a, N, D, T>>,
 }
 
-/// A condition on an object, as a function of the user.
+/// A function of the user that returns whether a query considers an object.
 type Predicate<'a, N, const D: usize, T> = dyn Fn(&CollisionObject<N, D, T>) -> bool + 'a;
 
 impl<'a, N: Space<D>, const D: usize, T> QueryFilter<'a, N, D, T> {

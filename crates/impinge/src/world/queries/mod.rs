@@ -2,8 +2,8 @@
 //! solids.
 //!
 //! The broad phase proposes objects with their boxes as of the last update. A tree of dirty objects
-//! proposes the objects whose boxes have changed since, so that queries respect every change at
-//! once. Each proposed object is then tested exactly by the queries for one or two solids.
+//! proposes the objects whose boxes have changed since. So queries respect every change at once.
+//! Each proposed object is then tested exactly by the queries for one or two solids.
 
 pub(super) mod cast;
 mod filter;

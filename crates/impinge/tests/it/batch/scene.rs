@@ -15,9 +15,9 @@ pub(super) struct Scene<N: Real, R, const D: usize> {
     pub(super) poses: [Vec<Isometry<N, R, D>>; 2],
 }
 
-/// Pairs every shape with every shape: with equal centres, with touching boxes, and rotated at
-/// distances of up to 1, 4 and 40. Some pairs also occur with a NaN position. The first solid is at
-/// the point with all coordinates equal to `away`.
+/// Pairs every shape with every shape: at equal positions, with boxes that touch (1 apart if a box
+/// is unbounded), and rotated, with positions up to 1, 4 and 40 apart. Some pairs also occur with a
+/// NaN position. The first shape of each pair is at the point with all coordinates equal to `away`.
 fn scene<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize>(
     table: shape_table::Shapes<N, D>,
     away: f64,

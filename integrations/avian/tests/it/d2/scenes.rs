@@ -67,7 +67,7 @@ fn a_chain_of_capsules_holds() {
     chain_holds::<Impinge>();
 }
 
-/// Asserts that contact points keep their feature ids from step to step, so that the solver is
+/// Asserts that contact points keep their feature ids from step to step, and that the solver is
 /// warm-started.
 #[test]
 fn contacts_keep_their_names() {

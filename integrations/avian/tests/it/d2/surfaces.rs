@@ -104,8 +104,8 @@ fn a_character_walks_up_a_line() {
         assert!((at.y - last.y).abs() < 0.05, "no jump from {last} to {at}");
         last = at;
     }
-    // The lower half disk touches the slope beside its lowest point, so that it is higher by r
-    // (1/cos - 1).
+    // The lower half disk touches the slope beside its lowest point. So the capsule is higher above
+    // the slope than above flat ground, by r (1/cos - 1).
     let off = last.y - (0.7 + ground(last.x) + 0.3 * (1.0625_f32.sqrt() - 1.0));
     assert!(last.x > 3.5 && (-0.001..0.03).contains(&off), "{off} at {last}");
 }

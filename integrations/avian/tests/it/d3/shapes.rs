@@ -34,8 +34,8 @@ fn all() -> Vec<Collider> {
     ]
 }
 
-/// Places each shape far from the global origin, so that it overlaps the box below it by 0.125.
-/// Asserts the depth, the normal and the positions of the points.
+/// Places each shape over a box that it overlaps by 0.125, far from the global origin. Asserts the
+/// depth, the normal and the positions of the points.
 #[test]
 fn every_shape_meets_a_box() {
     let slab = Collider::cuboid(10.0, 2.0, 10.0);

@@ -113,8 +113,8 @@ fn a_character_walks_up_a_mesh() {
     for _ in 0..160 {
         steps(&mut app, 1);
         let at = place(&app, walker);
-        // The lower ball touches the slope beside its lowest point, so that it is higher by r
-        // (1/cos - 1).
+        // The lower half ball touches the slope beside its lowest point. So the capsule is higher
+        // above the slope than above flat ground, by r (1/cos - 1).
         let lift = if at.x > 0.3 { 0.3 * (1.0625_f32.sqrt() - 1.0) } else { 0.0 };
         let off = at.y - (0.7 + ground(at.x, at.z) + lift);
         assert!((-0.001..0.03).contains(&off) || at.x < -3.9, "{off} at {at}");
@@ -141,7 +141,7 @@ fn a_kinematic_body_pushes_a_box() {
     assert!(parcel.x > 3.4 && (parcel.y - 0.25).abs() < 0.02, "{parcel}");
 }
 
-/// Tests a body of three balls, each of which lies in a groove with a different slope, so that the
+/// Tests a body of three balls, each of which lies in a groove with a different slope, so the
 /// contacts have six normals. Avian matches the points of successive steps for pairs with at most
 /// four manifolds; for pairs with more, the back end does.
 #[test]

@@ -14,7 +14,8 @@ use crate::math::{Real, Wide};
 /// The slots of `L` pairs, each with two masks over the lanes. A slot holds one possible contact
 /// point (candidate) of each pair.
 pub(super) struct Slots<N: Real, const D: usize, const COUNT: usize, const L: usize> {
-    /// Coordinates in the plane perpendicular to the normal; in 2D the second is always zero.
+    /// Coordinates on the reference face after projection along the normal; in 2D along the
+    /// reference side, with the second always zero.
     pub(super) flat: [[[N; L]; COUNT]; 2],
     /// Height above the reference face or side, along the normal away from its box.
     pub(super) height: [[N; L]; COUNT],

@@ -131,7 +131,8 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         if may_match && kept.left != 0 && kept.slots != self.valid {
             self.match_positions(slot_features, raw, self.valid, &mut kept);
         }
-        // Up to `ALL` candidates are all kept, as in `manifold::choose`.
+        // All candidates are kept if they are no more than `limit` and `ALL`, as in
+        // `manifold::choose`.
         let is_full = self.valid.count_ones() as usize <= limit.min(ALL);
         let slots = if is_full { self.valid } else { self.chosen(limit, kept.slots) };
         if may_match && !is_full && !raw.points.is_empty() && slots & !kept.slots != 0 {

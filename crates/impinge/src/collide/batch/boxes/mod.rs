@@ -85,8 +85,8 @@ pub(super) fn other<S: Simd, V: Wide<S>, const D: usize>(
     (rotation, shift)
 }
 
-/// Returns the length up to which differences are rounding error, by the formula of the builder for
-/// one pair.
+/// Returns the length up to which differences are rounding errors, by the formula of the builder
+/// for one pair.
 #[inline(always)]
 pub(super) fn tolerance<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,

@@ -37,7 +37,7 @@ pub(super) struct SideHeights<N, const CORNERS: usize, const SIDES: usize> {
     beyond: [[u8; SIDES]; CORNERS],
     /// Lanes where the corner is beyond some side.
     pub(super) is_beyond: [u8; CORNERS],
-    /// Lanes where the corner is on the line of some side, within the tolerance.
+    /// Lanes where the corner is on the line of some side, within the tolerance; also set for NaN.
     pub(super) is_on: [u8; CORNERS],
 }
 
@@ -66,7 +66,8 @@ impl<N: Real, const CORNERS: usize, const SIDES: usize> SideHeights<N, CORNERS, 
         self.is_on[corner] |= !(within | beyond);
     }
 
-    /// Returns the lanes where a corner is on the line of a side, within the tolerance.
+    /// Returns the lanes where a corner is on the line of a side, within the tolerance; also set
+    /// for NaN.
     pub(super) const fn on(&self, corner: usize, side: usize) -> u8 {
         !(self.within[corner][side] | self.beyond[corner][side])
     }
@@ -105,8 +106,8 @@ pub(in crate::collide) struct FaceClip<N: Real> {
     /// By lane, a bound of the rounding errors of lengths.
     pub(super) tolerance: [N; LANES],
     pub(super) supporting: SupportingBits,
-    /// Lanes where the triangle's supporting feature is certain, and all its sides and the sides of
-    /// the ring are longer than two tolerances.
+    /// Lanes where the triangle's supporting feature is certain, and the sides of this feature and
+    /// of the ring are longer than two tolerances in projection.
     pub(super) with_extent: u8,
     /// Lanes where a side of the triangle (first index) and a side of the ring (second index)
     /// cross.

@@ -10,12 +10,12 @@
 //!        v0────────────v1
 //! ```
 //!
-//! The result is that of [`clip`](super::clip) for the supporting features of the solid and of the
-//! triangle along the normal: a face, a side or a corner each, at least one of them a face. A lane
-//! is one triangle. [`measure`] computes, in lanes, how far the corners of one outline are inside
-//! each side of the other. Few candidates remain; [`points`] computes them one by one. Lanes with a
-//! degenerate outline or an uncertain supporting feature are left undecided, and the caller clips
-//! the pair by [`clip`](super::clip).
+//! The contacts equal, up to rounding, those of [`clip`](super::clip) for the supporting features
+//! of the solid and of the triangle along the normal: a face, a side or a corner each, at least one
+//! of them a face. A lane is one triangle. [`measure`] computes, in lanes, how far the corners of
+//! one outline are inside each side of the other. Few candidates remain; [`points`] computes them
+//! one by one. Lanes with a degenerate outline or an uncertain supporting feature are left
+//! undecided, and the caller clips the pair by [`clip`](super::clip).
 //!
 //! All vectors are in the frame of the solid.
 

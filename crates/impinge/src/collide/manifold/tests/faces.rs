@@ -20,8 +20,8 @@ struct Scene<N: Real> {
     requests: Vec<ClipRequest<N>>,
 }
 
-/// Contact points of one triangle; `None` if the lane is undecided, so that the caller has to clip
-/// the pair.
+/// Contact points of one triangle; `None` if the lane is undecided and the caller has to clip the
+/// pair.
 type Found<N> = Option<Vec<RawPoint<N, 3>>>;
 
 /// Returns the unit normal of a triangle, with the sign that makes its z component non-negative.

@@ -56,9 +56,9 @@ fn solid<N: Real>(kind: usize, scale: f64, random: &mut Random) -> Cornered<N> {
 /// Moves a solid for three steps. Asserts that each corner within the prediction is a contact, at
 /// the corner's position; for a solid with a radius, only that there is a contact. A corner need
 /// not be a contact if it is inside the outline of the contacts, or if the previous manifold has at
-/// least four points, which may be kept. The corners of steep segments and capsules are not
-/// checked. A solid without a radius must not have more contacts than near corners. A feature in
-/// contact in two successive steps must keep its id.
+/// least four points, because these may be kept instead. The corners of steep segments and capsules
+/// are not checked. A solid without a radius must not have more contacts than near corners. A
+/// feature in contact in two successive steps must keep its id.
 fn corners_count<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
     let (random, mut points) = (&mut Random(seed), 0);
     for round in 0..700_usize {
@@ -105,7 +105,7 @@ fn corners_count<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
                     |at: Point<N, 3>| radius > N::ZERO || (at - corner).norm() <= tolerance;
                 let has_it = raw.points.iter().any(|point| is_near(point.point1));
                 // A corner need not be a contact if it is inside the outline of the contacts, or if
-                // the last manifold had at least four points, which may be kept.
+                // the last manifold had at least four points, because these may be kept instead.
                 let is_inner = before.points.len() >= 4 || is_among(corner, &raw, &normal);
                 let is_far = distance > max_distance - tolerance - tolerance;
                 assert!(has_it || is_far || is_inner, "{corner} at {distance}, {what}");

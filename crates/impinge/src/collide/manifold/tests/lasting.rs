@@ -78,8 +78,8 @@ fn a_box_sliding_over_an_edge_keeps_its_ids_on_new_features() {
 }
 
 /// Asserts that no id changes for two equal boxes, one on the other, under random rotations and
-/// displacements of up to two epsilons. The upper box is shifted along the x axis by `shift`, so
-/// that in 3D two pairs of sides coincide even if `shift` is not zero.
+/// displacements of up to two epsilons. The upper box is shifted along the x axis by `shift`; in
+/// 3D, two pairs of sides coincide even if `shift` is not zero.
 fn stack_rests<N: Scene<D>, const D: usize>(shift: f64) {
     let solid = Cuboid::new(Vector::<N, D>::repeat(N::HALF));
     let (mut raw, mut random) = (RawManifold::default(), Random(11));

@@ -9,7 +9,7 @@ use crate::shape::{Polytope, SupportMap};
 /// Core (a solid without its rounding radius) of one solid of each pair, in the solid's own frame
 /// and in units of the pair (see [`super::FlatPair::units`]). All lanes have the same kind.
 pub(super) enum LaneCore<'a, N: Real, V> {
-    /// Half extents of each lane's box.
+    /// Half extents of each lane's box, in units of its pair.
     Cuboid([V; 3]),
     /// Vertices shared by all lanes, in units of the shape; `shrink` scales them to each pair's
     /// units.

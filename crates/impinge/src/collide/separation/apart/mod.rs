@@ -3,12 +3,13 @@
 //!
 //! The search follows E. Gilbert, D. Johnson and S. Keerthi ("A Fast Procedure for Computing the
 //! Distance Between Complex Objects in Three-Dimensional Space", 1988), without branches: each step
-//! computes all features of the simplex at its newest corner and selects the nearest ([`simplex`]).
-//! A result is returned only with a proof: up to rounding, the distance of its points equals the
-//! distance between two parallel planes that separate the cores. Without a proof the pair falls
-//! back to the algorithm of its kinds. This happens if the cores overlap or are nearer than 2⁻⁶ of
-//! the pair's size (`MIN_GAP`), if there are several pairs of nearest points, for hulls of more
-//! than [`MAX_VERTICES`] vertices, and if the bounds do not agree.
+//! computes the nearest points of all features that meet in the newest corner of the simplex, and
+//! selects the nearest of them ([`simplex`]). A result is returned only with a proof: up to
+//! rounding, the distance of its points equals the distance between two parallel planes that
+//! separate the cores. Without a proof the pair falls back to the algorithm of its kinds. This
+//! happens if the cores overlap or are nearer than 2⁻⁶ of the pair's size (`MIN_GAP`), if there are
+//! several pairs of nearest points, for hulls of more than [`MAX_VERTICES`] vertices, and if the
+//! bounds do not agree.
 //!
 //! ```text
 //!        core 1             core 2        normal = nearest / |nearest|
@@ -121,8 +122,8 @@ pub(crate) const fn is_faceted<N: Real>(kind: &Kind<'_, N, 3>) -> bool {
     matches!(kind, Kind::Triangle(_) | Kind::Cuboid(_) | Kind::Polytope(_))
 }
 
-/// Returns the algorithm for the kinds of a pair, which handles contact and overlap, too, unlike
-/// the search.
+/// Returns the algorithm for the kinds of a pair. Unlike the search, it also handles contact and
+/// overlap.
 fn nearer<N: Real>(pair: &Pair<'_, N, 3>) -> Algorithm<N, 3> {
     match (pair.first, pair.second) {
         (Kind::Cuboid(_), Kind::Cuboid(_)) => cuboid_cuboid::separation,

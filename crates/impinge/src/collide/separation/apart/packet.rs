@@ -33,7 +33,7 @@ struct Packet<'a, N: Real> {
     rotation: [LaneVectors<N>; 3],
     /// Translations of `pose12`, in units of each pair.
     translation: LaneVectors<N>,
-    /// Half extents of boxes; zero for other kinds.
+    /// Half extents of boxes, in units of each pair; zero for other kinds.
     half_extents: [LaneVectors<N>; 2],
     /// Centres of the cores in their own frames, in units of each pair.
     middles: [LaneVectors<N>; 2],

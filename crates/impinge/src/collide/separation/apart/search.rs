@@ -16,8 +16,7 @@ use crate::math::lanes::{
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, max};
 
-/// Cap on the number of steps, each with one support point of each core. Most pairs take five or
-/// six.
+/// Largest number of steps, each with one support point of each core. Most pairs take five or six.
 const ROUNDS: usize = 32;
 
 /// Smallest distance of the cores, in units of the pair, at which the search returns a separation:
@@ -37,7 +36,8 @@ fn tolerance<N: Real>() -> N {
 pub(super) struct LaneCores<'a, N: Real, V> {
     pub(super) cores: [LaneCore<'a, N, V>; 2],
     pub(super) pose12: LanePose<V, 3>,
-    /// Vector from the centre of the first core to the centre of the second: the first direction.
+    /// Vector from the centre of the first core to the centre of the second: the first direction of
+    /// search.
     pub(super) between: [V; 3],
     /// Limit of the distance, in units of the pair. Lanes beyond it need no result.
     pub(super) limit: V,

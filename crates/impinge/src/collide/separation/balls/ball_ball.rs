@@ -7,7 +7,7 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, unit};
 use crate::shape::Kind;
 
-/// Returns the separation of two balls.
+/// Returns the separation of two balls; `None` above `limit`.
 ///
 /// If the centres coincide, the normal is the first axis of the world: the rotation of the first
 /// ball is ignored, so its frame has the axes of the world.

@@ -16,7 +16,7 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, max, unit};
 use crate::shape::{Cone, Kind};
 
-/// Returns the separation of a ball from a cone.
+/// Returns the separation of a ball from a cone; `None` above `limit`.
 ///
 /// If the centre is inside the cone, the ball is pushed out through the nearer of base and side; in
 /// a tie, through the base. A centre on the axis that is nearer to the side is pushed towards

@@ -7,10 +7,10 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, max, min, unit};
 use crate::shape::Kind;
 
-/// Returns the separation of a ball from a box.
+/// Returns the separation of a ball from a box; `None` above `limit`.
 ///
 /// If the centre is inside the box, the ball is pushed out through the nearest face. In a tie, the
-/// lowest axis and its positive side win.
+/// axis with the smaller index and its positive side win.
 pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,

@@ -8,7 +8,7 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, max, min, unit};
 use crate::shape::{Cylinder, Kind};
 
-/// Returns the separation of a ball from a cylinder.
+/// Returns the separation of a ball from a cylinder; `None` above `limit`.
 ///
 /// If the centre is inside the cylinder, the ball is pushed out through the side or a cap,
 /// whichever is nearest. In a tie, caps come before the side, and the upper cap before the lower. A

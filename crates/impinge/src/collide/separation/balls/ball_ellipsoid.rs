@@ -7,11 +7,11 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, max, max_component, min, unit};
 use crate::shape::{Ellipsoid, Kind, SupportMap};
 
-/// Cap on the Newton steps. They converge from one side, finally quadratically. Usually about six
-/// are taken; close to the centre of a flat ellipsoid up to twenty.
+/// Largest number of Newton steps. They converge from one side, finally quadratically. Usually
+/// about six are taken; close to the centre of a flat ellipsoid up to twenty.
 const STEPS: usize = 64;
 
-/// Returns the separation of a ball from an ellipsoid.
+/// Returns the separation of a ball from an ellipsoid; `None` above `limit`.
 ///
 /// If the two centres coincide, the ball is pushed out along the shortest half axis, towards its
 /// positive side; the first of several shortest axes wins a tie.
@@ -32,9 +32,9 @@ pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
 /// (2013): the point `x` of the surface nearest to `y` has `x = e² y / (e² + s)` in each
 /// coordinate, where `e` is the half axis and `s` the root of one convex function. The unknown here
 /// is `t = s + least²`, where `least` is the shortest half axis, so that flat and needle-like
-/// ellipsoids are as accurate as round ones. Newton's method runs on the inverse of the function's
-/// square root, which is nearly straight (J. Moré and D. Sorensen, "Computing a Trust Region Step",
-/// 1983).
+/// ellipsoids are as accurate as round ones. Newton's method runs on the reciprocal of the
+/// function's square root, which is nearly straight (J. Moré and D. Sorensen, "Computing a Trust
+/// Region Step", 1983).
 pub(crate) fn project<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     point: &Point<N, D>,

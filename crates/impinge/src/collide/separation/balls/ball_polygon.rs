@@ -8,7 +8,7 @@ use crate::convex::Separation;
 use crate::math::{Point, Real};
 use crate::shape::{Kind, Polytope, PolytopeFace, SupportMap};
 
-/// Returns the separation of a ball from a convex polygon.
+/// Returns the separation of a ball from a convex polygon; `None` above `limit`.
 ///
 /// If the centre is inside the polygon, the ball is pushed out through the nearest side. If it is
 /// outside, the nearest point lies on a side that has the centre in front of it. Cost: linear in

@@ -8,13 +8,13 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, cross};
 use crate::shape::{Kind, Polytope, PolytopeFace, SupportMap};
 
-/// Returns the separation of a ball from a convex hull.
+/// Returns the separation of a ball from a convex hull; `None` above `limit`.
 ///
 /// If the centre is inside the hull, the ball is pushed out through the face whose plane is
 /// nearest; the distance to that plane is the exact depth of the centre. If it is outside, the
 /// nearest point lies on one of the faces that have the centre in front of them. The centre is
-/// projected onto the highest of these faces and, unless that proves the nearest point, onto each
-/// of them. Cost: linear in the number of faces.
+/// projected onto the face above whose plane it is highest and, unless that proves the nearest
+/// point, onto each of these faces. Cost: linear in the number of faces.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,

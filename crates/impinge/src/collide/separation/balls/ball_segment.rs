@@ -9,7 +9,7 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, unit};
 use crate::shape::{Kind, Segment};
 
-/// Returns the separation of a ball from a segment or capsule.
+/// Returns the separation of a ball from a segment or capsule; `None` above `limit`.
 ///
 /// If the centre lies on the segment, the ball is pushed out along a fixed perpendicular of the
 /// segment. If the segment is a single point and the centre coincides with it, the ball is pushed
@@ -78,9 +78,9 @@ impl<N: Real, const D: usize> Foot<N, D> {
 
     /// Returns the unit direction from the segment to the projected point. If the nearest point
     /// lies between the ends, this is the direction of the part of the offset perpendicular to the
-    /// segment, else the direction of the offset. If that part or offset is zero or mostly rounding
-    /// error, returns a fixed perpendicular of the segment, or the first axis for a segment without
-    /// length.
+    /// segment, else the direction of the offset. If that part is mostly rounding error, or the
+    /// offset is zero, returns a fixed perpendicular of the segment, or the first axis for a
+    /// segment without length.
     fn outward(&self) -> Vector<N, D> {
         let direct = if self.is_inside { None } else { unit(&self.offset) };
         if let Some((outward, _)) = direct {

@@ -9,7 +9,7 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, unit};
 use crate::shape::{FeatureId, Kind, TaperedCapsule};
 
-/// Returns the separation of a ball from a tapered capsule.
+/// Returns the separation of a ball from a tapered capsule; `None` above `limit`.
 ///
 /// If the ball's centre lies on the capsule's axis, the ball is pushed out along a normal of the
 /// side, in a fixed direction around the axis. If the centre coincides with an end of the axis and

@@ -10,7 +10,7 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, cross, max, unit};
 use crate::shape::Kind;
 
-/// Returns the separation of a ball from a triangle in 3D.
+/// Returns the separation of a ball from a triangle in 3D; `None` above `limit`.
 ///
 /// If the centre lies on the triangle, the ball is pushed out to the side from which the corners
 /// run counter-clockwise. A triangle without area is handled as the segment of its longest side.

@@ -8,8 +8,8 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, cross2, max, max_component, perp, unit};
 use crate::shape::Kind;
 
-/// Returns the separation of a ball from a triangle in 2D. A triangle that is a segment up to
-/// rounding is passed to [`polygon_polygon`].
+/// Returns the separation of a ball from a triangle in 2D; `None` above `limit`. A triangle that is
+/// a segment up to rounding is passed to [`polygon_polygon`].
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 2>,
     limit: N,

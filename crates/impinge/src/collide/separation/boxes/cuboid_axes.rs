@@ -90,14 +90,15 @@ impl<N: Real> BoxPair<N> {
         (best, gap)
     }
 
-    /// Returns the pair of edges with the largest gap, if the gap exceeds `least`.
+    /// Returns the pair of edges with the largest gap; `None` unless the gap exceeds `least`.
     ///
     /// The length of the cross product of two axes is the sine of their angle. Dividing a negative
     /// gap by the sine can only lower it. So a pair of edges is skipped without a square root if
     /// its undivided gap is not positive and not above the largest gap so far. The components of
-    /// the cross product on the axes of the second box are differences of two products, which are
-    /// small if the sine is small. They equal entries of the rotation only up to rounding, and that
-    /// error would be divided by the sine as well; so the differences are used.
+    /// the cross product along the axes of the second box are computed as differences of two
+    /// products. They also equal entries of the rotation up to rounding. But they are small if the
+    /// sine is small, and their errors are divided by the sine; the differences have smaller
+    /// errors.
     fn best_edges(&self, abs_rotation: &Matrix<N, 3>, least: N) -> Option<(AxisKind, N)> {
         let (r, t) = (&self.pose12.rotation, &self.pose12.translation);
         let (mut best, mut bound) = (None, least);
@@ -125,8 +126,8 @@ impl<N: Real> BoxPair<N> {
         best.map(|edges| (edges, bound))
     }
 
-    /// Adds the unit vector to an axis of the given kind and gap; it points from the first box to
-    /// the second.
+    /// Completes an axis of the given kind and gap with its unit vector, which points from the
+    /// first box to the second.
     fn axis(&self, kind: AxisKind, gap: N) -> BoxAxis<N> {
         let direction = match kind {
             AxisKind::Face1(axis) => Vector::<N, 3>::ith(axis, N::ONE),

@@ -10,7 +10,7 @@ use crate::convex::Separation;
 use crate::math::{Mapped, Point, Pose, Real, Vector, max, min};
 use crate::shape::Kind;
 
-/// Returns the separation of two boxes.
+/// Returns the separation of two boxes; `None` above `limit`.
 ///
 /// For overlapping boxes the separating axis test is exact. For boxes that are apart the test gives
 /// a lower bound. The bound equals the distance if one of the two nearest points lies inside a
@@ -37,8 +37,8 @@ pub(in crate::collide::separation) fn decided_by_axes<N: Real>(
     is_decided.then(|| along_best(pair, limit, &boxes, &best))
 }
 
-/// Returns the distance of [`separation`]. For overlapping boxes it is the gap along the best axis,
-/// and no points are computed.
+/// Returns the distance of [`separation`]; `None` above `limit`. For overlapping boxes it is the
+/// gap along the best axis, and no points are computed.
 pub(in crate::collide::separation) fn distance<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,

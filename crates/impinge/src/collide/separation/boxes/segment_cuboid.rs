@@ -25,7 +25,7 @@ use crate::convex::Separation;
 use crate::math::{Mapped, Point, Pose, Real, Vector, max, max_component, min};
 use crate::shape::{Kind, SupportMap};
 
-/// Returns the separation of a segment or capsule from a box.
+/// Returns the separation of a segment or capsule from a box; `None` above `limit`.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -50,7 +50,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     }
 }
 
-/// A segment in the frame of a solid. Its lengths are scaled by a power of two, so that the larger
+/// A segment in the frame of a solid. Its lengths are scaled by a power of two, so that the largest
 /// of the solid's bounding radius, the ends' coordinates and the translation between the frames is
 /// at least 1 and less than 2.
 struct LocalSegment<'a, N: Real> {

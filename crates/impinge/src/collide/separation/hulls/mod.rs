@@ -8,10 +8,10 @@
 //!    lies farthest above, or least deep below ([`vertices`]).
 //! 2. If a lowest point of the other solid lies over that face and above its plane, it
 //!    determines the result ([`face`]).
-//! 3. Otherwise edges are queried ([`edges`]), but only those with an end near enough to the plane
-//!    of the reference face. If the solids overlap, these are the pairs of edges that form a face
-//!    of the Minkowski difference, found by their arcs on the Gauss map; if they are apart, the
-//!    nearest points of edges.
+//! 3. Otherwise edges are queried ([`edges`]), but only edges with an end near enough to the plane
+//!    of the reference face. If the solids overlap, the query compares the pairs of edges that form
+//!    a face of the Minkowski difference, found by their arcs on the Gauss map. If the solids are
+//!    apart, it finds the nearest edges.
 //!
 //! ```text
 //!            other solid
@@ -63,7 +63,8 @@ const BLOCKS: usize = 4;
 /// Number of blocks for 64 planes of faces, the bits of a `u64` in `segment`.
 pub(super) const PLANE_BLOCKS: usize = 8;
 
-/// Returns the separation of two solids with flat faces: triangles, boxes and convex hulls.
+/// Returns the separation of two solids with flat faces: triangles, boxes and convex hulls. `None`
+/// above `limit`.
 ///
 /// In a tie, faces of the first solid come before faces of the second, each in the order of their
 /// indices, and faces come before edges; of pairs of edges, the lower indices win. Cost, in blocks
@@ -101,7 +102,8 @@ pub(super) enum SatResult<N: Real> {
 }
 
 impl<N: Real> SatResult<N> {
-    /// Returns the separation of the pair within `limit`, by `fallback` if no result is proved.
+    /// Returns the separation of the pair, by `fallback` if no result is proved; `None` above
+    /// `limit`.
     pub(super) fn separation(
         self,
         pair: &Pair<'_, N, 3>,

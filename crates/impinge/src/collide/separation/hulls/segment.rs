@@ -3,8 +3,8 @@
 //!
 //! A segment has no faces, so the reference face belongs to the solid. If the lower end of the
 //! segment projects into that face, the separation is along the face's normal. Otherwise edges
-//! decide. If segment and solid overlap, the candidates are the edges between a face above whose
-//! plane the segment rises and a face above whose plane it does not: with the segment these edges
+//! decide. If segment and solid overlap, the candidates are the edges between a face along whose
+//! normal the segment rises and a face along whose normal it does not: with the segment these edges
 //! form faces of the Minkowski difference. If segment and solid are apart, the candidates are the
 //! edges of the faces that some point of the segment lies above.
 //!
@@ -35,7 +35,8 @@ use crate::math::{
     Mapped, Point, Pose, Real, Vector, Wide, cross, filled, max, max_component, min,
 };
 
-/// Returns the separation of a segment or capsule from a triangle or a convex hull.
+/// Returns the separation of a segment or capsule from a triangle or a convex hull; `None` above
+/// `limit`.
 ///
 /// Cost: linear in the numbers of faces and edges, in blocks of 8. Thin triangles, large hulls and
 /// unproved results fall back to the general algorithm.
@@ -275,7 +276,7 @@ impl<N: Real> SegmentQuery<'_, N> {
 
     /// Returns the sign that makes the cross product of an edge and the segment point out of the
     /// solid. The edge runs counter-clockwise around its first face, so the product points outwards
-    /// if the segment rises above the plane of that face.
+    /// if the segment rises along the normal of that face.
     fn outward(&self, edge: usize, climbed: u64) -> N {
         let [first, _] = self.solid.edges[edge].faces;
         if climbed >> first & 1 == 1 { N::ONE } else { -N::ONE }

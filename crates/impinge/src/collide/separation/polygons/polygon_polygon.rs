@@ -42,7 +42,7 @@ enum OutlineResult<N: Real> {
     Undecided,
 }
 
-/// Returns the separation of two outlines.
+/// Returns the separation of two outlines; `None` above `limit`.
 ///
 /// In a tie, sides of the first solid come before sides of the second, each in their order. Two
 /// coinciding points have the first axis of the first solid's frame as normal. Cost: the product of

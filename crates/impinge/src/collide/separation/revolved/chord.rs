@@ -5,11 +5,11 @@ use super::profile::Profile;
 use super::{DirectedPoint, NearestHull, still};
 use crate::math::{Real, Vector, max, min};
 
-/// Cap on the number of points tried; about four are needed.
+/// Largest number of points tried; about four are needed.
 const STEPS: usize = 16;
-/// Cap on the bisections among these points. The bounds are bisected if both the step of Newton's
-/// method and the step to the rim lead beyond them. This happens if the nearest part of the solid
-/// changes between two points. Inside the solid, the search gives up instead.
+/// Largest number of bisections among these points. The bounds are bisected if both the step of
+/// Newton's method and the step to the rim lead beyond them. This happens if the nearest part of
+/// the solid changes between two points. Inside the solid, the search gives up instead.
 const HALVINGS: usize = 4;
 
 /// A search along a chord for the point where the slope, the derivative of the distance along the

@@ -2,7 +2,7 @@
 //!
 //! The Minkowski difference of two solids about one axis is a solid about that axis. Its outline in
 //! a half-plane of the axis is the difference of two polygons. So the least depth is along the
-//! normal of a side of one of them. This depth is equal all around the axis, so that a search over
+//! normal of a side of one of them. This depth is equal all around the axis, so a search over
 //! directions has no gradient. If the axes differ slightly, the best direction is near the ring of
 //! such a normal.
 //!
@@ -60,8 +60,8 @@ impl<N: Real> Peaks<N, 3> for CoaxialPeaks<'_, '_, N> {
 }
 
 /// Returns the normal of least depth for the overlapping cores of two coaxial solids, each a
-/// segment, capsule, cylinder or cone. `None` for other kinds, unless the axes nearly coincide, and
-/// if another ring of normals may have less depth. `shrink` is the factor from lengths of the
+/// segment, capsule, cylinder or cone. `None` for other kinds, if the axes do not nearly coincide,
+/// or if another ring of normals may have less depth. `shrink` is the factor from lengths of the
 /// shapes to units of the pair.
 pub(in crate::collide::separation) fn peak<N: Real>(
     pair: &Pair<'_, N, 3>,

@@ -17,11 +17,11 @@ use crate::convex::{Separation, Units};
 use crate::math::{Mapped, Point, Pose, Real, Vector, cross, max, min, orthonormal_basis, unit};
 use crate::shape::{Cylinder, Kind, SupportMap};
 
-/// Cap on the steps of Newton's method; about four are enough, starting from the direction between
-/// the centres.
+/// Largest number of steps of Newton's method; about four are enough, starting from the direction
+/// between the centres.
 const STEPS: usize = 10;
 
-/// Returns the separation of two cylinders.
+/// Returns the separation of two cylinders; `None` above `limit`, and if the pose is not finite.
 ///
 /// In a tie, caps come before sides, and the first solid comes before the second.
 pub(in crate::collide::separation) fn separation<N: Real>(
@@ -202,9 +202,9 @@ impl<N: Real> CylinderView<N> {
     }
 
     /// Returns the lowest point of the other solid along the normal of a cap. If several are lowest
-    /// up to `rounding_error`, returns the middle of [`Self::over_disk`] for parallel caps, or the
-    /// point of the lowest line nearest to this axis. `sine` is the sine of the angle between the
-    /// axes.
+    /// up to `rounding_error`, returns the result of [`Self::over_disk`] for parallel caps, else
+    /// the point of the lowest line nearest to the axis of this solid. `sine` is the sine of the
+    /// angle between the axes.
     fn lowest_above_cap(&self, normal: &Vector<N, 3>, sine: N) -> Vector<N, 3> {
         let cosine = normal.dot(&self.axis);
         let end = if cosine < N::ZERO { self.axis } else { -self.axis } * self.other.half;
@@ -307,9 +307,9 @@ impl<N: Real> CylinderView<N> {
         None
     }
 
-    /// Returns the lowest point of the other solid along a direction away from the axis, and the
-    /// derivative of this point as the direction rotates; `None` for a tilted side, whose lowest
-    /// point is not unique.
+    /// Returns the lowest point of the other solid along a direction away from the axis, and its
+    /// derivative as the direction rotates. `None` if a whole cap is lowest, or a line of the side
+    /// unless the axes are parallel.
     fn lowest_beside(&self, normal: &Vector<N, 2>) -> Option<(Vector<N, 3>, N)> {
         let (out, across) = (lifted(normal), lifted(&Vector::<N, 2>::new(-normal.y, normal.x)));
         let (axial, turn) = (self.axis.dot(&out), self.axis.dot(&across));

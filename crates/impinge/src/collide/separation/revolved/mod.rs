@@ -2,8 +2,8 @@
 //! files, "flat solid" means a flat-sided solid, segment or capsule, and "round solid" a cylinder
 //! or cone.
 //!
-//! The signed distance of a point from a cylinder or a cone is a closed form ([`profile`]), and
-//! convex. So the nearest point of the flat solid is searched over the hull of a few of its
+//! The signed distance of a point from a cylinder or a cone has a closed form ([`profile`]), and it
+//! is convex. So the nearest point of the flat solid is searched over the hull of a few of its
 //! vertices. The lowest vertex along the direction found is added until none is lower: the
 //! simplicial decomposition of B. von Hohenbalken ("Simplicial decomposition in nonlinear
 //! programming algorithms", 1977), here over points, chords and triangles.
@@ -20,8 +20,8 @@
 //! and its two points face each other along it. If the solids are apart, this suffices. If a point
 //! of the flat solid is inside the round one, the ball around it with its depth as radius is inside
 //! too, so no separating translation is shorter. If a point of the round solid is below a face, the
-//! ball around it must be inside the flat solid. Cases without such a proof, mostly an edge across
-//! a rim, fall back to the arcs of [`ridges`].
+//! ball around it with its depth as radius must be inside the flat solid. Cases without such a
+//! proof, mostly an edge across a rim, fall back to the arcs of [`ridges`].
 
 mod chord;
 pub(super) mod coaxial;
@@ -44,7 +44,7 @@ use crate::convex::{Separation, Units};
 use crate::math::{Pose, Real, Vector, cross, unit};
 use crate::shape::{Geometry, SupportMap};
 
-/// Cap on the number of vertices added in one search.
+/// Largest number of vertices added in one search.
 const ROUNDS: usize = 12;
 
 /// Smallest sine of the angle between a chord and the rim's tangent at which their common
@@ -58,7 +58,7 @@ fn still<N: Real>() -> N {
 }
 
 /// Returns the separation of a flat-sided solid, segment, capsule, cylinder or cone from a cylinder
-/// or cone.
+/// or cone; `None` above `limit`, and if the pose is not finite.
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     let otherwise = || match FlatCore::of(pair.first) {
         Some(_) => ridges::separation(pair, limit),

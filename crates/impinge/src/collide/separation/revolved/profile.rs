@@ -146,9 +146,9 @@ impl<N: Real> ProfileView<N> {
     }
 
     /// Returns the multiple of `along` that is one step of Newton's method for the smallest squared
-    /// distance to the rim, even if another part is nearest to the point. A cylinder's rim on the
-    /// point's side of the origin is used. `None` if the second derivative of the squared distance
-    /// is not positive.
+    /// distance to the rim, even if another part is nearest to the point. For a cylinder, the rim
+    /// on the point's side of the plane y = 0 is used. `None` if the second derivative of the
+    /// squared distance is not positive.
     pub(super) fn step_to_rim(&self, profile: &Profile<N>, along: &Vector<N, 3>) -> Option<N> {
         let Round { half, radius, is_cone } = profile.round;
         let end = if is_cone || self.point.y < N::ZERO { -half } else { half };

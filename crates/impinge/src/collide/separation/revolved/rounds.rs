@@ -11,9 +11,9 @@ use super::{DirectedPoint, RevolvedFound, RevolvedResult, in_second_frame, round
 use crate::collide::separation::segments::nearest::nearest_of_segments;
 use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, cross, max, min, unit};
 
-/// Cap on the number of times that an apex or a rim of one solid is tried.
+/// Largest number of times that an apex or a rim of one solid is tried.
 const TURNS: usize = 3;
-/// Cap on the steps of Newton's method; about four are needed.
+/// Largest number of steps of Newton's method; about four are needed.
 const STEPS: usize = 12;
 
 /// Searches for the separation of two round solids. A gap larger than `beyond` gives `Beyond`.

@@ -23,10 +23,10 @@ use smallvec::SmallVec;
 
 use crate::math::{Mapped, Real, Vector, cross2, min, perp, unit};
 
-/// The maximum number of arcs, the given arc and parts of it, that one search examines. For each it
-/// computes at most one direction, at which it may split the arc. About 20 directions are enough in
-/// `f32`, and 40 in `f64`: the splits approach the best direction from both sides, until the bounds
-/// are good enough.
+/// The maximum number of arcs, the given arc and parts of it, that one search examines. For each
+/// arc it computes the depth in at most one direction, at which it may split the arc. About 20
+/// directions are enough in `f32`, and 40 in `f64`: the splits approach the best direction from
+/// both sides, until the bounds are good enough.
 const STEPS: usize = 256;
 
 /// Height of a point along the unit vectors `u` of a circle: `base + toward · u`.
@@ -132,8 +132,8 @@ impl<N: Real> Arc<N> {
 /// A direction of the arc is a convex combination of the ends divided by its length, which is at
 /// most 1. With no positive `base`, a height of at least `least` at the combination is no less at
 /// the direction. So if some convex combination of the points is at least `least` high at every
-/// combination of the ends, it is so on the arc. Such a combination of the points exists if the
-/// matrix game with the two by two heights has a value of at least `least`.
+/// combination of the ends, the depth is at least `least` on the arc. Such a combination of the
+/// points exists if the matrix game with the two by two heights has a value of at least `least`.
 pub(super) fn are_above<N: Real>(heights: &[[N; 2]; 2], least: N) -> bool {
     let [first, second] = heights.mapped(|[from, to]| [from - least, to - least]);
     let is_one = first[1] >= N::ZERO || second[0] >= N::ZERO;

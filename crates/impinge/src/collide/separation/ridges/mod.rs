@@ -45,7 +45,8 @@ use crate::convex::{self, Peak, Peaks, Separation};
 use crate::math::{Mapped, Pose, Real, Vector, cross, max, min, unit};
 use crate::shape::{Geometry, SupportMap};
 
-/// Returns the separation of a flat-sided solid, segment or capsule from a cylinder or cone.
+/// Returns the separation of a flat-sided solid, segment or capsule from a cylinder or cone; `None`
+/// above `limit`.
 ///
 /// If the solids are apart, the result is bit-identical to that of the general algorithm.
 /// [`OverlapPeaks`] finds the normal of an overlap.

@@ -56,7 +56,7 @@ pub(crate) fn nearest_on_segment<S: Simd, N: Real, V: Wide<S, Scalar = N>, const
 }
 
 /// Returns the lanes where a squared length is far from underflow and overflow, so that its root is
-/// accurate.
+/// accurate. Not set for NaN.
 #[inline(always)]
 pub(crate) fn is_square_in_range<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

@@ -8,7 +8,7 @@ use crate::collide::separation::projection::{
 use crate::convex::Separation;
 use crate::math::{Mapped, Point, Real, Vector, cross, max, unit};
 
-/// Returns the separation of two segments or capsules in 3D.
+/// Returns the separation of two segments or capsules in 3D; `None` above `limit`.
 ///
 /// Crossing cores have distance zero, and their common perpendicular is the normal. Overlapping
 /// cores on one line get a fixed perpendicular of the line; two coinciding points get the first
@@ -86,8 +86,8 @@ fn best_normal<N: Real>(
     widest.best.map_or_else(first_axis, |(_, normal)| normal)
 }
 
-/// Search for the normal with the largest gap between two segments. Of normals whose gaps differ by
-/// at most `rounding_error`, the first is kept.
+/// Search for the normal with the largest gap between two segments. Keeps the first of several
+/// normals whose gaps differ by at most `rounding_error`.
 struct Widest<'a, N: Real> {
     ends1: &'a [Point<N, 3>; 2],
     ends2: &'a [Point<N, 3>; 2],

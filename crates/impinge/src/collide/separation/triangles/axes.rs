@@ -270,8 +270,8 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         Directions { sides, front: rotated_back(simd, turn, &over(&across, area)), is_wide }
     }
 
-    /// Returns the gaps from the triangles to the solid along `-along` and along `along`, unit
-    /// vectors.
+    /// Returns the gaps from the triangles to the solid along the unit vectors `-along` and
+    /// `along`.
     #[inline(always)]
     fn gaps_along(&self, along: &[V; 3]) -> [V; 2] {
         let mut top = -V::all(self.simd, N::INFINITY);

@@ -5,8 +5,8 @@
 //! along its normal: no direction into such a triangle has a positive component along the normal
 //! (`shape/surface/seam.rs`). If one of these triangles is nearer to the centre of the ball than
 //! the corner or edge, the direction to its nearest point has such a component. So distances alone
-//! give the result of the rule for normals. Of all triangles around the point where a ball rests,
-//! only one remains. In close cases no triangle counts as hidden.
+//! give the result of the rule for normals. Only one of the triangles around the point where a ball
+//! rests remains. In close cases no triangle counts as hidden.
 //!
 //! ```text
 //!           o  centre           kind 0, 1, 2: nearest on the side that starts at corner 0, 1, 2
@@ -25,10 +25,10 @@ use crate::math::{Point, Real, Vector, Wide, filled, max_component, min};
 
 /// A triangle is thin if the squared ratio of its height to its longest side is at most this.
 const TALL: f64 = 1.0 / 1000.0;
-/// Squared distances count as different if they differ by more than this many epsilons of the
-/// squared size of the lane: the distance of the farthest corner from the centre plus the radius. A
-/// nearest feature is certain if the centre is farther from the border of its Voronoi region than
-/// the root of this difference.
+/// Bound of the rounding errors of squared distances, in epsilons of the squared size of the lane:
+/// the distance of the farthest corner from the centre plus the radius. A nearest feature is
+/// certain if the centre is farther from the border of its Voronoi region than the root of this
+/// bound.
 const CLEAR: f64 = 64.0;
 /// Kinds of corners start at this number, after the kinds of sides.
 const CORNER: f64 = 3.0;
@@ -205,7 +205,8 @@ impl<V> TrianglePacket<V> {
         let (ab, bc, ca) = (minus(&b, &a), minus(&c, &b), minus(&a, &c));
         let squares = [dot(&ab, &ab), dot(&bc, &bc), dot(&ca, &ca)];
         let along = [-dot(&ab, &a), -dot(&bc, &b), -dot(&ca, &c)];
-        // Products of the two sides at the first corner, measured from that corner.
+        // Both sides at the first corner are taken from that corner: `turn` is their dot product,
+        // `to_c` the coordinate of the centre along the second side, times its length.
         let (turn, to_c) = (-dot(&ab, &ca), dot(&ca, &a));
         let area = squares[0] * squares[2] - turn * turn;
         let at_b = along[0] * squares[2] - to_c * turn;

@@ -8,8 +8,7 @@
 //! direction is the triangle's own normal, the case is plain, too, but without a feature, and the
 //! gap is only a lower bound. All other triangles are passed to the separation of the pair. So are
 //! triangles whose gap differs only by rounding from the prediction, the largest distance of
-//! contacts, because the separation decides, for queries and manifolds alike, whether a pair is
-//! within the prediction.
+//! contacts: there the separation decides, for queries and manifolds alike.
 //!
 //! ```text
 //!   tiles   [. x . x x . . .] [x . . x . . . .] ...    `masks`: bits of the selected ones

@@ -253,7 +253,8 @@ mod tests {
     use crate::math::xorshift::Xorshift;
     use crate::shape::Shape;
 
-    /// Returns the distance by the general algorithm, and the distance by axes if these prove it.
+    /// Returns the distance by the general algorithm, and the distance by axes; `None` if the axes
+    /// do not prove it.
     fn both<N: Real>(one: &Triangle<N, 3>, other: &Triangle<N, 3>) -> (N, Option<N>) {
         let (first, second) = (one.geometry().0, other.geometry().0);
         let pair = Pair { first, second, pose12: Pose::identity() };

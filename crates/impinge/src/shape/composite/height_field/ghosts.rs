@@ -11,7 +11,7 @@ use super::HeightField;
 use crate::math::Real;
 
 impl<N: Real> HeightField<N, 2> {
-    /// Makes exactly those cells ghosts for which `is_ghost(cell)` returns `true`; see
+    /// Makes each cell a ghost if and only if `is_ghost(cell)` returns `true`; see
     /// [`Self::set_ghost`].
     #[must_use]
     pub fn with_ghosts(mut self, mut is_ghost: impl FnMut(usize) -> bool) -> Self {
@@ -34,7 +34,7 @@ impl<N: Real> HeightField<N, 2> {
     /// // A flat field from -1 to 1, with one more sample at each end.
     /// let field = HeightField::<f32>::new(vec![0.0; 5], Vector::new(4.0, 1.0)).with_ghost_border();
     /// assert_eq!(field.height_at(1.5), None, "a ghost");
-    /// // Beyond its end a ball touches the last point: as a part of one flat line, so straight up.
+    /// // A ball beyond the end touches the last point, with the normal of the continued flat line.
     /// let (ball, at) = (Ball::new(0.5), Isometry::translation(1.0625, 0.48));
     /// let found = query::contact_manifolds(
     ///     &Isometry::identity(), &field, &at, &ball, &ContactPrediction::new(0.01, 0.0, 0.0), None);
@@ -69,7 +69,7 @@ impl<N: Real> HeightField<N, 2> {
 }
 
 impl<N: Real> HeightField<N, 3> {
-    /// Makes exactly those cells ghosts for which `is_ghost(row, column)` returns `true`; see
+    /// Makes each cell a ghost if and only if `is_ghost(row, column)` returns `true`; see
     /// [`Self::set_ghost`].
     #[must_use]
     pub fn with_ghosts(mut self, mut is_ghost: impl FnMut(usize, usize) -> bool) -> Self {

@@ -2,8 +2,8 @@
 
 /// The diagonal of a cell: the two corners that the common side of its two triangles joins.
 ///
-/// Rows and columns are counted in the grid of heights. Triangle 0 of a cell has the side that
-/// joins the two corners in the cell's lower column.
+/// Rows and columns are counted in the grid of heights. Triangle 0 of a cell has the side between
+/// the cell's two corners with the smaller column index.
 ///
 /// ```
 /// use impinge::dim3::math::Vector;

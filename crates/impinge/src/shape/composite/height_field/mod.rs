@@ -50,13 +50,13 @@ use crate::shape::error::finite;
 /// the rule and the tolerance of [`TriMesh`](crate::shape::TriMesh).
 /// [`Self::with_internal_edges_kept`] disables this.
 ///
-/// **Cells.** Four neighbouring heights form a cell of two triangles, parts `2 · cell` and
-/// `2 · cell + 1`, divided along its [`Diagonal`]. The corners of a triangle run counter-clockwise
-/// seen from the front, so that in 3D `Face(0)` is the front. In 2D a cell is one part, the segment
-/// from one height to the next. Parts may be holes: a hole keeps its part index, but no search
-/// finds it, and a seam beside it is a border. Cells may be ghosts: no search finds a ghost, but
-/// the surface continues across the seams beside it. So solids do not catch on the seams of a
-/// terrain made of many fields (`with_ghost_border`).
+/// **Cells.** Four neighbouring heights form a cell of two triangles, parts `2 · cell` and `2 ·
+/// cell + 1`, divided along its [`Diagonal`]. The corners of a triangle run counter-clockwise seen
+/// from the front, so in 3D `Face(0)` is the front. In 2D a cell is one part, the segment from one
+/// height to the next. Parts may be holes: a hole keeps its part index, but no search finds it, and
+/// a seam beside it is a border. Cells may be ghosts: no search finds a ghost, but the surface
+/// continues across the seams beside it. So solids do not catch on the seams of a terrain made of
+/// many fields (`with_ghost_border`).
 ///
 /// Construction takes one pass over the heights; a change of one height costs O(log n). Memory:
 /// about two numbers per height, and a byte per cell once any cell is a hole, a ghost or has a

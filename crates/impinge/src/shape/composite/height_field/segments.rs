@@ -16,7 +16,7 @@ use crate::shape::{
 };
 
 impl<N: Real> HeightField<N, 2> {
-    /// Returns the field of these heights; see [`Self::try_new`].
+    /// Returns the field of the given heights; see [`Self::try_new`].
     ///
     /// # Panics
     /// If [`Self::try_new`] returns an error.
@@ -42,7 +42,7 @@ impl<N: Real> HeightField<N, 2> {
         Ok(field)
     }
 
-    /// Makes exactly those cells holes for which `is_hole(cell)` returns `true`.
+    /// Makes each cell a hole if and only if `is_hole(cell)` returns `true`.
     #[must_use]
     pub fn with_holes(mut self, mut is_hole: impl FnMut(usize) -> bool) -> Self {
         let cells = self.num_cells();

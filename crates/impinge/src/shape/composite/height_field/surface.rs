@@ -66,7 +66,8 @@ impl<N: Real> OwnSurface<N, 3> for HeightField<N, 3> {
         let own = FieldFace::of(self, self.corners(part));
         let has_seams = !self.keeps_internal_edges && own.front != Vector::<N, 3>::zeros();
         let bend = |side| Fold::at(self, &own, side).bend;
-        // All front normals of a field point up, or all point down.
+        // All front normals of a field point up, or all point down, so the fronts of neighbours
+        // agree.
         has_seams.then(|| FaceSeams::new(own.front, self.is_one_sided, bend, |_| true))
     }
 
@@ -187,8 +188,8 @@ impl<N: Real> HeightField<N, 3> {
         rest.map(|(row, column, k)| self.corners_in(row, column, k))
     }
 
-    /// Calls `visit` for each triangle at a grid point that is not a hole, at most 8, until a call
-    /// returns true. Passes the other two corners, counter-clockwise seen from the front.
+    /// Calls `visit` for each triangle at a grid point, at most 8, until a call returns true; skips
+    /// holes. Passes the other two corners of the triangle, counter-clockwise seen from the front.
     fn each_around(&self, at: GridPoint, mut visit: impl FnMut([GridPoint; 2]) -> bool) {
         let [rows, columns] = self.pyramid.cells();
         // The four cells around the point, and the index of the point among the corners of each

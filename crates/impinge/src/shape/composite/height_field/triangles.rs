@@ -60,8 +60,8 @@ impl<N: Real> HeightField<N, 3> {
         self
     }
 
-    /// Makes exactly those cells holes, with both triangles, for which `is_hole(row, column)`
-    /// returns `true`.
+    /// Makes both triangles of each cell holes if and only if `is_hole(row, column)` returns
+    /// `true`.
     #[must_use]
     pub fn with_holes(mut self, mut is_hole: impl FnMut(usize, usize) -> bool) -> Self {
         let [rows, columns] = self.pyramid.cells();
@@ -340,7 +340,8 @@ fn min_index(a: usize, b: usize) -> usize {
     if a < b { a } else { b }
 }
 
-/// Returns the height of a triangle at (x, z); `None` outside the triangle.
+/// Returns the height of a triangle at (x, z); `None` outside the triangle, and for a triangle
+/// without area seen along y.
 fn height_over<N: Real>(corners: &[Point<N, 3>; 3], x: N, z: N) -> Option<N> {
     let [a, b, c] = corners;
     let side = |p: &Point<N, 3>, q: &Point<N, 3>| (q.z - p.z) * (x - p.x) - (q.x - p.x) * (z - p.z);

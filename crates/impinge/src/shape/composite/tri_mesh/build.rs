@@ -68,7 +68,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
     /// use impinge::dim3::math::Point;
     /// use impinge::dim3::shape::{EdgeNeighbor, TriMesh};
     ///
-    /// // A triangle, and the one that its neighbour has beyond the side of corners 1 and 2.
+    /// // A triangle, and as a ghost the neighbouring tile's triangle across its side 1.
     /// let corners = [[0.0_f32, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]];
     /// let vertices = corners.map(|[x, z]| Point::new(x, 0.0, z)).to_vec();
     /// let tile = TriMesh::new(vertices, vec![[0, 1, 2]]).with_ghosts(&[[2, 1, 3]]);

@@ -188,7 +188,7 @@ pub(in crate::shape) fn aabb_at<N: Space<D>, const D: usize, const K: usize>(
         let rotated = Aabb::around_all(
             parts.as_flattened().iter().map(|vertex| Point::from(pose.vector(&corner(vertex)))),
         );
-        // If the pose is not finite, there is no box around the vertices and the result is
+        // `None` if a rotated coordinate is NaN, as for a rotation with NaN. The result is then
         // unbounded.
         return rotated.map_or_else(Aabb::unbounded, |rotated| {
             Aabb::of_rotated(rotated.mins().coords, rotated.maxs().coords, size, pose)

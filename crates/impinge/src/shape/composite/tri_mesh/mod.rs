@@ -158,7 +158,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         found
     }
 
-    /// Returns whether every side with a length has a neighbour, so that the surface in 3D has no
+    /// Returns whether every side with a length has a neighbour: in 3D the surface then has no
     /// border. O(n).
     #[must_use]
     pub fn is_closed(&self) -> bool {

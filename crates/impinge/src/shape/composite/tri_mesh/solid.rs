@@ -7,9 +7,8 @@ use crate::shape::composite::joints::Joints;
 use crate::shape::composite::mesh_error::{MeshError, or_panic};
 
 impl<N: Real, const D: usize> TriMesh<N, D> {
-    /// Returns whether the mesh is solid, so that the enclosed volume belongs to the shape: `solid`
-    /// was called, and no joined vertices are apart after a move. Always false in 2D, where
-    /// triangles are filled.
+    /// Returns whether the enclosed volume belongs to the shape: `solid` was called, and no joined
+    /// vertices are apart after a move. Always false in 2D, where triangles are filled.
     #[must_use]
     pub const fn is_solid(&self) -> bool {
         self.is_solid && self.is_cycle
@@ -44,8 +43,8 @@ impl<N: Real> TriMesh<N, 3> {
     /// zero, and the contact leads out through the nearest part of the surface. The depth is
     /// measured from the plane through the nearest point of the surface, perpendicular to the
     /// normal, to the deepest point of the other solid. Points inside belong to the mesh. A ray
-    /// that starts inside hits it at time 0 if the ray test treats shapes as solid. Contacts
-    /// outside are those of a [one-sided](Self::one_sided) mesh, but a solid that overlaps the
+    /// that starts inside hits it at time 0 if the ray test treats shapes as solid. Contacts on the
+    /// outside arise as for a [one-sided](Self::one_sided) mesh, but a solid that overlaps the
     /// surface has contacts wherever its centre is. An inner surface whose front faces its inside
     /// bounds a cavity; points in a cavity are outside the mesh.
     ///

@@ -88,8 +88,8 @@ impl<N: Real> TriMesh<N, 3> {
         self.bent_edge_admits(self.bend_at(part, side).as_ref(), part, side, normal)
     }
 
-    /// Returns the edge angle of a side; `None` if it is uncertain or the side has not exactly one
-    /// neighbour.
+    /// Returns the edge angle of a side; `None` if it is uncertain, or if the side does not have
+    /// exactly one neighbour whose front agrees.
     fn bend_at(&self, part: u32, side: usize) -> Option<Bend<N>> {
         let other = self.topology.single_across(part, side)?;
         let fronts = [part, other].map(|face| self.normals[face as usize]);

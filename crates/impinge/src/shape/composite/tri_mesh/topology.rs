@@ -25,7 +25,7 @@ pub enum EdgeNeighbor {
     Triangle {
         /// The index of the neighbouring triangle.
         index: u32,
-        /// Whether both triangles traverse the side in the same direction, so that their fronts
+        /// Whether both triangles traverse the side in the same direction: their fronts then
         /// disagree.
         is_flipped: bool,
     },
@@ -50,12 +50,13 @@ pub(super) struct Topology {
     pub(super) is_moved: bool,
 }
 
-/// A side, stored at its end with the lower joint: the joint of its other end, the triangle, the
-/// side's index within the triangle, and whether the side leads away from the lower joint.
+/// A side in the group of its end joint with the smaller index: the joint of the other end, the
+/// triangle, the side's index within the triangle, and whether the triangle traverses the side from
+/// the smaller joint to the larger.
 type TopologySide = (u32, u32, u8, bool);
 
-/// Returns all sides with two different ends, grouped by the lower joint, and the end index of each
-/// joint's group.
+/// Returns all sides with two different ends, grouped by the end joint with the smaller index, and
+/// the end of each joint's group in the list.
 fn sides_by_joint(joints: &Joints, triangles: &[[u32; 3]]) -> (Vec<TopologySide>, Vec<usize>) {
     let each = |visit: &mut dyn FnMut(u32, TopologySide)| {
         for (index, triangle) in (0..).zip(triangles) {

@@ -28,7 +28,8 @@ struct AxisSide<V, M> {
     gap: V,
     /// Lanes where the axis is the y axis of the box, else the x axis.
     is_y: M,
-    /// Lanes where the normal from the first box to the second points along the axis.
+    /// Lanes where the normal from the first box to the second points in the positive direction of
+    /// the axis, else in the negative direction.
     is_positive: M,
 }
 

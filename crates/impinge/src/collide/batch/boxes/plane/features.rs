@@ -12,8 +12,8 @@ use crate::collide::batch::boxes::choose::SlotFeatures;
 use crate::math::Real;
 use crate::shape::FeatureId;
 
-/// Features of one side: the side itself, its end at the negative coordinate, and its end at the
-/// positive coordinate.
+/// Features of one side: the side itself, then its ends at the negative and at the positive
+/// coordinate along the side.
 type PartFeatures = [FeatureId; 3];
 
 /// Features of the four sides of a box. The index is the axis perpendicular to the side, plus 2 if

@@ -44,7 +44,7 @@ pub(super) struct BoxSides<V, M> {
     ends: [End<V>; 2],
     /// Length of the upper side, projected onto the lower side.
     length: V,
-    /// Lanes where the upper side is tilted too far, so that only its lower end is used.
+    /// Lanes where the upper side is tilted too far. There only its lower end is used.
     is_corner: M,
     /// Lanes where `ends[1]`, not `ends[0]`, faces the lower box.
     is_second_lower: M,
@@ -69,8 +69,8 @@ struct SideCandidate<V, M> {
     /// Lanes where `end` is within the other side's interval, or outside by at most twice the
     /// tolerance.
     is_inside: M,
-    /// Lanes where `end` is at the first end of the other side, and at the second, up to the
-    /// tolerance.
+    /// Lanes where `end` is at or beyond the first end of the other side, and at or beyond the
+    /// second, up to the tolerance.
     at_end: [M; 2],
 }
 
@@ -126,9 +126,8 @@ impl<V, M> BoxSides<V, M> {
     }
 
     /// Fills the slots with the ends of the overlap interval, or only with the lower end of the
-    /// upper side where that side is tilted too far. Returns two masks for each slot: the lanes
-    /// where its candidate is at the first end of the other side, and those where it is at the
-    /// second.
+    /// upper side where that side is tilted too far. Returns two masks for each slot: the `at_end`
+    /// of its [`SideCandidate`].
     #[inline(always)]
     pub(super) fn share<S: Simd, N: Real, const L: usize>(
         &self,

@@ -71,8 +71,8 @@ fn signed<S: Simd, V: Wide<S>>(value: V, is_positive: bool) -> V {
 }
 
 /// Returns the signs, along both arms, of a corner of the parallelogram: `sign` along the arm
-/// `arm`, and `upper` along the other arm. With `arm` and `sign` fixed, the two corners are the
-/// ends of one side.
+/// `arm`, and `upper` along the other arm. With `arm` and `sign` fixed, the two values of `upper`
+/// give the ends of one side.
 const fn ends(arm: usize, sign: bool, upper: bool) -> [bool; 2] {
     if arm == 0 { [sign, upper] } else { [upper, sign] }
 }

@@ -1,6 +1,5 @@
-//! The two reference faces of `L` pairs: a rectangle, which is a face of one box, and a
-//! parallelogram, which is a face of the other box projected along the normal onto the rectangle's
-//! plane.
+//! The two reference faces of `L` pairs. The rectangle is a face of one box. The parallelogram is a
+//! face of the other box, projected along the normal onto the rectangle's plane.
 //!
 //! ```text
 //!    rectangle                          parallelogram
@@ -30,7 +29,7 @@ pub(super) struct FacesInLanes<V, M> {
     /// Lanes where the rectangle belongs to the second box.
     pub(super) is_second: M,
     /// Lanes where the rectangle belongs to the second box and the separating axis is perpendicular
-    /// to two edges, so that the normal is tilted against the rectangle.
+    /// to two edges. There the normal is tilted against the rectangle.
     is_tilted: M,
     /// For each axis of the rectangle's box, the lanes where it is perpendicular to the rectangle.
     pub(super) is_w: [M; 3],
@@ -53,7 +52,7 @@ pub(super) struct FacesInLanes<V, M> {
     /// Components, along the sides of the parallelogram's face, of the unit normal from its box
     /// towards the rectangle.
     tilt_above: [V; 2],
-    /// Lanes where neither face is tilted too far, so that the whole of both faces is used.
+    /// Lanes where neither face is tilted too far. There both whole faces are clipped.
     pub(super) is_whole: M,
     /// Centre of the parallelogram in the coordinates `u`, `v` of the rectangle.
     pub(super) center: [V; 2],

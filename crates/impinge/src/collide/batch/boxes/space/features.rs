@@ -22,7 +22,7 @@ use crate::shape::FeatureId;
 
 /// Number of parts of a face: four corners, four sides and the face itself; see the figure.
 const PARTS: usize = 9;
-/// Upper bound of the indices of features of one kind; a box has at most 12 of a kind.
+/// Exclusive upper bound of the indices of features of one kind; a box has 12 edges.
 const NUMBERS: usize = 12;
 /// Marks a missing part or slot.
 const NONE: u8 = u8::MAX;
@@ -128,7 +128,8 @@ const fn own_parts() -> [u8; 4] {
     own
 }
 
-/// Pair of parts of each slot. For a corner, only the contribution of the corner's own face.
+/// Pair of parts of each slot, as the number `9 * r + p`. For a corner, only the summand of the
+/// corner's own face.
 const OWN_PAIRS: [u8; PLACES] = own_pairs();
 
 const fn own_pairs() -> [u8; PLACES] {
@@ -165,7 +166,7 @@ const fn parts_of() -> [[u8; 2]; PAIRS] {
 /// and a corner of the rectangle.
 static SLOTS_OF: [[u8; 2]; PAIRS] = slots_of();
 
-/// Computes [`SLOTS_OF`] by entering each slot for all pairs that it may have.
+/// Computes [`SLOTS_OF`]: stores each slot at all pairs of parts that it may hold.
 const fn slots_of() -> [[u8; 2]; PAIRS] {
     let mut all = [[NONE; 2]; PAIRS];
     let mut slot: u8 = 0;
@@ -219,8 +220,8 @@ impl BoxPairFeatures {
     #[inline(always)]
     pub(super) fn new(sides: &FaceSides, bits: u8, parts: u64) -> Self {
         let mut pairs = OWN_PAIRS;
-        // A byte for each corner: the contribution of the corner's own face. The contribution of
-        // the other face is added.
+        // A byte for each corner: the summand of the corner's own face. The summand of the other
+        // face is added below.
         let own = u64::from_le_bytes([
             pairs[0], pairs[1], pairs[2], pairs[3], pairs[4], pairs[5], pairs[6], pairs[7],
         ]);

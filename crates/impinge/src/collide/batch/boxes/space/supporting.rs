@@ -39,8 +39,8 @@ impl<M> SupportingParts<M> {
         let squares = [tilt[0] * tilt[0], tilt[1] * tilt[1]];
         let is_all = Self::is_all(simd, tilt);
         let [one, other] = [tilt[0].abs(), tilt[1].abs()];
-        // The axis with the smaller tilt is free first; a tie is resolved by the order of the box's
-        // axes.
+        // A side extends along the axis with the smaller tilt; a tie is resolved by the order of
+        // the box's axes.
         let is_first_weaker = one.simd_lt(other) | (one.simd_eq(other) & !is_middle);
         Self {
             is_free: [
@@ -51,8 +51,8 @@ impl<M> SupportingParts<M> {
         }
     }
 
-    /// Returns the lanes where a face is tilted by at most atan(1/2) ≈ 26.6°, so that the whole
-    /// face is the feature. `[u, v]` are the components of the unit normal along the face.
+    /// Returns the lanes where a face is tilted by at most atan(1/2) ≈ 26.6°. There the whole face
+    /// is the supporting feature. `[u, v]` are the components of the unit normal along the face.
     #[inline(always)]
     pub(super) fn is_all<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>>(
         simd: S,
@@ -89,9 +89,9 @@ impl<M> SupportingParts<M> {
         self.is_free[1 - axis] & (self.is_free[axis] | self.is_at(axis, is_positive))
     }
 
-    /// Returns the lanes where a point of the face belongs to the part, except lanes whose part is
-    /// a corner, which are never returned. For each axis, `at_end` are the lanes where the point is
-    /// at an end of the face, and `beyond` the lanes where its coordinate is positive.
+    /// Returns the lanes where a point of the face belongs to the part, but no lane whose part is a
+    /// corner. For each axis, `at_end` are the lanes where the point is at an end of the face, and
+    /// `beyond` the lanes where its coordinate is positive.
     #[inline(always)]
     pub(super) fn has_position<S: Simd>(&self, at_end: &[M; 2], beyond: &[M; 2]) -> M
     where
