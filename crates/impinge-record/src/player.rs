@@ -298,7 +298,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         let has_other_events = std::mem::take(&mut self.is_remade);
         self.has_other_events = has_other_events || self.has_other_events && keeps_events;
         if replayed.state != recorded.state {
-            let known = recorded.changed.as_ref().map(|changed| before.after(changed));
+            let known = recorded.changed.as_ref();
+            let known = known.map(|changed| before.after(changed, &self.observer));
             let object = known.and_then(|known| self.observer.difference(&known));
             return Some(object.unwrap_or(Difference::State));
         }

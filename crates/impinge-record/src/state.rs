@@ -78,16 +78,15 @@ impl Observer {
         Observation { state, events, counts, changed: Some(changed) }
     }
 
-    /// Returns the hashes by index after applying the recorded changes. Hashes of indices that are
-    /// no longer used are out of date.
-    pub(crate) fn after(&self, changed: &[ObjectHashes]) -> Vec<[u32; 2]> {
+    /// Returns the hashes by index after applying the recorded changes, for the indices that are
+    /// known to `replayed`, the observer after the same update. Ignores larger indices, so an
+    /// invalid recording cannot request memory. Hashes of indices without an object are out of
+    /// date.
+    pub(crate) fn after(&self, changed: &[ObjectHashes], replayed: &Self) -> Vec<[u32; 2]> {
         let mut known = self.known.clone();
+        known.resize(replayed.known.len(), [0; 2]);
         for ObjectHashes { index, description, pairs } in changed {
-            let index = *index as usize;
-            // The list grows by at most one element for each change, and a larger index is ignored.
-            // So an invalid recording cannot request much memory.
-            known.resize(known.len().max(index.min(known.len()) + 1), [0; 2]);
-            if let Some(hashes) = known.get_mut(index) {
+            if let Some(hashes) = known.get_mut(*index as usize) {
                 *hashes = [*description, *pairs];
             }
         }

@@ -5,7 +5,8 @@ use impinge::dim2::shape::{Ball, Cuboid, ShapeHandle};
 use impinge::dim2::world::{CollisionGroups, GeometricQueryType};
 use impinge::math::Vector;
 use impinge_record::{
-    Difference, ObjectField, Problem, ReadError, Recorder, Registry, Replay, reseal, validate,
+    Difference, ObjectField, Problem, ReadError, RecordError, Recorder, Registry, Replay, reseal,
+    validate,
 };
 
 use crate::scene::{Scene, Stage};
@@ -155,4 +156,39 @@ fn a_divergence_names_the_object() {
     assert_eq!(replay.divergence(), None, "not yet");
     replay.seek(2).expect("its calls can be applied");
     assert_eq!(replay.divergence(), Some(found), "now");
+}
+
+/// Asserts that a divergence names the right object after removals, when the indices of new objects
+/// leave a gap to those of the remaining objects.
+#[test]
+fn a_divergence_names_the_object_beyond_a_gap() -> Result<(), RecordError> {
+    let mut recorder = Recorder::<f32, 2, u32>::new(0.02, registry())?;
+    let (ball, groups) = (ShapeHandle::new(Ball::new(1.0)), CollisionGroups::new());
+    let query = GeometricQueryType::Contacts(0.0, 0.0);
+    let add = |recorder: &mut Recorder<f32, 2, u32>, x| {
+        recorder.add(Isometry::translation(x, 7.0), ball.clone(), groups, query, 0)
+    };
+    let mut handles = Vec::new();
+    for x in [10.0, 20.0, 30.0, 40.0, 50.0] {
+        handles.push(add(&mut recorder, x)?);
+    }
+    recorder.update();
+    recorder.remove(&handles[1..])?;
+    recorder.update();
+    let (last, other) = (add(&mut recorder, 0.5)?.uid(), add(&mut recorder, 60.0)?.uid());
+    recorder.update();
+    assert!(last > other && other > 1, "index 1 is free, so there is a gap");
+    let bytes = recorder.finish().bytes;
+    let position = 0.5_f32.to_le_bytes();
+    let places = bytes.windows(4).enumerate().filter(|(_, window)| *window == position);
+    let place =
+        places.map(|(place, _)| place).next_back().expect("the position of the last object");
+    let mut damaged = bytes;
+    damaged[place..place + 4].copy_from_slice(&0.75_f32.to_le_bytes());
+    reseal(&mut damaged);
+    let found = validate(&damaged, &registry()).expect("it is a recording");
+    let found = found.expect("one object is elsewhere").difference;
+    let field = ObjectField::Description;
+    assert_eq!(found, Difference::Object { index: last, field }, "the object that is elsewhere");
+    Ok(())
 }

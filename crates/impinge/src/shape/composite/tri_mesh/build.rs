@@ -118,15 +118,15 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         })
     }
 
-    /// Merges vertices at the same position: only the first vertex at each position is kept, and
-    /// the triangles refer to it. Results of queries do not change.
+    /// Merges vertices that were at the same position when the mesh was built and still are: only
+    /// the first of them is kept, and the triangles refer to it. Results of queries do not change.
     #[must_use]
     pub fn with_vertices_merged(self) -> Self {
         let (mut number, mut kept) = (Vec::with_capacity(self.vertices.len()), Vec::new());
         let mut next = 0..;
         for (vertex, point) in (0..).zip(&self.vertices) {
             let first = self.topology.joints.of(vertex);
-            if first == vertex {
+            if first == vertex || self.vertices[first as usize] != *point {
                 number.extend(next.next());
                 kept.push(*point);
             } else {

@@ -99,6 +99,22 @@ fn closed_surfaces_have_neighbors_everywhere() {
     }
 }
 
+/// Asserts that merging vertices keeps vertices apart that were moved away from each other.
+#[test]
+fn vertices_that_were_moved_apart_are_not_merged() {
+    let corners = |torn: [f64; 2]| {
+        let torn = [torn[0], torn[1], 0.0];
+        [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], torn, [-1.0, 0.0, 0.0]]
+    };
+    let mut torn = mesh::<f64, 3>(&corners([0.0; 2]), &[[0, 1, 2], [3, 2, 4]]);
+    assert_eq!(torn.clone().with_vertices_merged().vertices().len(), 4, "0 and 3 are one");
+    torn.set_vertices(&points(&corners([-0.25, -0.5])));
+    let merged = torn.clone().with_vertices_merged();
+    for part in 0..2 {
+        assert_eq!(merged.triangle(part), torn.triangle(part), "triangle {part} stays");
+    }
+}
+
 #[test]
 fn open_flat_and_odd_meshes() {
     let (vertices, triangles) = grid(3, |x, y| [x, y]);

@@ -5,15 +5,18 @@
 //! normals, depths, features, contact ids), proximities and events. `golden/state_hashes.txt` has
 //! the final hash of each scene, dimension and scalar. It is the same on every platform and in
 //! every build, because the pipeline only adds, multiplies, divides, takes roots, compares and
-//! rounds, in a fixed order, and takes sines from a software library. `crates/impinge-wasm` plays
-//! the same scenes in WebAssembly. The file changes only together with a deliberate change of
-//! results; then run `IMPINGE_BLESS=1 cargo test -p impinge --test determinism` and commit the
-//! file.
+//! rounds, in a fixed order, and takes sines from a software library. The library of this
+//! package plays the same scenes in WebAssembly. The file changes only together with a deliberate
+//! change of results; then run `IMPINGE_BLESS=1 cargo test --workspace --test determinism` and
+//! commit the file.
+//!
+//! The test is in this package, because the package `impinge` enables more features for its tests:
+//! so the optimised build with several threads is also the library of the Python package.
 
 #[macro_use]
-#[path = "it/support/scene_stage/runs.rs"]
+#[path = "../../impinge/tests/it/support/scene_stage/runs.rs"]
 mod runs;
-#[path = "it/support/scene_stage/mod.rs"]
+#[path = "../../impinge/tests/it/support/scene_stage/mod.rs"]
 mod scene_stage;
 
 use std::collections::BTreeMap;
