@@ -93,6 +93,9 @@ mod pairs;
 pub mod partitioning;
 pub mod procedural;
 pub mod query;
+#[cfg(test)]
+#[path = "../tests/it/support/samples.rs"]
+mod samples;
 pub mod shape;
 mod tables;
 pub mod transformation;

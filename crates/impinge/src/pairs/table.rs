@@ -264,6 +264,7 @@ impl PairTable {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::samples::samples;
     use std::collections::BTreeSet;
 
     /// Returns a pseudorandom number below `bound`, from a linear congruential generator.
@@ -315,22 +316,25 @@ mod tests {
     #[test]
     fn an_object_with_very_many_partners() {
         let mut table = PairTable::new();
-        for b in 1..=200_000 {
+        let half = samples(10_000);
+        let count = u32::try_from(2 * half).expect("fewer than 2^32 partners");
+        for b in 1..=count {
             table.insert(0, b);
         }
-        assert_eq!(table.count(0), 200_000, "all are partners of 0");
-        // A search that is linear in the number of partners would need 2·10^10 steps here.
-        for b in (1..=200_000).rev().step_by(2) {
+        assert_eq!(table.count(0), 2 * half, "all are partners of 0");
+        // With ten times the samples, a search that is linear in the number of partners would need
+        // 2·10^10 steps here.
+        for b in (1..=count).rev().step_by(2) {
             assert!(table.remove(b, 0).is_some(), "{b} was there");
         }
         table.validate().expect("sound");
-        assert_eq!((table.len(), table.count(0)), (100_000, 100_000), "half are left");
+        assert_eq!((table.len(), table.count(0)), (half, half), "half are left");
         let mut taken = 0;
         while let Some(index) = table.any_pair_of(0) {
             table.remove_at(index);
             taken += 1;
         }
-        assert_eq!((taken, table.len()), (100_000, 0), "an object taken out");
+        assert_eq!((taken, table.len()), (half, 0), "an object taken out");
     }
 
     #[test]

@@ -10,12 +10,11 @@ use crate::collide::pair::{Ordered, Placed};
 use crate::collide::parts::Between;
 use crate::collide::separation::hulls::tests::Random;
 use crate::math::{Point, Pose, Real, Space, Vector};
+use crate::samples::samples;
 use crate::shape::{Ball, ConvexHull, Cuboid, HeightField, Shape, TriMesh};
 
 /// Number of updates of each solid.
 const STEPS: usize = 6;
-/// Number of moving solids.
-const ROUNDS: usize = 400;
 /// Number of vertices along each side of a terrain.
 const POINTS: u32 = 9;
 
@@ -167,13 +166,13 @@ fn follow<N: Space<3>>(
 
 fn compare<N: Space<3>>(seed: u64, solid_of: impl Fn(&mut Random) -> Solid<N>, has_own_path: bool) {
     let random = &mut Random(seed);
-    let (mut done, mut points) = (0, 0);
-    for round in 0..ROUNDS {
+    let (rounds, mut done, mut points) = (samples(40), 0, 0);
+    for round in 0..rounds {
         let (of_one, found) = follow::<N>(solid_of(random), random, round);
         (done, points) = (done + of_one, points + found);
     }
-    assert!(!has_own_path || done * 2 > ROUNDS * STEPS, "{done} updates by the quick path");
-    assert!(points > ROUNDS * STEPS / 2, "{points} points");
+    assert!(!has_own_path || done * 2 > rounds * STEPS, "{done} updates by the quick path");
+    assert!(points > rounds * STEPS / 2, "{points} points");
 }
 
 #[test]

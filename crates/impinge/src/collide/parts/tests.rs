@@ -10,6 +10,7 @@ use crate::collide::separation::hulls::tests::Random;
 use crate::collide::separation::separation;
 use crate::math::{Matrix, Point, Pose, Real, Space, Vector, unit};
 use crate::procedural::space::ellipsoid;
+use crate::samples::samples;
 use crate::shape::{
     Ball, Capsule, CompositeShape, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Ellipsoid,
     Rounded, Segment, Shape, TriMesh, Triangle,
@@ -95,7 +96,7 @@ fn searches<N: Space<D>, const D: usize>(
     let (mesh, other) = (soup(random, vector), soup(random, vector));
     let (first, parts) = (mesh.geometry().0, mesh.num_parts());
     let mut overlaps = [0; 2];
-    for round in 0..48 {
+    for round in 0..samples(8) {
         let distance = N::lit([0.3, 1.0, 2.0, 8.0][round % 4]);
         let pose12 = Pose { translation: vector(random) * distance, ..turn(random) };
         let second = other.geometry().0;

@@ -5,14 +5,12 @@ use super::generator::{Generator, Sample};
 use super::solids::Own;
 use super::surface::off;
 use crate::math::{Point, Real};
+use crate::samples::samples;
 
 const KINDS: [&str; 6] = ["segment", "capsule_y", "triangle", "cuboid", "cylinder_y", "cone_y"];
 /// Target distances, for solids of a size of about 1: far, near, touching, shallow and increasingly
 /// deep.
 const TARGETS: [f64; 10] = [1.0, 1e-2, 1e-5, 0.0, -1e-5, -1e-3, -1e-2, -0.1, -0.3, -0.8];
-
-/// Number of trials for each pair of kinds.
-const ROUNDS: usize = 400;
 
 /// Returns the errors of a separation's points: their distances from the surfaces of the two
 /// solids, and the mismatch between their offset and the distance along the normal.
@@ -61,6 +59,6 @@ where
 
 #[test]
 fn points_lie_on_both_solids() {
-    check::<f32>(ROUNDS, 1e-4);
-    check::<f64>(ROUNDS, 1e-8);
+    check::<f32>(samples(40), 1e-4);
+    check::<f64>(samples(40), 1e-8);
 }

@@ -33,10 +33,7 @@ fn apart<N: Space<D>, R: AbstractRotation<N, D> + Copy + Sync, const D: usize>(
     let mut distances = vec![N::ZERO; scene.len()];
     scene.batch().distances(&Control::new(), &mut distances).expect("good");
     let kept: Vec<usize> = (0..scene.len()).filter(|&index| distances[index] > N::HALF).collect();
-    let twice = kept.iter().chain(kept.iter().rev());
-    let picks = scene.picks.each_ref().map(|list| twice.clone().map(|&at| list[at]).collect());
-    let poses = scene.poses.each_ref().map(|list| twice.clone().map(|&at| list[at]).collect());
-    Scene { picks, poses, ..scene }
+    scene.only(kept.iter().chain(kept.iter().rev()).copied())
 }
 
 fn check<N: Space<D>, R: AbstractRotation<N, D> + Copy + Sync, const D: usize>(

@@ -6,6 +6,7 @@ use impinge::math::{AbstractRotation, Isometry, Point, Real, Space, Vector};
 use impinge::shape::ShapeHandle;
 
 use crate::support::query_support::random::Random;
+use crate::support::samples::stride;
 use crate::support::shape_table;
 
 /// A batch of pairs: indices of their shapes in a list, and their poses.
@@ -61,6 +62,28 @@ pub(super) fn scene2<N: Real>(away: f64) -> Scene<N, UnitComplex<N>, 2> {
 
 pub(super) fn scene3<N: Real>(away: f64) -> Scene<N, UnitQuaternion<N>, 3> {
     scene(shape_table::space(N::ONE), away, Random::turn3)
+}
+
+impl<N: Real, R: Copy, const D: usize> Scene<N, R, D> {
+    /// Keeps the pairs with the given indices, in the given order.
+    pub(super) fn only(self, kept: impl Iterator<Item = usize> + Clone) -> Self {
+        let picks = self.picks.each_ref().map(|list| kept.clone().map(|at| list[at]).collect());
+        let poses = self.poses.each_ref().map(|list| kept.clone().map(|at| list[at]).collect());
+        Self { picks, poses, ..self }
+    }
+
+    /// Keeps the last of every seven pairs of shapes, at all its positions; every pair if the
+    /// [`stride`] is 1. The number of shapes, 18 or 23, is no multiple of seven, so each shape
+    /// occurs on both sides. As all positions of a pair are kept, several pairs of the same kinds
+    /// follow each other, which the library computes in lanes: also two boxes in 2D, and in 3D two
+    /// capsules, and a triangle and a hull.
+    pub(super) fn thinned(self) -> Self {
+        let (step, count) = (stride(7), self.shapes.len());
+        let number = |at: usize| self.picks[0][at] as usize * count + self.picks[1][at] as usize;
+        let all = 0..self.picks[0].len();
+        let kept: Vec<usize> = all.filter(|&at| number(at) % step == step - 1).collect();
+        self.only(kept.iter().copied())
+    }
 }
 
 impl<N: Space<D>, R: AbstractRotation<N, D> + Sync, const D: usize> Scene<N, R, D> {

@@ -10,6 +10,7 @@ use impinge::math::{Point, Pose, Real, Space, Unit, Vector};
 use impinge::shape::{Ball, Cuboid, Plane, ShapeHandle};
 
 use crate::support::query_support::random::Random;
+use crate::support::samples::stride;
 
 /// Placed shapes, each with an id; the ids are distinct, but not sorted.
 struct Heap<N: Space<D>, const D: usize> {
@@ -152,7 +153,8 @@ impl<N: Real, const D: usize> YAxis<N, D> for Vector<N, D> {
 }
 
 fn check<N: Space<D>, const D: usize>() {
-    let uneven = Heap::<N, D>::uneven(1500, true);
+    // The number of pairs grows with the square of the number of objects.
+    let uneven = Heap::<N, D>::uneven(1500 / stride(4), true);
     for distance in [0.0, 0.5, 30.0] {
         let count = uneven.check(distance, 5);
         assert!(count > 100, "{count} pairs within {distance}");
@@ -177,9 +179,11 @@ fn tiles_have_the_pairs_of_one_call() {
 }
 
 fn fullest_is_at_most_twice_the_mean<N: Space<D>, const D: usize>() {
+    // Fewer objects would be shared less evenly. By default the second case is left out.
     let heap = Heap::<N, D>::uneven(30_000, false);
-    for (number, step) in [(7, 1), (64, 1), (64, 10)] {
-        let sample: Vec<_> = heap.boxes().into_iter().step_by(step).collect();
+    let boxes = heap.boxes();
+    for (number, step) in [(64, 10), (64, 1), (7, 1)].into_iter().step_by(stride(2)) {
+        let sample: Vec<_> = boxes.iter().copied().step_by(step).collect();
         let objects = heap.objects(&tiles(&sample, number, N::lit(0.1)).expect("good"));
         let counts: Vec<usize> = objects.iter().map(Vec::len).collect();
         let (fullest, all) = (counts.iter().max().expect("some"), counts.iter().sum::<usize>());

@@ -11,6 +11,8 @@ use impinge::shape::{Plane, Polyline, ShapeHandle, TriMesh};
 use impinge::world::{CollisionGroups, CollisionWorld};
 use impinge_reference::random::Random;
 
+use crate::support::samples::samples;
+
 fn point<N: Real, const D: usize>(random: &mut Random, limit: u32) -> Point<N, D> {
     Point::from(Vector::<N, D>::from_fn(|_, _| N::lit(random.grid(limit, 3))))
 }
@@ -101,8 +103,8 @@ fn ask_all<N: Space<D>, const D: usize>(
     make: impl Fn(&mut Random) -> [Placed<N, D>; 2],
     distance: impl Fn(&Placed<N, D>, &Placed<N, D>) -> Option<N>,
 ) {
-    let (mut random, mut count) = (Random::new(seed), 0);
-    for round in 0..600 {
+    let (rounds, mut random, mut count) = (samples(60), Random::new(seed), 0);
+    for round in 0..rounds {
         let [solid, surface] = make(&mut random);
         let Some(distance) = distance(&solid, &surface).filter(|&d| d > N::lit(0.01)) else {
             continue;
@@ -118,7 +120,7 @@ fn ask_all<N: Space<D>, const D: usize>(
             }
         }
     }
-    assert!(count > 100, "{count} pairs are apart");
+    assert!(count * 6 > rounds, "{count} of {rounds} pairs are apart");
 }
 
 fn in_space<N: Space<3, Isometry = Isometry3<N>>>(seed: u64) {

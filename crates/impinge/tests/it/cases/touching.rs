@@ -14,6 +14,8 @@ use impinge::shape::{
     Ball, Capsule, ConvexHull, ConvexPolygon, Cuboid, Polyline, Segment, Shape, TriMesh,
 };
 
+use crate::support::samples::samples;
+
 /// Returns a pseudorandom number from -1 to 1.
 fn noise(state: &mut u64) -> f64 {
     *state ^= *state << 13;
@@ -115,8 +117,8 @@ fn in_space<N: Space<3, Isometry = Isometry3<N>>>() {
         Box::new(Cuboid::new(vector([0.0, 9.0, 3.0]))),
         Box::new(Cuboid::new(vector([0.0, 5.1875, 0.0]))),
     ];
-    let (mut state, mut count) = (7, 0);
-    for _ in 0..200 {
+    let (rounds, mut state, mut count) = (samples(20), 7, 0);
+    for _ in 0..rounds {
         let mut next = || N::lit(noise(&mut state));
         let (axis, at) = ([next(), next(), next()], [next(), next(), next()]);
         let turn = UnitQuaternion::from_scaled_axis(Vector::<N, 3>::from(axis) * N::lit(3.0));
@@ -124,7 +126,7 @@ fn in_space<N: Space<3, Isometry = Isometry3<N>>>() {
         count += touching(&pose, &meshes(1.0), &solids);
         count += touching(&pose, &meshes(0.0), &flat);
     }
-    assert!(count > 200, "{count} touch");
+    assert!(count > rounds, "{count} touch in {rounds} poses");
 }
 
 #[test]
@@ -150,8 +152,8 @@ fn in_the_plane<N: Space<2, Isometry = Isometry2<N>>>() {
         Box::new(Capsule::new(N::lit(8.0), N::ONE)),
         Box::new(Ball::new(N::ONE)),
     ];
-    let (mut state, mut count) = (7, 0);
-    for _ in 0..200 {
+    let (rounds, mut state, mut count) = (samples(20), 7, 0);
+    for _ in 0..rounds {
         let mut next = || N::lit(noise(&mut state));
         let (angle, at) = (next() * N::lit(3.0), [next(), next()]);
         let at = Translation::from(Vector::<N, 2>::from(at));
@@ -161,7 +163,7 @@ fn in_the_plane<N: Space<2, Isometry = Isometry2<N>>>() {
             &solids,
         );
     }
-    assert!(count > 200, "{count} touch");
+    assert!(count > rounds, "{count} touch in {rounds} poses");
 }
 
 #[test]

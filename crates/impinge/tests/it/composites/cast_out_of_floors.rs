@@ -1,6 +1,7 @@
 //! Tests that a solid that has sunk a little into a floor of many parts can be cast out of the
 //! floor, whatever is below the surface.
 
+use crate::support::samples::stride;
 use crate::support::{query_support, slides};
 
 use impinge::math::na::{Translation3, UnitQuaternion};
@@ -22,11 +23,12 @@ const OUT: [[f64; 3]; 4] = [[0.0, 1.0, 0.0], [1.0, 1.0, 0.0], [-0.7, 0.2, 0.9], 
 const INTO: [[f64; 3]; 3] = [[0.0, -1.0, 0.0], [2.0, -0.1, 1.0], [-0.3, -0.4, 0.2]];
 
 /// Asserts that every solid can be cast out of a floor at y = 0 without a hit, and hits it when
-/// cast into it.
+/// cast into it. By default every ninth round is tested. The first round differs from solid to
+/// solid and from seed to seed, so each depth and each kind of rotation occurs.
 fn leave<N: Space<3, Isometry = Isometry3<N>>>(floor: &dyn Shape<N, 3>, label: &str, seed: u64) {
     let random = &mut Random(seed, false);
     let still = Moving::still(&Isometry3::identity(), floor);
-    for (name, solid) in solids3::<N>() {
+    for (index, (name, solid)) in solids3::<N>().into_iter().enumerate() {
         for round in 0..12 {
             let turn = match round % 3 {
                 0 => UnitQuaternion::identity(),
@@ -37,6 +39,10 @@ fn leave<N: Space<3, Isometry = Isometry3<N>>>(floor: &dyn Shape<N, 3>, label: &
             let turned = Isometry3::from_parts(Translation3::identity(), turn);
             let height = N::lit(-depth) - lowest(&*solid, &turned);
             let at = v::<N>(random.within(-2.0, 2.0), 0.0, random.within(-2.0, 2.0));
+            let number = seed + (index + round) as u64;
+            if !number.is_multiple_of(stride(9) as u64) {
+                continue;
+            }
             let pose = Isometry3::from_parts(Translation3::new(at.x, height, at.z), turn);
             let cast = |way: [f64; 3], at_start: bool| {
                 let options = ImpactOptions::new().with_contact_at_start(at_start);

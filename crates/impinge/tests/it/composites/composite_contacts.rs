@@ -1,6 +1,7 @@
 //! Tests laws of contacts with composites, which need no expected contacts: queries agree, and
 //! swapping the shapes flips each contact.
 
+use crate::support::samples::samples;
 use crate::support::slides;
 
 use impinge::math::na::{Translation3, UnitQuaternion};
@@ -52,7 +53,7 @@ fn laws_over_hills<N: Real + Space<3, Isometry = Isometry3<N>>>(floor: &dyn Shap
     let (mut random, mut overlaps, mut cases) = (Random::new(1), 0, 0);
     let unmoved = Isometry3::identity();
     let solids = solids3::<N>();
-    for round in 0..60 {
+    for round in 0..samples(6).max(12) {
         for (name, solid) in &solids {
             let solid = solid.as_ref();
             let turn = Isometry3::from_parts(Translation3::identity(), turned::<N>(&mut random));

@@ -3,6 +3,7 @@
 
 use crate::support::composite_support;
 use crate::support::query_support;
+use crate::support::samples::{samples, stride};
 
 use composite_support::Pieces;
 use composite_support::scenes::{Maker, Scene};
@@ -232,7 +233,7 @@ where
     let found = nonlinear_time_of_impact(&motion, mover, &still, stays, options);
     let end = found.map_or(options.max_time, |found| found.toi);
     let gap = |time: N| distance(&motion.position_at(time), mover, &Isometry::identity(), stays);
-    for look in 0..12 {
+    for look in (0..12).step_by(stride(3)) {
         let share = N::lit(f64::from(look) / 12.0);
         // Samples the whole path, and more densely near its end.
         for time in [end * share, end * (N::ONE - share * share * share)] {
@@ -270,28 +271,34 @@ fn thread<N: Space<3>>(radius: f64, pitches: u32) -> Pieces<N, 3> {
 }
 
 /// Tests with [`slides`] a screw that rotates in its nut and rises by approximately one pitch per
-/// turn, so that flanks slide along flanks.
-fn screw_in_nut<N: Space<3, Isometry = Isometry3<N>>>()
+/// turn, so that flanks slide along flanks. By default only every fifth round is tested, of which
+/// `first` chooses the first. Returns the number of impacts and the number of rounds.
+fn screw_in_nut<N: Space<3, Isometry = Isometry3<N>>>(first: usize) -> [u32; 2]
 where
     ConstantVelocities<N, 3>: RigidMotion<N, 3>,
 {
     let (screw, nut) = (thread::<N>(1.0, 2), thread::<N>(1.125, 1));
-    let (random, mut hits) = (&mut Random(8, false), 0);
+    let (random, mut hits, mut rounds) = (&mut Random(8, false), 0, 0);
     for round in 0..6 {
         let loose = N::lit([0.9, 0.3, 0.03][round % 3]);
         let rise = N::lit(1.0 / TAU);
         let linear = (Vector::<N, 3>::y() + random.vector::<N, 3>() * loose) * rise;
         let angular = Vector::<N, 3>::y() + random.vector::<N, 3>() * (loose * N::lit(0.25));
+        if round % stride(5) != first % stride(5) {
+            continue;
+        }
         let motion = ConstantVelocities::<N, 3>::new(Isometry3::identity(), linear, angular);
         let options = ImpactOptions::new().with_max_time(N::lit(3.0));
         hits += u32::from(slides(motion, &screw, &nut, &options));
+        rounds += 1;
     }
-    assert!(hits >= 2, "{hits}");
+    [hits, rounds]
 }
 
 /// Tests with [`slides`] a round outline of segments that spins within a slightly larger outline,
-/// and drifts toward it much more slowly.
-fn spins_in_ring<N: Space<2, Isometry = Isometry2<N>>>()
+/// and drifts toward it much more slowly. By default every second speed is tested, beginning with
+/// `first`.
+fn spins_in_ring<N: Space<2, Isometry = Isometry2<N>>>(first: usize)
 where
     ConstantVelocities<N, 2>: RigidMotion<N, 2>,
 {
@@ -304,7 +311,8 @@ where
         Pieces::chain(&(0..=48).map(point).collect::<Vec<_>>())
     };
     let (wheel, ring) = (outline(1.0), outline(1.0625));
-    for (drift, spin) in [(0.5, 10.0), (0.1, 5.0), (0.1, -1.0), (0.01, 0.25)] {
+    let speeds = [(0.5, 10.0), (0.1, 5.0), (0.1, -1.0), (0.01, 0.25)];
+    for (drift, spin) in speeds.into_iter().skip(first % stride(2)).step_by(stride(2)) {
         let linear = Vector::<N, 2>::new(N::lit(0.6 * drift), N::lit(-0.8 * drift));
         let motion = ConstantVelocities::<N, 2>::new(Isometry2::identity(), linear, N::lit(spin));
         assert!(slides(motion, &wheel, &ring, &ImpactOptions::new()), "it drifts on to the ring");
@@ -389,8 +397,9 @@ where
 /// Tests with [`both_turn`] two patches in 3D, and two chains in 2D, that lie close to each other.
 /// Both bodies move and rotate, each about its own centre, or only the first body moves.
 fn patches_that_turn<N: Space<2, Isometry = Isometry2<N>> + Space<3, Isometry = Isometry3<N>>>() {
-    let (random, mut hits) = (&mut Random(31, false), [0, 0]);
-    for round in 0..40 {
+    // Each of the three speeds occurs at least twice in eight rounds.
+    let (random, mut hits, rounds) = (&mut Random(31, false), [0, 0], samples(4).max(8));
+    for round in 0..rounds {
         let speed = N::lit([4.0, 0.5, 0.0][round % 3]);
         let turns = [N::ONE, speed];
         let bumps: Vec<_> = (0..32).map(|_| random.vector::<N, 3>() * N::lit(0.06)).collect();
@@ -411,7 +420,7 @@ fn patches_that_turn<N: Space<2, Isometry = Isometry2<N>> + Space<3, Isometry = 
             ConstantVelocities::<N, 3>::new(Isometry3::identity(), linear * turn, angular * turn)
                 .with_local_center(center.into())
         });
-        hits[0] += u32::from(both_turn(&motions, &[patch(0, 0.0), patch(16, 0.15)]));
+        hits[0] += usize::from(both_turn(&motions, &[patch(0, 0.0), patch(16, 0.15)]));
 
         let chain = |first: usize, height: f64| {
             let place = |index: usize| {
@@ -426,9 +435,11 @@ fn patches_that_turn<N: Space<2, Isometry = Isometry2<N>> + Space<3, Isometry = 
             ConstantVelocities::<N, 2>::new(Isometry2::identity(), linear * turn, spin)
                 .with_local_center(center.into())
         });
-        hits[1] += u32::from(both_turn(&motions, &[chain(0, 0.0), chain(16, 0.15)]));
+        hits[1] += usize::from(both_turn(&motions, &[chain(0, 0.0), chain(16, 0.15)]));
     }
-    assert!(hits.iter().all(|&hits| (10..40).contains(&hits)), "{hits:?}");
+    // In few rounds all pairs may hit.
+    let some = rounds / 4..rounds.max(40);
+    assert!(hits.iter().all(|hits| some.contains(hits)), "{hits:?} of {rounds}");
 }
 
 #[test]
@@ -439,8 +450,10 @@ fn composites_that_turn_meet_by_their_parts() {
 
 #[test]
 fn surfaces_that_slide_on_each_other() {
-    screw_in_nut::<f32>();
-    screw_in_nut::<f64>();
-    spins_in_ring::<f32>();
-    spins_in_ring::<f64>();
+    // By default a loose and a tight screw, and one in between.
+    let [one, two] = [screw_in_nut::<f32>(0), screw_in_nut::<f64>(1)];
+    let [hits, rounds] = [one[0] + two[0], one[1] + two[1]];
+    assert!(3 * hits >= rounds, "{hits} of {rounds}");
+    spins_in_ring::<f32>(0);
+    spins_in_ring::<f64>(1);
 }

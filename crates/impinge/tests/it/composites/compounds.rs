@@ -2,6 +2,7 @@
 
 use crate::support::part_search;
 use crate::support::query_support;
+use crate::support::samples::samples;
 
 use impinge::bounding_volume::{Aabb, BoundingVolume};
 use impinge::dim2::shape::Compound as Compound2;
@@ -332,8 +333,8 @@ fn check_corners<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     turn: fn(&mut Poses) -> R,
 ) {
     let random = &mut Poses(7, false);
-    let mut touching = 0;
-    for round in 0..3000 {
+    let (mut touching, rounds) = (0, samples(300));
+    for round in 0..rounds {
         let compound = with_corner_at_origin(random, turn, round % 3);
         let at = random.vector::<N, D>() * N::lit([0.0, 4.0, 1e6][round / 3 % 3]);
         let m = Isometry::from_parts(at.into(), turn(random));
@@ -347,7 +348,8 @@ fn check_corners<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
         };
         touching += usize::from(check_one_fact(&m, &*compound, &*other));
     }
-    assert!((600..2700).contains(&touching), "{touching} of 3000 touch");
+    let some = rounds / 5..rounds * 9 / 10;
+    assert!(some.contains(&touching), "{touching} of {rounds} touch");
 }
 
 /// Asserts that all queries agree on touching for a rotated child and another solid that have a

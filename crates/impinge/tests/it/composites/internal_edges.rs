@@ -1,6 +1,7 @@
 //! Tests that solids that slide over flat floors of many parts have only the normal of the floor,
 //! and no contact at an internal edge.
 
+use crate::support::samples::stride;
 use crate::support::slides;
 
 use impinge::math::na::{Translation3, UnitQuaternion};
@@ -38,7 +39,9 @@ fn turns<N: Real>() -> Vec<UnitQuaternion<N>> {
 }
 
 /// Slides all solids over a flat floor around `center`, in many directions. Asserts that each
-/// contact has the floor's normal and the depth `depth`, in a single manifold.
+/// contact has the floor's normal and the depth `depth`, in a single manifold. By default every
+/// seventh way is tested, beginning with a way that depends on the seed. These twelve ways have all
+/// solids, and each of the twelve pairs of a rotation and a frame occurs once.
 fn slide_all<N: Real + Space<3, Isometry = Isometry3<N>>>(
     floor: &dyn Shape<N, 3>,
     center: [f64; 3],
@@ -46,6 +49,7 @@ fn slide_all<N: Real + Space<3, Isometry = Isometry3<N>>>(
     label: &str,
 ) {
     let mut random = Random::new(seed);
+    let mut number = seed;
     for (name, solid) in solids3::<N>() {
         for (at, turn) in turns::<N>().into_iter().enumerate() {
             for frame in frames::<N>() {
@@ -53,6 +57,10 @@ fn slide_all<N: Real + Space<3, Isometry = Isometry3<N>>>(
                 let (sine, cosine) = angle.sine_cosine();
                 let direction = Vector::<N, 3>::new(cosine, N::ZERO, sine);
                 let start = [random.unit() * 0.3, random.unit() * 0.3];
+                number += 1;
+                if !number.is_multiple_of(stride(7) as u64) {
+                    continue;
+                }
                 let turned = Isometry3::from_parts(Translation3::identity(), turn);
                 let height = -lowest(solid.as_ref(), &turned) - N::lit(depth);
                 let way = (0..15).map(|step| {

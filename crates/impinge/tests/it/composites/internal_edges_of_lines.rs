@@ -1,6 +1,7 @@
 //! Tests in 2D that solids that slide over a straight line of many segments, or over filled
 //! triangles, have only the normal of the floor.
 
+use crate::support::samples::stride;
 use crate::support::slides;
 
 use impinge::math::na::{Translation2, UnitComplex};
@@ -36,13 +37,15 @@ fn lowest<N: Real>(solid: &dyn Shape<N, 2>, turn: UnitComplex<N>) -> N {
 }
 
 /// Slides all solids along a floor at y = 0 around x = `center`, to the left or right at random.
-/// Asserts that each contact has the floor's normal and the depth `depth`, in a single manifold.
+/// Asserts that each contact has the floor's normal and the depth `depth`, in a single manifold. By
+/// default every seventh way is tested; these eight ways have all solids, angles and frames.
 fn slide_all<N: Real + Space<2, Isometry = Isometry2<N>>>(
     floor: &dyn Shape<N, 2>,
     (center, depth, is_below): (f64, f64, bool),
     label: &str,
 ) {
     let mut random = Random::new(5);
+    let mut number = 0_usize;
     for (name, solid) in solids::<N>() {
         for angle in [0.0, 0.013, 0.5, std::f64::consts::FRAC_PI_2, -0.8, 2.9] {
             for frame in [Isometry2::identity(), Isometry2::new(v(-40.0, 11.0), N::lit(0.7))] {
@@ -50,6 +53,10 @@ fn slide_all<N: Real + Space<2, Isometry = Isometry2<N>>>(
                 let height = -lowest(solid.as_ref(), turn) - N::lit(depth);
                 let start = random.unit();
                 let side = if random.below(2) == 0 { N::ONE } else { -N::ONE };
+                number += 1;
+                if !number.is_multiple_of(stride(7)) {
+                    continue;
+                }
                 // For a solid below the floor, its poses and the expected normal are rotated by
                 // half a turn.
                 let half = if is_below { N::pi() } else { N::ZERO };

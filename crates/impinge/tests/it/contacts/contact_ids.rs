@@ -1,5 +1,6 @@
 //! Tests contact ids in a world, and the contacts that kinematics predict for the next step.
 
+use crate::support::samples::samples;
 use crate::support::scene_stage;
 
 use std::collections::BTreeMap;
@@ -219,9 +220,9 @@ type Pair = (CollisionObjectHandle, CollisionObjectHandle);
 fn names_are_unique<N: Play<D>, const D: usize>() {
     for scene in [spawn_and_despawn(400), mixed_shapes(300), pile(100)] {
         let mut player = Player::<N, D>::new(scene, 1.0);
-        let mut seen: BTreeMap<ContactId, (Pair, u32)> = BTreeMap::new();
-        let mut returned = 0;
-        for step in 0..40 {
+        let mut seen: BTreeMap<ContactId, (Pair, usize)> = BTreeMap::new();
+        let (mut returned, steps) = (0, samples(6).min(40));
+        for step in 0..steps {
             player.step();
             for (object1, object2, manifold) in player.world.contact_manifolds() {
                 let pair = (object1.handle(), object2.handle());
@@ -234,7 +235,8 @@ fn names_are_unique<N: Play<D>, const D: usize>() {
                 }
             }
         }
-        assert!(seen.len() > 500 && returned > 1000, "{} names, {returned}", seen.len());
+        let is_lively = 2 * seen.len() > 25 * steps && returned > 25 * steps;
+        assert!(is_lively, "{} names in {steps} steps, {returned}", seen.len());
     }
 }
 

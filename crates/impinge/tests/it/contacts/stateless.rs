@@ -2,6 +2,7 @@
 //! a new generator.
 
 use crate::support::query_support::random::Random;
+use crate::support::samples::stride;
 use crate::support::shape_table::{self, Shapes};
 
 use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Real, Space, Unit, Vector};
@@ -78,13 +79,16 @@ fn assert_same<N: Real, const D: usize>(
 }
 
 /// Compares the manifolds of every pair of shapes without a world, at random poses, with those of a
-/// new world and of a new generator. Swapping the shapes must flip every contact.
+/// new world and of a new generator. Swapping the shapes must flip every contact. By default every
+/// fifth case is tested. There are 64 cases for each first shape in 2D and 84 in 3D, so the tested
+/// predictions and second shapes differ from one first shape to the next.
 fn every_pair<N, R, const D: usize>(shapes: &Shapes<N, D>, turn: fn(&mut Random) -> R)
 where
     N: Space<D, Isometry = Isometry<N, R, D>>,
     R: AbstractRotation<N, D> + Copy,
 {
     let (random, mut touching, mut tried) = (&mut Random(1, false), 0, 0);
+    let mut case = 0_usize;
     for ((name1, shape1), (name2, shape2)) in
         shapes.iter().flat_map(|one| shapes.iter().map(move |other| (one, other)))
     {
@@ -100,6 +104,10 @@ where
             let query =
                 ContactQuery::new(N::lit(prediction)).with_angular_prediction(N::lit(angular));
             let (places, shapes) = ([place(), place()], [shape1, shape2]);
+            case += 1;
+            if !case.is_multiple_of(stride(5)) {
+                continue;
+            }
             let setting = Setting { places, shapes, query, max_points };
             let [m1, m2] = &setting.places;
             let asked = &setting.prediction();

@@ -70,9 +70,14 @@ where
         Lone::new().ask(poses.each_ref(), self.scene.shapes(), limit, self.scene.angle)
     }
 
+    /// Returns the points of one pair alone.
+    pub(crate) fn points(&self) -> Points<N, D> {
+        self.lone(&self.scene.poses, self.scene.limit)
+    }
+
     /// Tests all laws of one pair alone, and returns its points.
     pub(crate) fn alone(&mut self) -> Points<N, D> {
-        let found = self.lone(&self.scene.poses, self.scene.limit);
+        let found = self.points();
         self.depth(&found);
         self.on_both(&found);
         self.at_most(&found);
