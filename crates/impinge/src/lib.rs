@@ -46,7 +46,9 @@
 //!   within it.
 //! * A depth is positive inside. Normals are unit vectors from the first solid to the second.
 //!   Angles are in radians. Lengths and times have the units of your input.
-//! * No tolerance is absolute: scaling all input by a power of two scales all results exactly.
+//! * No tolerance is absolute: scaling all lengths of the input by a power of two scales all
+//!   resulting lengths exactly (masses and moments by the matching power), and changes nothing
+//!   else.
 //! * Equal calls return bitwise equal results, on every run, on every machine and for any number of
 //!   threads. Pairs, events and results are ordered by handles.
 //! * Constructors and methods of worlds that panic on misuse have a variant with the prefix `try_`
