@@ -91,7 +91,8 @@ pub struct Status {
     pub pairs: usize,
     /// The number of contact points.
     pub contacts: usize,
-    /// The difference of a replay from its recording, as a text for readers; `None` if they agree.
+    /// The difference of a replay from its recording, as a text to be shown on the page; `None` if
+    /// they agree.
     pub diverged: Option<String>,
     /// The events of the last update, up to a limit.
     pub events: Vec<StatusEvent>,
@@ -134,7 +135,7 @@ pub enum StatusEvent {
 pub struct ShapeText {
     /// The kind as a word.
     pub kind: &'static str,
-    /// The kind and the sizes as a text for readers.
+    /// The kind and the sizes, as a text to be shown on the page.
     pub text: String,
 }
 
@@ -179,13 +180,15 @@ pub enum ShownQuery {
     },
 }
 
-/// A pair of the described object with another object.
+/// A pair of the described object with another object, or with itself if it is tested against
+/// itself.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum ShownPair {
     /// The contacts of the pair, as of the last update.
     Contacts {
-        /// The index of the other object.
+        /// The index of the other object of the pair; the described object's own index in a pair
+        /// with itself.
         object: usize,
         /// The number of contact points.
         contacts: usize,
@@ -196,7 +199,8 @@ pub enum ShownPair {
     },
     /// The proximity of the pair, as of the last update.
     Proximity {
-        /// The index of the other object.
+        /// The index of the other object of the pair; the described object's own index in a pair
+        /// with itself.
         object: usize,
         /// The proximity: `intersecting` or `within margin`.
         status: &'static str,
@@ -226,7 +230,7 @@ pub struct ObjectAnswer {
     /// first update.
     pub loosened_box: Ends,
     /// The object's pairs with contacts, or with a proximity other than `disjoint`, sorted by the
-    /// handles of the other objects.
+    /// handles of the other objects. Includes the object's pair with itself, if it has one.
     pub pairs: Vec<ShownPair>,
 }
 
@@ -276,7 +280,7 @@ pub struct Test {
 pub struct Why {
     /// Whether the objects touch in the world, as of the last update.
     pub touch: bool,
-    /// The reason as a sentence for readers.
+    /// The reason, as a sentence to be shown on the page.
     pub text: String,
     /// The results of all conditions, in the order in which a world tests them.
     pub tests: Vec<Test>,

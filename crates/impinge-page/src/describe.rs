@@ -76,7 +76,7 @@ fn shown_query<N: Real>(query: GeometricQueryType<N>) -> ShownQuery {
 }
 
 /// Returns the pairs of an object that have contacts, or a proximity other than disjoint, sorted by
-/// the handles of the other objects.
+/// the handles of the other objects. An object that is tested against itself is its own partner.
 fn pairs<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     handle: CollisionObjectHandle,

@@ -6,8 +6,8 @@ use impinge::world::WorldError;
 use impinge_record::{Problem, ReadError, RecordError};
 use impinge_samples::SampleError;
 
-/// The reason why a message is rejected. The text is for authors of pages; the page translates the
-/// [`code`](EngineError::code) into a sentence for its readers.
+/// The reason why a message is rejected. The error message is for developers who embed the engine;
+/// the page translates the [`code`](EngineError::code) into a message for its users.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum EngineError {

@@ -44,7 +44,7 @@ impl<N: Viewed<D>, const D: usize> StandIns<N, D> {
         true
     }
 
-    /// Returns a sentence for readers about each stand-in.
+    /// Returns a sentence about each stand-in, to be shown on the page.
     pub(crate) fn notes(&self) -> impl Iterator<Item = String> {
         let filters = self.filters.iter().map(|name| {
             format!("The pair filter {name} is code of the program that was recorded; here it lets all pairs through.")

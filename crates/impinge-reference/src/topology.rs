@@ -141,7 +141,8 @@ fn area(vertices: &[[f64; 3]], face: &[usize]) -> [f64; 3] {
 /// oriented outwards.
 ///
 /// # Panics
-/// If a face has the index of a vertex that does not exist, which [`check_surface`] reports.
+/// If a face is empty or has the index of a vertex that does not exist; [`check_surface`] reports
+/// both.
 #[must_use]
 pub fn highest_above(vertices: &[[f64; 3]], faces: &[Vec<usize>], points: &[[f64; 3]]) -> f64 {
     let mut highest = f64::NEG_INFINITY;
@@ -156,6 +157,10 @@ pub fn highest_above(vertices: &[[f64; 3]], faces: &[Vec<usize>], points: &[[f64
 }
 
 /// Returns the volume that a closed surface encloses; negative if its faces are oriented inwards.
+///
+/// # Panics
+/// If a face is empty or has the index of a vertex that does not exist; [`check_surface`] reports
+/// both.
 #[must_use]
 pub fn volume(vertices: &[[f64; 3]], faces: &[Vec<usize>]) -> f64 {
     let Some(origin) = faces.first().map(|face| vertices[face[0]]) else { return 0.0 };

@@ -25,7 +25,7 @@
 //! # Where to begin
 //!
 //! * The guide explains the library chapter by chapter, with programs; it has tables of names for
-//!   users of ncollide, parry and rapier. It is the module [`guide`] of this documentation.
+//!   users of ncollide, parry, rapier and Box2D. It is the module [`guide`] of this documentation.
 //! * [`dim2`] and [`dim3`] have the names for programs in 2D or in 3D: every type with `D` filled
 //!   in, and a `prelude`. The other modules at the root are generic over the dimension `D`, for
 //!   code that supports 2D and 3D.
@@ -46,9 +46,12 @@
 //!   within it.
 //! * A depth is positive inside. Normals are unit vectors from the first solid to the second.
 //!   Angles are in radians. Lengths and times have the units of your input.
-//! * No tolerance is absolute: scaling all input by a power of two scales all results exactly.
+//! * No tolerance is absolute: scaling all lengths of the input by a power of two scales all
+//!   resulting lengths exactly (masses and moments by the matching power), and changes nothing
+//!   else.
 //! * Equal calls return bitwise equal results, on every run, on every machine and for any number of
-//!   threads. Pairs, events and results are ordered by handles.
+//!   threads. Pairs, events and results are ordered by handles, unless a method describes another
+//!   order.
 //! * Constructors and methods of worlds that panic on misuse have a variant with the prefix `try_`
 //!   that returns the error; in both cases the world is unchanged. An index of a part, corner or
 //!   height that is out of range panics as for a slice.

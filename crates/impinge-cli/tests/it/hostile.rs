@@ -1,5 +1,6 @@
-//! Tests files that request much memory, name files outside their folder, or contain control
-//! characters: they must be refused, and no control character may reach the terminal.
+//! Tests that files that would need too much memory, or that name files outside their folder, are
+//! refused, that the command does not wait for pipes and devices, and that no control character of
+//! a file reaches the terminal.
 
 use std::fs;
 use std::process::Command;

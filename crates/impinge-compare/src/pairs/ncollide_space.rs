@@ -15,8 +15,9 @@ fn isometry(placement: &Placement<3>) -> Isometry<f32> {
     Isometry::from_parts(Translation::from(vector(&placement.translation)), rotation)
 }
 
-/// Converts the shapes that exist in 3D only. Cylinders and cones give `None`: in ncollide they do
-/// not implement `Shape`, so that no query accepts them.
+/// Converts the shapes that have no form in 2D or have another type of ncollide there. Cylinders
+/// and cones give `None`: in ncollide they do not implement `Shape`, which the query functions used
+/// here require.
 fn particular(form: &Form<3>) -> Option<ShapeHandle<f32>> {
     Some(match form {
         Form::Triangle([a, b, c]) => ShapeHandle::new(Triangle::new(point(a), point(b), point(c))),

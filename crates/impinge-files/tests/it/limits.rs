@@ -1,4 +1,5 @@
-//! Tests the limits on small files that request much memory, and the sharing of data.
+//! Tests that files that would need too much memory or time are refused ([`Limits`]), and that data
+//! used several times are read and stored once.
 
 use std::fs::{self, File};
 use std::path::Path;

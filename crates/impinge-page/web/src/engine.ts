@@ -28,8 +28,8 @@ export interface Exports {
 export type Source = { kind: "recording"; bytes: Uint8Array } | { kind: "stream" } | { kind: "sample"; name: string };
 
 /**
- * An error of the engine, which rejected a message and changed nothing. The text is for authors of pages; `messages.ts`
- * has the sentences for readers.
+ * An error of the engine, which rejected a message and changed nothing. The error message is for developers who embed the
+ * engine; `messages.ts` has the messages for people who read the page.
  */
 export class EngineError extends Error {
   constructor(

@@ -1,11 +1,11 @@
-// Sentences about errors for readers. The texts of the engine are for authors of pages.
+// Error messages for people who read the page. The engine's own messages are for the developers who embed it.
 
 import { EngineError } from "./engine";
 
-/** An error whose text is a sentence for readers. */
+/** An error whose message is written for people who read the page. */
 export class PageError extends Error {}
 
-/** The sentence for each code of an `EngineError`. */
+/** The message for each code of an `EngineError`. */
 const SENTENCES: Record<string, string> = {
   message: "This page has made a mistake and goes on without what was asked. Loading it again may help.",
   "unknown-sample": "There is no sample of this name.",
@@ -21,7 +21,7 @@ const SENTENCES: Record<string, string> = {
 const UNKNOWN = "Something went wrong in this page. Loading it again may help.";
 
 /**
- * Returns a sentence about any thrown value. Values other than a `PageError` are also written to the browser's console.
+ * Returns the message for any thrown value. Values other than a `PageError` are also written to the browser's console.
  */
 export function sentence(error: unknown): string {
   if (error instanceof PageError) return error.message;

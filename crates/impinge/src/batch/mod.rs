@@ -6,7 +6,7 @@
 //!                                        Side ─┘
 //!   element       0     1     2     3    …        a list of length 1 applies to all elements
 //!   distance   [ d0 ][ d1 ][ d2 ][ d3 ]  …        one slot for each element, in this order
-//!   point1     [ p0 ][ p1 ][ p2 ][ p3 ]  …        an empty column is not computed
+//!   point1     [ p0 ][ p1 ][ p2 ][ p3 ]  …        an empty column is not written
 //! ```
 //!
 //! Every result has the bits of the single call in [`query`](crate::query) for the same shapes and

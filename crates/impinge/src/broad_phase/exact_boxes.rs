@@ -42,9 +42,9 @@ impl<N: Real, const D: usize> ExactBoxes<'_, N, D> {
         self.write_serial(bounds, waiting, first_at, outside)
     }
 
-    /// Implements [`Self::write`] on one thread. Whether an object leaves its loosened box is
-    /// unpredictable, so the loop does not branch on it: the index of each object is written, and
-    /// the next index overwrites the index of an object that stays.
+    /// Implements [`Self::write`] on one thread. The loop does not branch on the test against the
+    /// loosened box, because such a branch would be hard to predict. The index of each object is
+    /// written, and the next index overwrites the index of an object that stays.
     fn write_serial(
         self,
         bounds: &LooseBounds<'_, D>,

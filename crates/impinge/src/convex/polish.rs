@@ -356,8 +356,8 @@ fn solve<N: Real>(mut rows: [[N; COLUMNS]; ROWS], count: usize) -> Option<[N; RO
         }
         for row in &mut rows[column + 1..count] {
             let factor = row[column] / above[column];
-            // Entries to the left are not read again, but updating whole rows is faster than parts
-            // of them.
+            // Entries to the left are not read again, but updating whole rows is faster than
+            // updating parts of them.
             for (entry, above) in row.iter_mut().zip(&above) {
                 *entry -= factor * *above;
             }

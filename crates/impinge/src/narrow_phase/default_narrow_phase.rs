@@ -144,11 +144,11 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// contacts stays without contacts.
     ///
     /// A reused depth differs by at most twice the tolerance from the depth of a query, and
-    /// contacts may begin and end late by up to that distance. A manifold may keep points beyond
-    /// the prediction by up to twice the tolerance, as long as one point is within the prediction
-    /// or has not moved apart. Overlapping solids are never missed, since the motion is also
-    /// limited by the prediction of the pair. Ids, features and the order of contacts stay the
-    /// same.
+    /// contacts may begin and end late by up to that distance. A manifold may keep points up to
+    /// twice the tolerance beyond the prediction, as long as at least one contact of the pair is
+    /// within the prediction, or is no farther apart than when the contacts were last computed.
+    /// Overlapping solids are never missed, since the motion is also limited by the prediction of
+    /// the pair. Ids, features and the order of contacts stay the same.
     ///
     /// A ball against a ball, box, segment or capsule is always computed, since its closed form is
     /// as fast. The results are equal on every machine and for any number of threads, but depend on

@@ -9,8 +9,9 @@ use crate::math::{Point, Pose, Real, Unit, Vector};
 ///
 /// A contact that moved between two updates keeps its id if it is on the same features. It also
 /// keeps its id if, in the frame of one of the solids, it has moved by no more than 1/16 of the
-/// size of the smaller solid (half the diagonal of its box), while the normal rotated by less than
-/// 45°. Two crossing edges are treated as the same features up to a movement of half of that size.
+/// size of the smaller solid, while the normal rotated by at most 45°. The size of a ball is its
+/// radius, the size of most other solids half the diagonal of the local box. Two crossing edges are
+/// treated as the same features up to a movement of half of that size.
 /// The id has no other meaning; ids of one pair are ordered by creation. [`ContactId::NULL`], which
 /// is also the default, is the id of no contact, for empty slots of a cache.
 ///
@@ -150,10 +151,10 @@ impl<N: Real, const D: usize> TrackedContact<N, D> {
 /// Two convex solids have one manifold, composites one for each flat patch of contact. A box that
 /// rests on a plane has one manifold of four points in 3D and two in 2D; a ball gives one point.
 /// The first manifold of a pair contains its deepest point: [`Self::deepest_contact`] has the depth
-/// that the query for one contact returns. In later manifolds an older point may replace the
-/// deepest point, if their depths differ by at most 1/512 of the size of the smaller solid (half
-/// the diagonal of its box). An empty manifold means that the solids are farther apart than the
-/// prediction.
+/// that the query for one contact returns. From the second update on, a point of the previous
+/// update may replace the deepest point and take its depth, if their depths differ by at most 1/512
+/// of the size of the smaller solid (for most solids half the diagonal of the local box). An empty
+/// manifold means that the solids are farther apart than the prediction.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};

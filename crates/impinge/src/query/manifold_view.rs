@@ -89,8 +89,9 @@ impl<N: Real, const D: usize> ContactPoint<N, D> {
 /// ([`CollisionWorld::contact_views`](crate::world::CollisionWorld::contact_views)) and of the
 /// manifolds of one pair ([`ContactPair::views`](crate::narrow_phase::ContactPair::views)).
 /// [`CollisionWorld::contact_manifolds`](crate::world::CollisionWorld::contact_manifolds) and
-/// [`ContactPair::contacts`](crate::narrow_phase::ContactPair::contacts) return bitwise equal
-/// contacts in the same order, as manifolds that are built on first use.
+/// [`ContactPair::contacts`](crate::narrow_phase::ContactPair::contacts) return manifolds that are
+/// built on first use, with bitwise equal contacts. Within a manifold the order of the contacts is
+/// the same; `contact_manifolds` sorts the pairs by handle, and `contact_views` does not.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};

@@ -163,9 +163,11 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         }
     }
 
-    /// Returns one object of each tree, or [`NONE`] where the descent fails; the two are probably
-    /// near each other. Each is the end of a descent toward the centre of the other object's leaf
-    /// block; the first descent goes toward the centre of the other tree.
+    /// Returns one object of each tree; the two are probably near each other. Descends twice in
+    /// each tree, in turn, beginning with the first. Each descent goes toward the centre of the
+    /// leaf block that was last reached in the other tree, or of the whole other tree if none was
+    /// reached yet. The objects are those of the last successful descents; [`NONE`] for a tree in
+    /// which both descents fail.
     fn descend(&self, whole: BlockPair) -> [u32; 2] {
         let (mut pair, mut found) = (whole, [NONE; 2]);
         for which in [0, 1, 0, 1] {

@@ -278,7 +278,7 @@ impl<N: Real, const D: usize> Impact<N, D> {
 ///
 /// # Starts in contact
 ///
-/// Whether a contact at time zero is an impact depends on the velocities along its normal:
+/// A contact at time zero is an impact or not, depending on the velocities along its normal:
 ///
 /// | at time zero the solids | approaching | sliding or at rest | separating |
 /// |---|---|---|---|

@@ -53,8 +53,9 @@ use crate::shape::{
 /// the ratio of its size to their gap. Scaling a shape by a power of two scales the result exactly.
 ///
 /// # Errors
-/// If the density is negative or not finite; if the shape, or a part of a compound, is a half-space
-/// or a surface that is not closed; or if the mass or a moment exceeds the range of the scalar.
+/// If the density is negative or not finite; if the shape, or a part of a compound, is a
+/// half-space, a surface that is not closed, or a polyline in 3D; or if the mass or a moment
+/// exceeds the range of the scalar.
 ///
 /// # Cost
 /// O(1) for simple shapes, O(n) for n vertices, triangles or children. In 3D a user's convex shape
@@ -99,8 +100,9 @@ pub fn mass_properties<N: Space<D>, const D: usize>(
 /// `density` is called for each part. A shape that is not a compound has the empty path.
 ///
 /// # Errors
-/// If a density is negative or not finite; if the shape, or a part of a compound, is a half-space
-/// or a surface that is not closed; or if the mass or a moment exceeds the range of the scalar.
+/// If a density is negative or not finite; if the shape, or a part of a compound, is a half-space,
+/// a surface that is not closed, or a polyline in 3D; or if the mass or a moment exceeds the range
+/// of the scalar.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};

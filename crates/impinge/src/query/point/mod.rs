@@ -79,10 +79,11 @@ pub struct PointProjection<N: Real, const D: usize> {
 /// which the point is deepest: the nearest point of that part's own boundary, which may lie inside
 /// another part. So the depth is at most the depth in the union, and equal to it where parts do not
 /// overlap. Of several parts at equal distances, the one with the lowest index is returned.
-/// Triangles in 3D and segments are surfaces, which contain the points on them and enclose nothing
-/// (but closed meshes have [`signed_distance`](crate::shape::TriMesh::signed_distance)). Distances
-/// from triangles and segments are as accurate far from the mesh's origin as near it. A composite
-/// without parts is infinitely far from every point.
+/// Triangles in 3D and segments are surfaces, which contain the points on them and enclose nothing.
+/// But a [solid](crate::shape::TriMesh::solid) mesh or polyline also contains the points that it
+/// encloses, and any closed mesh has [`signed_distance`](crate::shape::TriMesh::signed_distance).
+/// Distances from triangles and segments are as accurate far from the mesh's origin as near it. A
+/// composite without parts is infinitely far from every point.
 ///
 /// For a composite, the cost is a search for the parts near the point.
 ///

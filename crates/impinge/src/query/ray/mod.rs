@@ -84,15 +84,14 @@ pub struct RayIntersection<N: Real, const D: usize> {
 /// Sets without thickness (segments; triangles in 3D) are hit where the ray meets them within
 /// rounding: a few units in the last place of the distances involved.
 ///
-/// A composite is the union of its parts, and the ray is cast against each part separately. So with
-/// `solid`, a ray that starts in any part hits at time zero. Without `solid`, the boundaries of all
-/// parts are hit, also where they lie inside other parts. Of parts hit at the same time, the lowest
-/// index is returned. Parts whose common corners are bitwise equal, as in a mesh or a height field,
-/// leave no gap: a ray through a common side or corner hits at least one of them, however far from
-/// the origin (Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", 2013).
-///
-/// For a composite, the cost is a search for the parts along the ray, up to the hit.
-/// [`Self::intersects_ray`] ends at any part that is hit.
+/// A composite is the union of its parts, and the ray is cast against each part separately. With
+/// `solid`, a ray that starts in a part, or inside a [solid](crate::shape::TriMesh::solid) mesh or
+/// polyline, hits at time zero. Without `solid`, the boundaries of all parts are hit, also inside
+/// other parts. Of parts hit at the same time, the lowest index is returned. Parts whose common
+/// corners are bitwise equal, as in a mesh or a height field, leave no gap: a ray through a common
+/// side or corner hits at least one of them, however far from the origin (Woop, Benthin and Wald,
+/// "Watertight Ray/Triangle Intersection", 2013). The cost is a search for the parts along the ray,
+/// up to the hit; [`Self::intersects_ray`] ends at any part that is hit.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Vector};

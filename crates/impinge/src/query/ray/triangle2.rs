@@ -20,8 +20,8 @@ struct RayCorner<N: Real> {
 /// counter-clockwise triangle through a side that leads from the line's left to its right, and
 /// leaves through a side that leads back.
 ///
-/// Whether the line hits depends on the signs of the three corners alone, and each is computed from
-/// one corner and the ray: triangles that share corners leave no gap.
+/// The three signs of [`RayCorner::side`] alone decide if the line hits. Each sign is computed from
+/// one corner and the ray, so triangles that share corners leave no gap.
 pub(super) fn span<N: Real>(triangle: &Triangle<N, 2>, ray: &Ray<N, 2>) -> Option<Span<N, 2>> {
     let corners = triangle.corners().map(|corner| ray_corner(&corner, ray));
     let [a, b, c] = corners.map(|corner| corner.side);

@@ -185,7 +185,8 @@ impl<N: Real> Polytope<N, 3> {
     }
 }
 
-/// The entry of a side without a twin in the list of twins, and of a side without an edge.
+/// Marks a side without a twin in the result of [`twins`], and a side that has no edge yet in
+/// `loop_sides`.
 const NONE: u32 = u32::MAX;
 
 /// A side of a face, in the direction of the face's loop.

@@ -1,4 +1,4 @@
-//! Records of the shapes that exist in 2D only.
+//! Records of the shapes whose types exist in 2D only, and of height fields in 2D.
 
 use super::{ShapeRecord, made};
 use crate::math::numbers::{Damage, Numbers, ensure};
@@ -12,7 +12,7 @@ pub(crate) fn front2<N: Real>() -> Option<Front<N, 2>> {
     Some(right_of)
 }
 
-/// Returns the record of a shape that exists in 2D only; `None` for any other shape.
+/// Returns the record of a convex polygon or a height field; `None` for any other shape.
 pub(crate) fn record2<N: Real>(shape: &dyn Shape<N, 2>) -> Option<ShapeRecord<N>> {
     if let Some(polygon) = shape.as_shape::<ConvexPolygon<N>>() {
         return Some(ShapeRecord::ConvexPolygon(Numbers::of_points(polygon.vertices())));

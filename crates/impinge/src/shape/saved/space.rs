@@ -1,4 +1,4 @@
-//! Records of the shapes that exist in 3D only.
+//! Records of the shapes whose types exist in 3D only, and of height fields in 3D.
 
 use super::{ShapeRecord, made};
 use crate::math::numbers::{Damage, NumberSource, Numbers, ensure};
@@ -11,7 +11,8 @@ pub(crate) const fn front3<N: Real>() -> Option<Front<N, 3>> {
     None
 }
 
-/// Returns the record of a shape that exists in 3D only; `None` for any other shape.
+/// Returns the record of a shape whose type exists in 3D only, or of a height field; `None` for any
+/// other shape.
 pub(crate) fn record3<N: Real>(shape: &dyn Shape<N, 3>) -> Option<ShapeRecord<N>> {
     if let Some(hull) = shape.as_shape::<ConvexHull<N>>() {
         let (vertices, faces) = (Numbers::of_points(hull.vertices()), hull.faces());

@@ -316,8 +316,8 @@ fn check_impact<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     );
     assert_eq!(found, swapped, "swapped {setting:?}");
     if signed(&pair[0], &pair[1]) <= N::ZERO {
-        // Whether there is an impact at such a start depends on the velocities; see
-        // `queries/impact.rs`.
+        // A pair in contact at the start has an impact, at time zero, for some velocities only;
+        // `queries/impact.rs` tests which.
         assert!(found.is_none_or(|time| time == N::ZERO), "touching at the start {setting:?}");
         return found.is_some();
     }

@@ -125,10 +125,11 @@ struct RevolvedPair<'a, N: Real> {
     profile: Profile<N>,
 }
 
-/// A point of the flat solid, and the direction of its distance from the round solid.
+/// A point of the other solid (flat or round), and the direction of its distance from the round
+/// solid in whose frame the search runs.
 #[derive(Clone, Copy)]
 struct DirectedPoint<N: Real> {
-    /// Point of the flat solid, in the frame of the round solid and in units of the pair.
+    /// Point of the other solid, in the frame of the round solid and in units of the pair.
     point: Vector<N, 3>,
     /// Point of the round solid that faces `point`.
     nearest: Vector<N, 3>,
@@ -196,7 +197,8 @@ impl<N: Real> RevolvedPair<'_, N> {
         match hull {
             NearestHull::Point(point) => self.profile.along([*point, low], true),
             NearestHull::Chord([a, b]) => self.over([*a, *b, low], directed),
-            // Only chords and triangles are searched: the nearest point replaces its triangle.
+            // No tetrahedron is searched: the triangle is reduced to its nearest point, and the
+            // chord from that point to `low` is searched.
             NearestHull::Triangle => self.profile.along([directed.point, low], true),
         }
     }

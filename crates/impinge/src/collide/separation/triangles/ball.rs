@@ -44,7 +44,8 @@ const MAX_APART: usize = 8;
 /// A ball, and the triangles among which the near ones are searched.
 pub(crate) struct BallQuestion<'a, N: Real> {
     pub(crate) tiles: &'a [PartPacket<N, 3>],
-    /// Number of triangles; lanes of the last packet after them hold copies.
+    /// Number of triangles. The lanes after the last triangle, in the last packet, hold copies of
+    /// it.
     pub(crate) count: usize,
     /// Centre of the ball in the frame of the triangles.
     pub(crate) center: Vector<N, 3>,

@@ -235,8 +235,8 @@ where
         self.holds("5 flipped query", one == other, || format!("{one:?}, flipped {other:?}"));
     }
 
-    /// Law 5: scaling a scene by a power of two scales everything exactly, except where numbers
-    /// underflow.
+    /// Law 5: scaling all lengths of a scene by a power of two scales the points and depths of its
+    /// contacts exactly, except where numbers underflow, and changes nothing else.
     fn scales(&mut self, found: &Points<N, D>) {
         for scale in [1.0 / 1_048_576.0, 1_048_576.0] {
             let scene = self.stage.scaled(self.scene, scale);
