@@ -305,6 +305,7 @@ fn points_span_the_overlap<N: Space<3, Isometry = Isometry<N, UnitQuaternion<N>,
                 while rests.len() < samples(count) / 10 {
                     rests.extend(Rest::<N>::draw(makes, tilt, scale, random));
                 }
+                let limit = if tilt > 0.0 { 0.6 } else { 0.9 };
                 // So many fit into a world near its origin.
                 for rests in rests.chunks(1024) {
                     let [with_deepest, of_all] = shares(rests, scale);
@@ -314,7 +315,7 @@ fn points_span_the_overlap<N: Space<3, Isometry = Isometry<N, UnitQuaternion<N>,
                     let least = [least(&with_deepest), least(&of_all)];
                     let case = format!("{what}, tilt {tilt}, scale {scale}");
                     assert_eq!(few, 0, "{case}: {few} of {count} below 90 %, {least:?}");
-                    assert!(least[1] >= if tilt > 0.0 { 0.6 } else { 0.9 }, "{case}: {least:?}");
+                    assert!(least[1] >= limit, "{case}: {least:?}");
                 }
             }
         }
