@@ -158,8 +158,7 @@ pub enum Problem {
         /// A link that has two parents, or that is not connected to the root.
         link: String,
     },
-    /// The chain of joints that the joint with this name mimics has a cycle: a joint mimics itself,
-    /// directly or through other joints.
+    /// The joint with this name mimics itself, directly or through other joints.
     MimicCycle(String),
     /// None of the searched folders contains this package.
     UnknownPackage(String),

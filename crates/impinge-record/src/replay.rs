@@ -67,6 +67,8 @@ pub struct Replay<N: Recordable<D>, const D: usize, T> {
     step: usize,
     /// The offset of the next record to be played.
     offset: usize,
+    /// The offset of the first record after the update of the current step.
+    settled: usize,
     divergence: Option<Divergence>,
 }
 
@@ -142,6 +144,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
             is_changed: false,
             step: 0,
             offset: 0,
+            settled: 0,
             divergence: None,
         }
     }
@@ -240,7 +243,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         let margin = cursor.header(&self.bytes)?;
         let made = Player::new(margin).map_err(|problem| ReadError { offset: 0, problem });
         (self.player, self.resources.margin) = (made?, margin);
-        (self.timeline.start, self.offset) = (cursor.offset(), cursor.offset());
+        self.timeline.start = cursor.offset();
+        (self.offset, self.settled) = (cursor.offset(), cursor.offset());
         self.cursor = cursor;
         Ok(())
     }
@@ -372,7 +376,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
     pub fn seek(&mut self, step: usize) -> Result<(), ReadError> {
         let step = step.min(self.len());
         let frame = self.timeline.frame_before(step);
-        if step < self.step || frame.step > self.step || self.is_changed {
+        let is_beyond = step == self.step && self.offset != self.settled;
+        if step < self.step || is_beyond || frame.step > self.step || self.is_changed {
             self.restart(frame)?;
         }
         while self.step < step {
@@ -404,7 +409,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         let FrameMark { step, offset, .. } = mark;
         let made = Player::new(self.resources.margin);
         self.player = made.map_err(|problem| ReadError { offset, problem })?;
-        (self.step, self.offset, self.is_changed) = (step, offset, false);
+        (self.step, self.offset, self.settled, self.is_changed) = (step, offset, offset, false);
         Ok(())
     }
 
@@ -418,8 +423,10 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         let step = self.step;
         let found = difference.map(|difference| Divergence { step, offset, difference });
         self.divergence = self.divergence.or(found);
-        self.step += usize::from(is_update);
         self.offset = raw.end;
+        if is_update {
+            (self.step, self.settled) = (self.step + 1, self.offset);
+        }
         Ok(())
     }
 }

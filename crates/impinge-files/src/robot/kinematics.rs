@@ -144,8 +144,7 @@ impl Tree {
     }
 
     /// Resolves chains of mimicking joints of any length, and visits each joint once. The error
-    /// contains the name of a joint whose chain of mimicked joints has a cycle or ends at a missing
-    /// joint.
+    /// contains the name of a joint on a cycle, or of a joint that mimics a missing joint.
     fn mimics(&self) -> Result<BTreeMap<String, Follows>, (String, Problem)> {
         let mut follows: BTreeMap<String, Follows> = BTreeMap::new();
         for name in self.joints.keys() {
@@ -155,10 +154,10 @@ impl Tree {
             // Terminates: a joint that is visited twice is an error.
             while let (None, Some(mimic)) = (follows.get(current), &self.joints[current].mimic) {
                 if !passed.insert(current) {
-                    return Err((name.clone(), Problem::MimicCycle(name.clone())));
+                    return Err((current.clone(), Problem::MimicCycle(current.clone())));
                 }
                 if !self.joints.contains_key(&mimic.joint) {
-                    return Err((name.clone(), Problem::UnknownJoint(mimic.joint.clone())));
+                    return Err((current.clone(), Problem::UnknownJoint(mimic.joint.clone())));
                 }
                 chain.push((current, mimic));
                 current = &mimic.joint;

@@ -81,10 +81,11 @@ impl GroupPlan {
             let mut counts = vec![0_usize; objects];
             left.iter().flat_map(|pair| pair.0).for_each(|object| counts[object] += 1);
             let most = (0..objects).rev().max_by_key(|object| counts[*object]).unwrap_or_default();
-            let free = self.taken.len() + self.free.len();
+            // One group stays untaken: objects without own groups are its members.
+            let limit = (self.taken.len() + self.free.len()).min(GROUPS - 1);
             let what = "groups for disabled pairs of links";
-            let none = Problem::TooMany { what, given: free + 1, limit: free };
-            let group = self.free.pop().ok_or(none)?;
+            let none = Problem::TooMany { what, given: limit + 1, limit };
+            let group = self.free.pop().filter(|_| self.taken.len() < limit).ok_or(none)?;
             self.taken.insert(group);
             own[most].member = Some(group);
             let partners = left.iter().filter_map(|pair| pair.partner(most));

@@ -219,6 +219,31 @@ fn links_meet_what_is_around_them() {
     assert_eq!(pairs, expected, "only the links are kept apart, whatever groups others have");
 }
 
+/// Asserts that a robot with so many links that its pairs need all groups is refused: without a
+/// group of its own, an object beside it would touch nothing.
+#[test]
+fn a_group_is_left_for_what_is_around() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let open = |links: usize| {
+        let names: Vec<String> = (0..links).map(|index| format!("l{index}")).collect();
+        let joint_of = |at: &[String]| joint(&at[0], "fixed", [&at[0], &at[1]], "");
+        let joints: String = names.windows(2).map(joint_of).collect();
+        let links: String = names.iter().map(|name| link(name)).collect();
+        let urdf = format!("{PREFIX}{links}{joints}</robot>");
+        fs::write(folder.path().join("arm.urdf"), urdf).expect("it is written");
+        let text = r#"{"dimension": 3, "robots": [{"urdf": "arm.urdf"}],
+            "objects": [{"name": "floor", "shape": {"ball": {"radius": 1}}}]}"#;
+        Scene::from_json(folder.path().join("scene.json"), text)
+    };
+    let mut world = open(59).expect("a scene").collision_world::<f64, 3>().expect("a world");
+    world.update();
+    let floor = |name: &str| name == "floor";
+    let met = world.contact_manifolds().filter(|(a, b, _)| floor(a.data()) || floor(b.data()));
+    assert_eq!(met.count(), 59, "the floor meets each link");
+    let error = open(60).expect_err("30 groups are needed");
+    assert!(matches!(*error.problem, Problem::TooMany { limit: 29, .. }), "{error}");
+}
+
 #[test]
 fn what_a_robot_looks_like_refuses_none() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -239,6 +264,10 @@ fn broken_robots_are_refused_with_the_line() {
         joint(name, "prismatic", links, &format!(r#"<axis xyz="1 0 0"/><mimic joint="{of}"/>"#))
     };
     let links = ["a", "b"];
+    let chain = |of: &str| {
+        let [first, second] = [slide("1", "2", links), slide("2", of, ["b", "c"])];
+        format!("{two}{}\n{first}\n{second}", link("c"))
+    };
     let cases = [
         (format!("{two}{}", fixed("1", ["a", "c"])), Some(4), Problem::UnknownLink("c".to_owned())),
         (two.clone(), Some(3), Problem::NotATree { link: "b".to_owned() }),
@@ -253,6 +282,9 @@ fn broken_robots_are_refused_with_the_line() {
             Some(4),
             Problem::UnknownJoint("2".to_owned()),
         ),
+        // The first joint is right: the second mimics itself, or a joint that does not exist.
+        (chain("2"), Some(7), Problem::MimicCycle("2".to_owned())),
+        (chain("3"), Some(7), Problem::UnknownJoint("3".to_owned())),
     ];
     for (urdf, line, problem) in cases {
         fs::write(&path, format!("{urdf}</robot>")).expect("it is written");

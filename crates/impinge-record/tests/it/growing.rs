@@ -150,6 +150,26 @@ fn the_time_line_counts_calls_and_events() -> Result<(), impinge_record::RecordE
     Ok(())
 }
 
+/// Asserts that a seek to the last step undoes the calls after its update, which `seek_end` applies.
+#[test]
+fn a_seek_from_the_end_to_the_last_step_goes_back() -> Result<(), impinge_record::RecordError> {
+    let mut recorder = balls()?;
+    let first = recorder.collision_objects().next().expect("a ball").handle();
+    recorder.set_position(first, Isometry::translation(5.0, 0.0))?;
+    let mut replay = Replay::open(recorder.finish().bytes, &Registry::new()).expect("it is whole");
+    let at = |replay: &Replay<f64, 2, u32>| {
+        let first = replay.world().collision_objects().next().expect("a ball");
+        first.position().translation.x
+    };
+    replay.seek(1).expect("its calls can be applied");
+    assert_eq!(at(&replay), 0.0, "just after the update");
+    replay.seek_end().expect("its calls can be applied");
+    assert_eq!(at(&replay), 5.0, "at the end");
+    replay.seek(1).expect("its calls can be applied");
+    assert_eq!(at(&replay), 0.0, "again just after the update");
+    Ok(())
+}
+
 #[test]
 fn a_changed_world_is_undone_by_the_next_seek() -> Result<(), impinge_record::RecordError> {
     let bytes = balls()?.finish().bytes;

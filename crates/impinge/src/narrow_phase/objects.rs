@@ -199,6 +199,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
             let row = core::mem::replace(&mut self.rows[index as usize], NONE);
             self.is_written[row as usize] = false;
             self.free.push(row);
+            self.substeps.retain(|pair| !pair.key.contains(&index));
         }
     }
 

@@ -268,17 +268,19 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         }
     }
 
-    /// Undoes all changes of the group since a mark. Calls `changed` with each row in which another
-    /// pair may stand now.
-    fn rewind(&mut self, number: u64, mut changed: impl FnMut(u32)) {
+    /// Undoes all changes of the group since a mark. Returns the pairs that left it, and the rows in
+    /// which another pair may stand now.
+    fn rewind(&mut self, number: u64) -> (Vec<PairKey>, Vec<u32>) {
+        let (mut left, mut changed) = (Vec::new(), Vec::new());
         let mut journal = core::mem::take(&mut self.journal);
         if !journal.has(number) {
             // A group without this mark was empty when the mark was set.
+            left.extend_from_slice(&self.keys);
             while !self.is_empty() {
                 self.pop();
             }
             (self.point_journal, self.noted) = (Journal::default(), Vec::new());
-            return;
+            return (left, changed);
         }
         while let Some(note) = journal.undo(number) {
             match note {
@@ -286,11 +288,15 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
                     let kept = written.is_kept.then(|| journal.take_kept());
                     self.undo_update(written, kept, number);
                 }
-                GroupNote::Pushed => self.pop(),
+                GroupNote::Pushed => {
+                    left.extend(self.keys.last());
+                    self.pop();
+                }
                 GroupNote::Replaced(row) => {
                     if let KeptPair::Row(kept) = journal.take_kept() {
+                        left.push(self.keys[row as usize]);
                         self.put_row(row, *kept);
-                        changed(row);
+                        changed.push(row);
                     }
                 }
                 GroupNote::Removed(row) => {
@@ -300,8 +306,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
                         self.put_row(last, *self.row(row));
                     }
                     self.put_row(row, *kept);
-                    changed(row);
-                    changed(last);
+                    changed.extend([row, last]);
                 }
             }
         }
@@ -309,6 +314,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         self.journal = journal;
         self.noted.resize(self.keys.len(), 0);
         self.begin_period();
+        (left, changed)
     }
 
     /// Restores a pair that updates have computed since it was noted.
@@ -435,16 +441,20 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             }
             None => locations.push(NOWHERE),
         });
+        let (mut left, mut placed) = (Vec::new(), Vec::new());
         each_group!(&mut self.groups, |id, group| {
-            let mut rows = Vec::new();
-            group.rewind(number, |row| rows.push(row));
-            for row in rows {
-                let Some(&[first, second]) = group.keys.get(row as usize) else { continue };
-                if let Some(index) = self.pairs.index_of(first, second) {
-                    self.locations[index] = Location { group: id, row };
-                }
-            }
+            let (keys, rows) = group.rewind(number);
+            left.extend(keys.into_iter().map(|key| (key, NOWHERE)));
+            let place =
+                |row: u32| Some((*group.keys.get(row as usize)?, Location { group: id, row }));
+            placed.extend(rows.into_iter().filter_map(place));
         });
+        // A pair that left one group may have been in another, or in none, when the mark was set.
+        for ([first, second], location) in left.into_iter().chain(placed) {
+            if let Some(index) = self.pairs.index_of(first, second) {
+                self.locations[index] = location;
+            }
+        }
         while self.journal.undo(number).is_some() {}
         if let Some(NarrowHead { ids, dirty_pairs }) = self.journal.head() {
             self.ids = ids.clone();

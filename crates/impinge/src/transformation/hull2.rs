@@ -36,7 +36,19 @@ pub fn convex_hull2<N: Real>(points: &[Point<N, 2>]) -> Result<Vec<usize>, Shape
     ring.pop();
     ring.extend_from_slice(&upper[..upper.len() - 1]);
     let ring = thinned(&scaled.points, ring, scaled.flat());
-    if ring.len() < 3 { Err(ShapeError::Degenerate { dimension: 1 }) } else { Ok(ring) }
+    if ring.len() < 3 {
+        return Err(ShapeError::Degenerate { dimension: 1 });
+    }
+    Ok(from_first(&scaled.points, ring))
+}
+
+/// Rotates a ring so that it starts at its first corner by coordinates: thinning may have removed
+/// the corner at which it started.
+fn from_first(points: &[Point<f64, 2>], mut ring: Vec<usize>) -> Vec<usize> {
+    let is_before = |at: usize, other: usize| precedes(&points[ring[at]], &points[ring[other]]);
+    let first = (1..ring.len()).fold(0, |first, at| if is_before(at, first) { at } else { first });
+    ring.rotate_left(first);
+    ring
 }
 
 /// Returns the indices sorted by coordinates; of equal points only the first.

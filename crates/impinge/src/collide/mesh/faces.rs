@@ -120,8 +120,9 @@ enum SurfaceAnswer<N: Real> {
 
 impl<'a, N: Real> FaceConfiguration<'a, N> {
     /// Returns `None` unless the solid is a box or hull and the cache holds the corners of all
-    /// parts, which must be triangles. Also `None` if the second shape has no surface, and if one
-    /// shape has bodies, because a solid inside a body has contacts too.
+    /// parts, which must be triangles. Also `None` if the second shape has no surface, if one shape
+    /// has bodies, because a solid inside a body has contacts too, and if the parts were not culled
+    /// by the cache, as for an infinite prediction.
     fn new(
         query: &'a Query<'a, N, 3>,
         scene: &'a Scene<'a, N, 3>,
@@ -131,6 +132,7 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
         let solid = between.pair.first;
         let is_served = has_faces(solid)
             && culled.masks.len() == around.tiles().len()
+            && (culled.parts.is_empty() || !culled.masks.is_empty())
             && around.has_triangles_alone()
             && !between.has_bodies();
         let map = Geometry(solid).as_support_map().filter(|_| is_served)?;

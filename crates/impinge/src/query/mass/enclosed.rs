@@ -5,7 +5,7 @@ use super::integrals::{Integrals, LocalUnits};
 use super::outline::crossed;
 use super::polyhedron::add_cones;
 use crate::bounding_volume::Aabb;
-use crate::math::{Point, Real, Vector};
+use crate::math::{Point, Real};
 use crate::shape::{EdgeNeighbor, MassError, Moments, Polyline, Shape, TriMesh};
 
 /// The enclosed area or volume is treated as zero if it is at most this fraction of the sum of the
@@ -54,12 +54,12 @@ pub(super) fn enclosed2<N: Real>(shape: &dyn Shape<N, 2>) -> Result<Moments<2>, 
         for index in (0_u32..).take(mesh.num_triangles()) {
             let [a, b, c] =
                 mesh.triangle(index).corners().each_ref().map(|corner| units.point(corner));
+            // The cone is about a corner, so a small triangle far from the others loses no digits.
+            let (to_b, to_c) = (b - a, c - a);
             let mut triangle = Integrals::none();
-            for (from, to) in [(&a, &b), (&b, &c), (&c, &a)] {
-                triangle.add_cone(crossed(from, to) * 0.5, &[from, to]);
-            }
+            triangle.add_cone(crossed(&to_b, &to_c) * 0.5, &[&to_b, &to_c]);
             let filled = if triangle.mass < 0.0 { triangle.negated() } else { triangle };
-            cones.add(|sum| sum.add_about(&Vector::<f64, 2>::zeros(), &filled));
+            cones.add(|sum| sum.add_about(&a, &filled));
         }
         units
     } else if let Some(line) = shape.as_shape::<Polyline<N, 2>>().filter(|line| line.is_outline()) {

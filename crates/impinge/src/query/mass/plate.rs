@@ -103,22 +103,26 @@ pub(super) fn round_triangle<N: Real>(corners: &[Point<N, 3>; 3], radius: N) -> 
         ring.pop();
     }
     let plate = Plate::new(&ring);
-    let normal = plate.normal.unwrap_or_else(|| across_all(&ring));
+    let normal = across_all(&ring, plate.normal);
     let (radius, mut sum) = (units.length(radius), Integrals::none());
     plate.add_prism([2.0 * radius, 1.0, 0.0], &normal, &mut sum);
     add_rim(&ring, &normal, radius, &mut sum);
     units.grown(&sum.moments())
 }
 
-/// Returns a unit vector perpendicular to the line through collinear points; any unit vector if
-/// they coincide.
-fn across_all(ring: &[V3]) -> V3 {
+/// Returns the normal of a flat ring. For collinear points, whose `normal` may be a rounding error
+/// in any direction, returns a unit vector perpendicular to their line; any unit vector if they
+/// coincide.
+fn across_all(ring: &[V3], normal: Option<V3>) -> V3 {
     let mut longest = V3::zeros();
     for (a, b) in sides(ring) {
         let side = b - a;
         longest = if side.norm_squared() > longest.norm_squared() { side } else { longest };
     }
-    across(&longest)
+    let along = longest.try_normalize(0.0).unwrap_or_default();
+    let upright = normal.map(|normal| normal - along * normal.dot(&along));
+    // Less than half of the length is left if the normal is mostly a rounding error.
+    upright.and_then(|upright| upright.try_normalize(0.5)).unwrap_or_else(|| across(&longest))
 }
 
 /// Returns a unit vector perpendicular to a vector of any length.

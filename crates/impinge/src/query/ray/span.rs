@@ -57,12 +57,13 @@ impl<N: Real, const D: usize> Span<N, D> {
         Self { enter, leave, thin: true }
     }
 
-    /// Returns the span of the union of two convex sets, which must itself be convex.
+    /// Returns the span of the union of two convex sets, which must itself be convex. It is thin if
+    /// one span is: a line that stays on the boundary of one set does not enter their union.
     pub(super) fn union(self, other: Self) -> Self {
         Self {
             enter: if other.enter.t < self.enter.t { other.enter } else { self.enter },
             leave: if other.leave.t > self.leave.t { other.leave } else { self.leave },
-            thin: self.thin && other.thin,
+            thin: self.thin || other.thin,
         }
     }
 

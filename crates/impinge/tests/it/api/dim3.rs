@@ -160,6 +160,27 @@ fn dispatchers_of_ones_own() {
     world.validate().expect("the parts agree");
 }
 
+/// Asserts that a pair that had no algorithm at a mark has none after a rewind, although it had one
+/// in between.
+#[test]
+fn a_rewind_takes_the_algorithm_of_a_pair() {
+    let (mut world, [first, second, area]) = three_balls();
+    let contacts = Box::new(DefaultContactDispatcher::new());
+    let narrow_phase = DefaultNarrowPhase::with_dispatchers(contacts, Box::new(Nothing));
+    world.set_narrow_phase(Box::new(narrow_phase));
+    world.update();
+    let mark = world.mark();
+    world.set_query_type(area, GeometricQueryType::Contacts(0.0, 0.0));
+    world.update();
+    assert!(world.contact_pair(first, area).is_some(), "it touches");
+    world.rewind(mark);
+    assert!(world.contact_pair(first, area).is_none(), "as at the mark");
+    world.remove(&[first]);
+    world.set_query_type(area, GeometricQueryType::Contacts(0.0, 0.0));
+    world.update();
+    assert!(world.contact_pair(second, area).is_some(), "it touches again");
+}
+
 /// Wraps the default narrow phase and passes it only pairs of two contact queries, so that no
 /// proximities are reported.
 #[derive(Clone, Debug, Default)]

@@ -59,3 +59,18 @@ fn rapier_165_rays_on_borders() {
     rapier_165::<f32>();
     rapier_165::<f64>();
 }
+
+/// Asserts that a point on the diagonal of a cell has a height, also if rounding puts it beside both
+/// triangles as seen from their corners.
+#[test]
+fn diagonals_have_heights() {
+    let field =
+        HeightField::<f64, 3>::new(2, 2, vec![0.0; 4], Vector::<f64, 3>::new(7.0, 1.0, 10.0));
+    assert_eq!(field.height_at(-2.66, -3.8), Some(0.0), "a reported point");
+    for step in 1..1000_u32 {
+        let share = f64::from(step) / 1000.0 - 0.5;
+        for x in [7.0 * share, -7.0 * share] {
+            assert_eq!(field.height_at(x, 10.0 * share), Some(0.0), "step {step} at {x}");
+        }
+    }
+}

@@ -5,14 +5,16 @@ use crate::support::query_support::random::Random;
 use crate::support::samples::stride;
 use crate::support::shape_table::{self, Shapes};
 
-use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Real, Space, Unit, Vector};
+use impinge::math::{
+    AbstractRotation, Isometry, Isometry2, Isometry3, Point, Real, Space, Unit, Vector,
+};
 use impinge::narrow_phase::{
     ContactManifoldGenerator, ContactPrediction, ContactQuery, DefaultContactDispatcher,
     DefaultNarrowPhase, DefaultProximityDispatcher, IdAllocator, PairManifoldGenerator,
     contact_manifolds,
 };
-use impinge::query::{ContactId, ContactManifold};
-use impinge::shape::{Ball, Cuboid, Plane, ShapeHandle};
+use impinge::query::{ContactId, ContactManifold, contact};
+use impinge::shape::{Ball, Cuboid, Plane, ShapeHandle, TriMesh};
 use impinge::world::{CollisionGroups, CollisionWorld};
 
 /// Two placed shapes and the query.
@@ -165,5 +167,33 @@ fn no_contact_has_the_null_id() {
     for (pair, number) in [(0, 0), (u64::MAX, 0), (0, u32::MAX)] {
         let id = ContactId::new(pair, number);
         assert!(!id.is_null() && id < ContactId::NULL, "{id:?}");
+    }
+}
+
+/// Asserts that a box that overlaps a surface has contacts for an infinite prediction, too, and that
+/// a query finds the triangle of a one-sided surface whose front the box faces, without a limit.
+#[test]
+fn surfaces_are_met_at_any_distance() {
+    let corners: [[f64; 3]; 6] = [
+        [-5.0, 0.0, -5.0],
+        [5.0, 0.0, -5.0],
+        [0.0, 0.0, 5.0],
+        [-5.0, -10.0, -5.0],
+        [5.0, -10.0, -5.0],
+        [0.0, -10.0, 5.0],
+    ];
+    let mesh =
+        TriMesh::<f64, 3>::new(corners.map(Point::from).to_vec(), vec![[0, 2, 1], [3, 5, 4]]);
+    let (here, cube) = (Isometry3::identity(), Cuboid::new(Vector::<f64, 3>::repeat(0.5)));
+    let at = Isometry3::translation(0.0, 0.4, 0.0);
+    for prediction in [0.0, 1e3, f64::INFINITY] {
+        let near = ContactPrediction::new(prediction, 0.0, 0.0);
+        let found = contact_manifolds(&here, &mesh, &at, &cube, &near, None);
+        assert!(!found.is_empty(), "within {prediction}");
+    }
+    let (mesh, under) = (mesh.one_sided(), Isometry3::translation(0.0, -2.0, 0.0));
+    for limit in [1e3, f64::INFINITY] {
+        let found = contact(&here, &mesh, &under, &cube, limit);
+        assert!(found.is_some(), "within {limit}");
     }
 }

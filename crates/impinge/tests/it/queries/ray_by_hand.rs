@@ -189,8 +189,11 @@ fn capsules() {
             from_outside([1.0, 5.0], [0.0, -1.0], 4.0),
             from_inside([0.0, 0.0], [0.0, 1.0], 2.0),
             from_inside([0.0, 0.0], [1.0, 0.0], 1.0),
+            // Along the side, which the ends touch.
+            from_inside([1.0, 0.0], [0.0, 1.0], 0.0),
         ],
     );
+    check::<3>(&Capsule::new(1.0, 1.0), &[from_inside([0.0, 0.0, 1.0], [0.0, 1.0, 0.0], 0.0)]);
     check::<3>(&Capsule::new(0.0, 2.0), &[from_outside([-3.0, 0.0, 0.0], [1.0, 0.0, 0.0], 1.0)]);
     check::<3>(
         &Capsule::new(1.0, 0.0),

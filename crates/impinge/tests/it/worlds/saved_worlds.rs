@@ -197,6 +197,19 @@ fn what_has_no_name_cannot_be_restored() {
     assert_eq!(names, 1);
 }
 
+/// Asserts that a world can be restored if an object was removed after its pair was computed between
+/// two updates.
+#[test]
+fn removed_objects_of_computed_pairs_are_not_saved() {
+    let mut world = three_balls::<f64, 3>();
+    let handles: Vec<_> = world.collision_objects().map(CollisionObject::handle).collect();
+    assert!(world.update_pair(handles[0], handles[1]), "they are a pair");
+    world.remove(&handles[1..]);
+    let text = serde_json::to_string(&world).expect("it can be saved");
+    let restored = read::<f64, 3>(&text).expect("saved just now");
+    assert_eq!(restored.len(), 1, "one ball is left");
+}
+
 #[test]
 fn phases_that_are_to_take_over_are_saved() {
     let mut world = three_balls::<f32, 2>();

@@ -344,7 +344,9 @@ fn min_index(a: usize, b: usize) -> usize {
 /// without area seen along y.
 fn height_over<N: Real>(corners: &[Point<N, 3>; 3], x: N, z: N) -> Option<N> {
     let [a, b, c] = corners;
-    let side = |p: &Point<N, 3>, q: &Point<N, 3>| (q.z - p.z) * (x - p.x) - (q.x - p.x) * (z - p.z);
+    // Measured from (x, z), so `side(p, q)` is exactly `-side(q, p)`: a point at a side of two
+    // triangles is beside at most one of them.
+    let side = |p: &Point<N, 3>, q: &Point<N, 3>| (q.x - x) * (p.z - z) - (q.z - z) * (p.x - x);
     let weights = [side(b, c), side(c, a), side(a, b)];
     let total = weights[0] + weights[1] + weights[2];
     let is_beside = weights.iter().any(|weight| *weight * total < N::ZERO);

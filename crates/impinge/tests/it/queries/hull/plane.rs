@@ -49,6 +49,14 @@ fn random_points_lie_within() {
     random::<f64>();
 }
 
+/// Asserts that the ring starts at the corner with the smallest x, also if the point with the
+/// smallest x is on a side, up to rounding.
+#[test]
+fn the_ring_starts_at_its_first_corner() {
+    let thin = points::<f64>(&[[0.0, 0.0], [3e-16, -1.0], [1.0, 0.0], [1e-16, 1.0]]);
+    assert_eq!(convex_hull2(&thin), Ok(vec![3, 1, 2]));
+}
+
 #[test]
 fn a_grid_has_four_corners() {
     let grid: Vec<[f64; 2]> = (0..100).map(|i| [f64::from(i % 10), f64::from(i / 10)]).collect();

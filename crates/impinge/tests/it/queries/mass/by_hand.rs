@@ -258,6 +258,12 @@ fn sizes_of_zero<N: Inertia<2> + Inertia<3>>() {
     let line = Rounded::new(Triangle::new(b, a, a + (b - a) * N::HALF), N::HALF);
     let capsule = Capsule::try_from_ends(a, b, N::HALF).expect("numbers");
     assert_alike(&unit(&line), &unit(&capsule), 8.0 * N::EPSILON.as_f64(), "a rounded line");
+    // The cross product of these sides is a rounding error in any direction.
+    let ends =
+        [[1.0 / 3.0, 0.2, 0.7], [5.0 / 3.0, 1.0, 3.5]].map(|end| Point::from(end.map(N::lit)));
+    let line = Rounded::new(Triangle::new(Point::origin(), ends[0], ends[1]), N::TWO);
+    let capsule = Capsule::try_from_ends(Point::origin(), ends[1], N::TWO).expect("numbers");
+    assert_alike(&unit(&line), &unit(&capsule), 64.0 * N::EPSILON.as_f64(), "a tilted line");
     let (a, b) = (Point::<N, 2>::new(one, N::TWO), Point::<N, 2>::new(N::lit(3.0), N::TWO));
     let line = Rounded::new(Triangle::new(b, a, a + (b - a) * N::HALF), N::HALF);
     let capsule = Capsule::try_from_ends(a, b, N::HALF).expect("numbers");

@@ -169,3 +169,16 @@ fn errors_in_compounds_name_the_part() {
     let expected = 0.5 * (16.0 + 2.0 * unit::<f64, 3>(&Ball::new(1.0)).0);
     assert!((mass - expected).abs() < 1e-13, "overlaps count twice");
 }
+
+/// Asserts that small triangles far from each other keep their areas.
+#[test]
+fn small_triangles_far_apart_have_their_areas() {
+    for far in [1e3, 3e8] {
+        let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+        let beyond = corners.map(|[x, y]| [x + far, y + far]);
+        let vertices = corners.into_iter().chain(beyond).map(Point::<f64, 2>::from).collect();
+        let mesh = TriMesh::<f64, 2>::new(vertices, vec![[0, 1, 2], [3, 4, 5]]);
+        let body = mass_properties(&mesh, 1.0).expect("two areas");
+        assert_eq!(body.mass(), 1.0, "{far} apart");
+    }
+}
