@@ -392,7 +392,10 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
     /// # Errors
     /// As [`Self::seek`].
     pub fn seek_end(&mut self) -> Result<(), ReadError> {
-        self.seek(self.len())?;
+        // At the last step, calls that are applied stay: a growing recording goes on from them.
+        if self.is_changed || self.step < self.len() {
+            self.seek(self.len())?;
+        }
         self.finish()
     }
 

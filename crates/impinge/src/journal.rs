@@ -83,7 +83,11 @@ impl<U, H, K> Journal<U, H, K> {
         // Without marks the period is 0, and `noted` is empty.
         let period = self.period;
         match self.noted.get_mut(index) {
-            Some(noted) => *noted < period && core::mem::replace(noted, period) < period,
+            Some(noted) => {
+                let is_first = *noted < period;
+                *noted = (*noted).max(period);
+                is_first
+            }
             None => self.is_on() && self.grow_noted(index, period),
         }
     }

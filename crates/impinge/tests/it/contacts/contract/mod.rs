@@ -4,7 +4,7 @@
 //! shallow, deep and one inside the other; aligned, nearly aligned and arbitrarily rotated; some
 //! with sizes of zero, far from the origin, or of very different sizes; with and without an angular
 //! prediction; with predictions equal to the distance or slightly less. Each scene is also scaled
-//! by 2⁻²⁰ and 2²⁰. [`Share`] tells which part of this a run tests.
+//! by 2⁻²⁰ and 2²⁰. [`Share`] selects the part of this that a run tests.
 //!
 //! Depths are compared with the reference, not with another path of the library, for all pairs in
 //! 2D and for all pairs without curved faces. For other pairs the reference has to search for the
