@@ -55,9 +55,6 @@ impl<N: Real, const D: usize> ExactBoxes<'_, N, D> {
         let mut count = 0;
         for (at, Waiting { id, aabb }) in (first_at..).zip(waiting) {
             let index = *id as usize;
-            if *id == NONE {
-                continue;
-            }
             self.waiting_at[index - self.first] = NONE;
             self.exact[index - self.first] = *aabb;
             let is_in_tree =
@@ -73,7 +70,7 @@ impl<N: Real, const D: usize> ExactBoxes<'_, N, D> {
 #[cfg(feature = "parallel")]
 mod parallel {
     use super::super::finder::small;
-    use super::{ExactBoxes, LooseBounds, NONE, Waiting};
+    use super::{ExactBoxes, LooseBounds, Waiting};
     use crate::math::Real;
 
     /// Maximum number of waiting boxes in one task.
@@ -85,9 +82,6 @@ mod parallel {
         waiting.len() > MAX_SERIAL
             && rayon::current_num_threads() > 1
             && waiting.is_sorted_by_key(|waiting| waiting.id)
-            // The id of a removed object is `NONE`, the greatest `u32`; in a sorted list it would
-            // be last.
-            && waiting.last().is_some_and(|last| last.id != NONE)
     }
 
     impl<N: Real, const D: usize> ExactBoxes<'_, N, D> {

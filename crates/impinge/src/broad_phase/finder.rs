@@ -35,8 +35,7 @@ pub(super) const CHANGED: u8 = 1;
 /// Mark of an object whose pairs must all be filtered again.
 pub(super) const REFILTER: u8 = 2;
 
-/// A box that the next update applies to object `id`; `id` is [`NONE`] if the object has been
-/// removed since.
+/// A box that the next update applies to object `id`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Waiting<N: Real, const D: usize> {
     pub(super) id: u32,
@@ -250,7 +249,10 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         let index = id as usize;
         let at = core::mem::replace(&mut self.waiting_at[index], NONE);
         if at != NONE {
-            self.waiting[at as usize].id = NONE;
+            self.waiting.swap_remove(at as usize);
+            if let Some(moved) = self.waiting.get(at as usize) {
+                self.waiting_at[moved.id as usize] = at;
+            }
         }
         // `changes` has entries here only if a filter panicked in the last update. `to_refilter`
         // may keep the id: an object that reuses it is new, so all its pairs are filtered in any
@@ -274,7 +276,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         let mut waiting = core::mem::take(&mut self.waiting);
         let mut outside = core::mem::take(&mut self.outside);
         if self.journal.is_on() {
-            waiting.iter().filter(|waiting| waiting.id != NONE).for_each(|one| self.note(one.id));
+            waiting.iter().for_each(|one| self.note(one.id));
         }
         self.list_outside(&waiting, &mut outside);
         for &at in &outside {
@@ -456,6 +458,11 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             if container != Container::Nowhere && !self.loose[index].contains(&tight) {
                 return Err(format!("the exact box of {id} leaves its loosened box"));
             }
+        }
+        let is_listed = |(at, one): (u32, &Waiting<N, D>)| self.waiting_at[one.id as usize] == at;
+        let num_waiting = self.waiting_at.iter().filter(|&&at| at != NONE).count();
+        if !(0..).zip(&self.waiting).all(is_listed) || num_waiting != self.waiting.len() {
+            return Err("list and indices of waiting boxes differ".to_owned());
         }
         let is_pair =
             |&(a, b): &(u32, u32)| self.loose[a as usize].overlaps(&self.loose[b as usize]);

@@ -95,7 +95,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             self.marks[id as usize] = 0;
         }
         self.searched.clear();
-        for Waiting { id, .. } in self.waiting.drain(..).filter(|waiting| waiting.id != NONE) {
+        for Waiting { id, .. } in self.waiting.drain(..) {
             self.waiting_at[id as usize] = NONE;
         }
         while let Some(note) = journal.undo(number) {
@@ -120,9 +120,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     fn wait_again(&mut self, head: &FinderHead<N, D>) {
         self.waiting.clone_from(&head.waiting);
         for (at, Waiting { id, .. }) in self.waiting.iter().enumerate() {
-            if *id != NONE {
-                self.waiting_at[*id as usize] = small(at);
-            }
+            self.waiting_at[*id as usize] = small(at);
         }
         self.to_refilter.clone_from(&head.again);
         self.refilters_all = head.is_all_again;

@@ -56,7 +56,7 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
         let (generations, free) = self.handles.record();
         let present = (0..).zip(&self.proxies).filter_map(|(id, data)| Some((id, data.as_ref()?)));
         let finder = &self.finder;
-        let waiting = finder.waiting.iter().filter(|waiting| waiting.id != NONE);
+        let waiting = finder.waiting.iter();
         BroadRecord {
             margin: Numbers::of([self.margin()]),
             generations,

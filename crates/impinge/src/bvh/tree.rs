@@ -167,12 +167,12 @@ impl<const D: usize> Tree<D> {
         Self { is_sparing: true, remembers: false, ..Self::new(lanes) }
     }
 
-    /// Makes the tree sparing ([`Self::is_sparing`]), for objects that seldom change. Its boxes
-    /// must be committed.
+    /// Makes the tree sparing ([`Self::is_sparing`]), for objects that seldom change. No box may
+    /// have changed since the last commit; blocks that lost an object since then stay listed.
     pub(crate) fn spare(&mut self) {
         debug_assert_eq!(self.changed, 0, "a tree with committed boxes");
         (self.is_sparing, self.remembers, self.before) = (true, false, Vec::new());
-        (self.loads, self.dirty, self.touched) = (Vec::new(), Vec::new(), Vec::new());
+        (self.loads, self.dirty) = (Vec::new(), Vec::new());
         self.give_back();
     }
 

@@ -17,9 +17,6 @@ use crate::math::{Real, Space};
 use crate::memory::{Look, clone_fields};
 use crate::narrow_phase::{ObjectRow, ObjectTable};
 
-/// Handle index in an entry whose object has been removed.
-const GONE: u32 = u32::MAX;
-
 /// The kinds of changes of an object since the last update.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -39,7 +36,7 @@ pub(super) struct BodyChanges {
 /// An entry of the list of changes, for one object.
 #[derive(Clone, Debug)]
 pub(crate) struct BodyEntry<N: Real, const D: usize> {
-    /// Handle index, or [`GONE`] if the object was removed.
+    /// Handle index.
     index: u32,
     changes: BodyChanges,
     /// Exact box of the shape at the present pose. It is the unbounded box, and is not read, if
@@ -149,8 +146,10 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         }
     }
 
-    /// Discards the changes and the skin of an object that is being removed.
-    pub(crate) fn forget(&mut self, body: &WorldBody<N, D>) {
+    /// Discards the changes and the skin of an object that is being removed. The last entry of the
+    /// list moves to the index of the object's entry: returns the handle index of its object, and
+    /// its new index. `None` if no entry moves.
+    pub(crate) fn forget(&mut self, body: &WorldBody<N, D>) -> Option<(u32, u32)> {
         if let Some(skin) = self.skins.get_mut(body.index() as usize) {
             *skin = N::ZERO;
         }
@@ -159,9 +158,15 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         {
             entries::take_dirty::<N, D>(tree, id);
         }
-        if let Some(change_index) = body.change_index() {
-            self.entries[change_index as usize].index = GONE;
+        let change_index = body.change_index()?;
+        self.entries.swap_remove(change_index as usize);
+        let &BodyEntry { index, changes, .. } = self.entries.get(change_index as usize)?;
+        if let Some(tree) = self.dirty.get_mut().filter(|tree| changes.volume && !tree.has_all()) {
+            let last = u32::try_from(self.entries.len()).expect("no more entries than handles");
+            entries::take_dirty::<N, D>(tree, last);
+            self.update_dirty_tree(index, change_index);
         }
+        Some((index, change_index))
     }
 
     /// Returns `true` if the volume of the object in the broad phase is out of date.
@@ -190,11 +195,8 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
     }
 
     fn dirty_indices(&self) -> impl Iterator<Item = u32> {
-        let is_dirty = |entry: &BodyEntry<N, D>| entry.changes.volume && entry.index != GONE;
-        (0..)
-            .zip(&self.entries)
-            .filter(move |(_, entry)| is_dirty(entry))
-            .map(|(change_index, _)| change_index)
+        let dirty = (0..).zip(&self.entries).filter(|(_, entry)| entry.changes.volume);
+        dirty.map(|(change_index, _)| change_index)
     }
 
     /// Returns the box of the dirty object at index `change_index`, grown by the slack for
@@ -231,8 +233,8 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         if tree.has_all() { id } else { self.entries[id as usize].index }
     }
 
-    /// Collects the handle indices of the changed objects that still exist, sorted. The list has
-    /// the memory of the list that was last passed to [`Self::clear`]; pass this list to it, too.
+    /// Collects the handle indices of the changed objects, sorted. The list has the memory of the
+    /// list that was last passed to [`Self::clear`]; pass this list to it, too.
     pub(crate) fn take_order(&mut self) -> Vec<u32> {
         let mut order = core::mem::take(&mut self.order);
         order.extend(self.waiting());
@@ -240,9 +242,9 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         order
     }
 
-    /// Iterates over the handle indices of the changed objects, in the order of their first change.
+    /// Iterates over the handle indices of the changed objects.
     pub(super) fn waiting(&self) -> impl Iterator<Item = u32> + '_ {
-        self.entries.iter().map(|entry| entry.index).filter(|&index| index != GONE)
+        self.entries.iter().map(|entry| entry.index)
     }
 
     /// Writes the changes of an object to the targets, and marks the object as unchanged. Does
@@ -292,12 +294,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         core::mem::take(&mut self.self_changed)
     }
 
-    /// Returns the number of changed objects that have not been removed.
-    pub(crate) fn num_present(&self) -> usize {
-        self.entries.iter().filter(|entry| entry.index != GONE).count()
-    }
-
-    /// Returns the length of the list, which includes entries of removed objects.
+    /// Returns the number of changed objects.
     pub(crate) const fn len(&self) -> usize {
         self.entries.len()
     }
@@ -335,18 +332,18 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         entry.aabb = aabb;
         entry.changes.volume = true;
         if self.dirty.get_mut().is_some() {
-            self.update_dirty_tree(body, change_index);
+            self.update_dirty_tree(body.index(), change_index);
         }
         &mut self.entries[change_index as usize].changes
     }
 
-    /// Updates the box of an object in the dirty tree. Drops the tree if it has had so many changes
-    /// that it needs a rebuild.
+    /// Updates the box of the object with handle index `index` in the dirty tree. Drops the tree if
+    /// it has had so many changes that it needs a rebuild.
     #[cold]
-    fn update_dirty_tree(&mut self, body: &WorldBody<N, D>, change_index: u32) {
+    fn update_dirty_tree(&mut self, index: u32, change_index: u32) {
         let aabb = self.box_at(change_index);
         let Some(tree) = self.dirty.get_mut() else { return };
-        let id = if tree.has_all() { body.index() } else { change_index };
+        let id = if tree.has_all() { index } else { change_index };
         entries::put_dirty(tree, id, &aabb);
         if tree.needs_rebuild() {
             self.dirty.take();

@@ -24,10 +24,8 @@ impl<N: Space<D>, const D: usize, T> fmt::Debug for CollisionWorld<N, D, T> {
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns descriptions of the changes that wait for the next update.
     fn pending(&self) -> Vec<String> {
-        let counts = [
-            (self.objects.changes.num_present(), "changed objects"),
-            (self.queued.len(), "queued events"),
-        ];
+        let counts =
+            [(self.objects.changes.len(), "changed objects"), (self.queued.len(), "queued events")];
         let counted = counts.into_iter().filter(|&(count, _)| count > 0);
         let changes = [
             (self.filters.have_changed(), "filters"),

@@ -260,6 +260,10 @@ mod tests {
             }
             kept.into_iter().for_each(|has_all| trees[usize::from(has_all)] += 1);
             assert_eq!(world.objects.validate(&*world.broad_phase), Ok(()), "change {change}");
+            assert!(
+                world.objects.changes.len() <= world.len(),
+                "one entry for each object at most"
+            );
         }
         assert!(trees[0] > 500 && trees[1] > 500, "some of both kinds: {trees:?}");
         assert!(made > 60, "given up by updates and by wear: {made}");

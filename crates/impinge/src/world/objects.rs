@@ -303,7 +303,10 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.note_removed(handle);
         let object = self.take_record(handle);
         self.slots[handle.uid()].generation = next.unwrap_or(handle.generation());
-        self.changes.forget(&object.body);
+        if let Some((moved, change_index)) = self.changes.forget(&object.body) {
+            let record = self.slots[moved as usize].record as usize;
+            self.records[record].body.set_change_index(change_index as usize);
+        }
         self.table.release(handle.index());
         if next.is_some() {
             self.free.push(handle.index());

@@ -231,3 +231,28 @@ fn a_stream_of_objects_comes_to_rest_bit_by_bit() {
     assert_eq!(finder.validate(), Ok(()), "sound");
     assert!(finder.still.len() > 8_000, "{} are still", finder.still.len());
 }
+
+/// Each update removes one of 2000 overlapping boxes in a row, and nothing moves. The others come
+/// to rest, also by an exchange of the trees in an update after a removal, and keep being found.
+#[test]
+fn removals_do_not_disturb_objects_at_rest() {
+    let unit = |x: u32| {
+        let center = Point::<f64, 2>::new(f64::from(x), 0.0);
+        Aabb::from_half_extents(center, Vector::repeat(0.625))
+    };
+    let mut finder = PairFinder::<f64, 2>::try_new(0.125).expect("a margin");
+    (0..2000).for_each(|id| finder.insert(id, unit(id)));
+    let mut removed = 0;
+    for step in 0..100 {
+        finder.update(&mut |_, _| true, &mut |_, _, _| ());
+        assert_eq!(finder.validate(), Ok(()), "in step {step}");
+        finder.remove(19 * step);
+        removed += 1;
+    }
+    assert!(finder.still.len() > 1800, "{} are still", finder.still.len());
+    finder.refilter_all();
+    let mut stopped = 0;
+    finder.update(&mut |_, _| false, &mut |_, _, has_started| stopped += u32::from(!has_started));
+    // The first of the row had one neighbour, each other removed box two.
+    assert_eq!(stopped, 1999 - 2 * removed + 1, "all pairs that are left");
+}
