@@ -1,6 +1,8 @@
 //! The user's filters of pairs that the broad phase finds.
 
+use core::any::Any;
 use core::fmt;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 
 use super::error::or_panic;
@@ -16,6 +18,10 @@ use crate::narrow_phase::CollisionObjectHandle;
 /// when the pair is filtered again. All filters of a world must return `true` for the pair to
 /// exist. The result for a pair must not change until the filter is registered again or the pairs
 /// are filtered again ([`CollisionWorld::refilter_pairs_of`]).
+///
+/// If a filter panics, the update calls no filter any more, leaves the pairs without an answer as
+/// they were, and ends; then the panic goes on to the caller of the update. The next update filters
+/// these pairs again, so no pair and no event is lost.
 ///
 /// Implement the trait of the same name in [`crate::dim2::world`] or [`crate::dim3::world`], which
 /// fixes the dimension. Closures over two references to objects implement these traits.
@@ -115,6 +121,67 @@ impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
 
     pub(super) fn is_empty(&self) -> bool {
         self.filters.is_empty()
+    }
+}
+
+/// A pair filter of the caller, borrowed for one update.
+pub(super) type UpdateFilter<'a, N, const D: usize, T> =
+    &'a mut dyn FnMut(&CollisionObject<N, D, T>, &CollisionObject<N, D, T>) -> bool;
+
+/// The calls of filters in one update.
+///
+/// A panic of a filter must not leave the update half done: the object table and the broad phase
+/// would hold changes of which the narrow phase never hears. So the panic is caught, the update
+/// runs to its end without filters, and [`Self::finish`] lets the panic go on.
+pub(super) struct Filtering<'a, N: Space<D>, const D: usize, T> {
+    filter: Option<UpdateFilter<'a, N, D, T>>,
+    /// The payload of the first panic.
+    panic: Option<Box<dyn Any + Send>>,
+    /// The first object of each pair that no filter has decided on since the panic.
+    undecided: Vec<CollisionObjectHandle>,
+}
+
+impl<'a, N: Space<D>, const D: usize, T> Filtering<'a, N, D, T> {
+    /// Begins an update with an additional filter.
+    pub(super) const fn new(filter: Option<UpdateFilter<'a, N, D, T>>) -> Self {
+        Self { filter, panic: None, undecided: Vec::new() }
+    }
+
+    /// Returns `true` if no filter restricts the pairs of this update.
+    pub(super) fn allows_all(&self, filters: &Filters<N, D, T>) -> bool {
+        filters.is_empty() && self.filter.is_none()
+    }
+
+    /// Returns `true` if all filters allow the pair; `None` if one of them panics, or has panicked
+    /// in this update.
+    pub(super) fn allow(
+        &mut self,
+        filters: &Filters<N, D, T>,
+        co1: &CollisionObject<N, D, T>,
+        co2: &CollisionObject<N, D, T>,
+    ) -> Option<bool> {
+        let Self { filter, panic, undecided } = self;
+        let mut decide =
+            || filters.allow(co1, co2) && filter.as_mut().is_none_or(|filter| filter(co1, co2));
+        if panic.is_none() {
+            // The panic goes on, so the caller sees whatever state his filter has left behind.
+            match catch_unwind(AssertUnwindSafe(&mut decide)) {
+                Ok(is_allowed) => return Some(is_allowed),
+                Err(payload) => *panic = Some(payload),
+            }
+        }
+        undecided.push(co1.handle());
+        None
+    }
+
+    /// Ends the update. If a filter panicked, makes the next update filter the undecided pairs, and
+    /// lets the panic go on.
+    pub(super) fn finish(self, world: &mut CollisionWorld<N, D, T>) {
+        let Some(payload) = self.panic else { return };
+        for handle in self.undecided {
+            world.refilter_pairs_of(handle);
+        }
+        resume_unwind(payload)
     }
 }
 

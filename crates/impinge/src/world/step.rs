@@ -1,5 +1,6 @@
 //! The update of a world, and the replacement of its phases.
 
+use super::filter::{Filtering, UpdateFilter};
 use super::{CollisionObject, CollisionWorld, WorldBroadPhase, WorldsNarrowPhase};
 use crate::math::Space;
 use crate::narrow_phase::{
@@ -12,10 +13,6 @@ use crate::query::Proximity;
 const BATCH: usize = 512;
 
 type HandlePair = (CollisionObjectHandle, CollisionObjectHandle);
-
-/// A pair filter of the caller, borrowed for one update.
-type UpdateFilter<'a, N, const D: usize, T> =
-    &'a mut dyn FnMut(&CollisionObject<N, D, T>, &CollisionObject<N, D, T>) -> bool;
 
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Applies the changes since the last update, computes pairs, contacts and proximities, and
@@ -41,8 +38,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// before the update: pairs that the filter refuses then stop, with their events, and pairs
     /// that it allows start. After a change of registered filters, groups or fixed marks the
     /// affected pairs are filtered again too, and after the replacement of a phase all pairs are.
-    /// Pairs of an object with itself are not filtered. If the filter panics, the next update calls
-    /// it again.
+    /// Pairs of an object with itself are not filtered.
+    ///
+    /// If the filter panics, it is not called any more in this update. The pairs without an answer
+    /// stay as they were (in a new narrow phase they do not start), the update ends, and the panic
+    /// goes on. The next update filters the pairs of their objects again.
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;
@@ -74,13 +74,14 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     fn update_filtered(&mut self, filter: Option<UpdateFilter<'_, N, D, T>>) {
+        let mut filtering = Filtering::new(filter);
         self.recent.note(self.objects.changes.len());
         self.begin_events();
         if self.next_broad_phase.is_some() || self.next_narrow_phase.is_some() {
-            self.update_with_other_phases(filter);
+            self.update_with_other_phases(&mut filtering);
         } else {
             self.write_changes();
-            self.update_broad_phase(filter);
+            self.update_broad_phase(&mut filtering);
             self.narrow_phase.update(&self.objects, &mut self.events);
         }
         self.filters.note_update();
@@ -92,6 +93,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             look.trim(&mut self.interactions);
             look.trim(&mut self.algorithms);
         }
+        filtering.finish(self);
     }
 
     /// Starts the batch of events of an update with the queued events. If the events of the last
@@ -153,20 +155,22 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
 
     /// Updates the broad phase, collects the pairs that started and stopped in `interactions`, and
     /// passes them to the narrow phase.
-    fn update_broad_phase(&mut self, mut update_filter: Option<UpdateFilter<'_, N, D, T>>) {
-        let Self { objects, filters, broad_phase, interactions, .. } = self;
+    fn update_broad_phase(&mut self, filtering: &mut Filtering<'_, N, D, T>) {
+        let Self { objects, filters, broad_phase, narrow_phase, interactions, .. } = self;
         let mut filter = |handle1: &CollisionObjectHandle, handle2: &CollisionObjectHandle| {
             if !objects.can_interact(handle1.index(), handle2.index()) {
                 return false;
             }
-            if filters.is_empty() && update_filter.is_none() {
+            if filtering.allows_all(filters) {
                 return true;
             }
             let (first, second) = in_order(*handle1, *handle2);
             let both = objects.get(first).zip(objects.get(second));
             both.is_some_and(|(co1, co2)| {
-                filters.allow(co1, co2)
-                    && update_filter.as_mut().is_none_or(|update_filter| update_filter(co1, co2))
+                filtering.allow(filters, co1, co2).unwrap_or_else(|| {
+                    narrow_phase.contact_pair(objects, first, second).is_some()
+                        || narrow_phase.proximity_pair(objects, first, second).is_some()
+                })
             })
         };
         interactions.clear();
@@ -262,12 +266,12 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// started pairs are already there, and old pairs that the broad phase no longer reports are
     /// stopped. A new narrow phase starts without pairs; its events are the differences between the
     /// old and the new statuses.
-    fn update_with_other_phases(&mut self, filter: Option<UpdateFilter<'_, N, D, T>>) {
+    fn update_with_other_phases(&mut self, filtering: &mut Filtering<'_, N, D, T>) {
         self.end_marks();
         let Some(mut narrow_phase) = self.next_narrow_phase.take() else {
             let before = self.renew_proxies();
             self.write_changes();
-            let now = self.started_pairs(filter);
+            let now = self.started_pairs(filtering);
             self.stop_all_but(&now, before);
             return self.narrow_phase.update(&self.objects, &mut self.events);
         };
@@ -283,7 +287,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             // Has no effect for a pair with itself that began in this update.
             self.begin_or_end_pair((handle, handle), true);
         }
-        self.started_pairs(filter);
+        self.started_pairs(filtering);
         pairs.into_iter().for_each(|pair| self.release_rows(pair));
         self.narrow_phase.update(&self.objects, &mut Events::default());
         push_differences(&before, &self.statuses(), &mut self.events);
@@ -311,8 +315,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Updates the broad phase and returns the pairs that started, sorted.
-    fn started_pairs(&mut self, filter: Option<UpdateFilter<'_, N, D, T>>) -> Vec<HandlePair> {
-        self.update_broad_phase(filter);
+    fn started_pairs(&mut self, filtering: &mut Filtering<'_, N, D, T>) -> Vec<HandlePair> {
+        self.update_broad_phase(filtering);
         let started = self.interactions.iter().filter(|(_, has_started)| *has_started);
         let mut pairs: Vec<_> = started.map(|&(pair, _)| pair).collect();
         pairs.sort_unstable();

@@ -240,10 +240,57 @@ fn a_lent_filter_decides_with_what_it_borrows<N: Stage<D>, const D: usize>() {
 fn a_lent_filter_that_panics_is_asked_again() {
     let mut world = World::<f32, 2>::new(0.02);
     let [a, b] = [0.0, 0.5].map(|x| add(&mut world, x, &ball(1.0), contacts(0.0)));
+    update_that_panics(&mut world);
+    assert_eq!(step(&mut world), [Started(a, b)], "as if nothing had been asked");
+}
+
+/// Updates with a filter that panics at its first call.
+fn update_that_panics<N: Stage<D>, const D: usize>(world: &mut World<N, D>) {
     let update = || world.update_with(&mut |_, _| panic!("of the user's own"));
     let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(update));
     assert!(outcome.is_err(), "the panic goes through");
-    assert_eq!(step(&mut world), [Started(a, b)], "as if nothing had been asked");
+}
+
+fn a_panic_of_a_filter_loses_nothing<N: Stage<D>, const D: usize>() {
+    for (new_broad, new_narrow) in [(false, false), (true, false), (false, true), (true, true)] {
+        let mut world = World::<N, D>::new(N::lit(0.02));
+        let add = |world: &mut _, x| add(world, x, &ball(1.0), contacts(0.0));
+        let [a, b, c, d, e] = [0.0, 1.5, 10.0, 20.0, 20.5].map(|x| add(&mut world, x));
+        assert_eq!(step(&mut world), [Started(a, b), Started(d, e)], "two pairs of five objects");
+        let ids = |world: &World<N, D>| -> Vec<_> {
+            world.contact_manifolds().map(|(_, _, manifold)| manifold.contacts()[0].id).collect()
+        };
+        let before = ids(&world);
+        world.remove(&[e]);
+        world.set_position(c, N::on_x(-1.5));
+        if new_broad {
+            world.set_broad_phase(Box::new(DBVTBroadPhase::new(N::lit(0.02))));
+        }
+        if new_narrow {
+            world.set_narrow_phase(Box::new(DefaultNarrowPhase::new()));
+        }
+        update_that_panics(&mut world);
+        let stopped = world.contact_events().to_vec();
+        let started = step(&mut world);
+        if new_narrow {
+            assert_eq!(
+                stopped,
+                [Stopped(d, e), Stopped(a, b)],
+                "the new phase begins without pairs"
+            );
+            assert_eq!(started, [Started(a, b), Started(a, c)], "filtered again");
+        } else {
+            assert_eq!(stopped, [Stopped(d, e)], "the event of the removal");
+            assert_eq!(started, [Started(a, c)], "filtered again");
+            assert_eq!(ids(&world)[0], before[0], "the pair stayed, with its contact");
+        }
+        world.validate().expect("a world as any other");
+        // The end of a pair needs no filter; two that meet do.
+        world.set_position(b, N::on_x(20.5));
+        update_that_panics(&mut world);
+        assert_eq!(world.contact_events(), [Stopped(a, b)], "parted");
+        assert_eq!(step(&mut world), [Started(b, d)], "met");
+    }
 }
 
 fn events_of_two_updates_are_kept_in_their_order<N: Stage<D>, const D: usize>() {
@@ -339,6 +386,7 @@ in_tests! {
     a_prediction_pairs_what_may_meet_on_the_way,
     bad_predictions_are_refused,
     a_lent_filter_decides_with_what_it_borrows,
+    a_panic_of_a_filter_loses_nothing,
     events_of_two_updates_are_kept_in_their_order,
     removed_objects_stay_beside_their_events,
 }
