@@ -169,24 +169,27 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
             return is_apart;
         }
         let (features, point1) = (F::features(self.parts[lane]), vector(&self.points1[0], lane));
+        let normal = vector(&self.normal, lane);
+        let normals = [raw.normal, normal];
         // A single point on unchanged features keeps its id and is updated in place, unless it is a
-        // crossing of two edges that jumped.
+        // crossing of two edges that jumped or turned.
         let is_same = |old: &RawPoint<N, D>| {
+            let (moved, size) = (point1 - old.point1.coords, || self.size[lane]);
             [old.feature1, old.feature2] == features
-                && is_same_point(features, &(point1 - old.point1.coords), || self.size[lane])
+                && is_same_point(features, &moved, || normals, size)
         };
         match raw.points.as_mut_slice() {
             [old] if !is_two && is_same(old) => {
                 old.point1 = Point::from(point1);
                 old.distance = self.gap[lane];
-                raw.normal = vector(&self.normal, lane);
+                raw.normal = normal;
             }
             [] if !is_two => {
                 let id = raw.ids.next();
                 let ([feature1, feature2], distance) = (features, self.gap[lane]);
                 let point1 = Point::from(point1);
                 raw.points.push(RawPoint { point1, distance, feature1, feature2, id, code: 0 });
-                raw.normal = vector(&self.normal, lane);
+                raw.normal = normal;
             }
             _ => self.choose::<F>(lane, 1 + usize::from(is_two), raw),
         }

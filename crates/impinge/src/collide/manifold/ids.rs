@@ -35,6 +35,7 @@
 use smallvec::SmallVec;
 
 use super::super::{RawManifold, RawPoint};
+use super::PointChoice;
 use super::frame::Candidate;
 use super::matching::each_match;
 use crate::math::order::askew;
@@ -56,15 +57,17 @@ pub(super) fn are_edges(features: [FeatureId; 2]) -> bool {
 }
 
 /// Returns whether a point with these features that moved by `moved` on the first solid is still
-/// the same contact; always `true` unless both features are edges. `size` computes the size of the
-/// pair.
+/// the same contact; always `true` unless both features are edges. `normals` computes the old and
+/// the new normal, which must agree, and `size` the size of the pair.
 #[inline(always)]
 pub(in crate::collide) fn is_same_point<N: Real, const D: usize>(
     features: [FeatureId; 2],
     moved: &Vector<N, D>,
+    normals: impl FnOnce() -> [Vector<N, D>; 2],
     size: impl FnOnce() -> N,
 ) -> bool {
-    !are_edges(features) || max_component(moved) <= N::lit(REACH) * size()
+    let agree = |[old, new]: [Vector<N, D>; 2]| normals_agree(&old, &new);
+    !are_edges(features) || agree(normals()) && max_component(moved) <= N::lit(REACH) * size()
 }
 
 /// Returns the reciprocal of the near length, [`SHARE`] of the pair's `size`.
@@ -244,18 +247,19 @@ impl<N: Real, const D: usize> RawManifold<N, D> {
 
 /// Moves the points of a manifold to the candidates, if these have the same features in the same
 /// order, each pair of features occurs once, and no crossing of edges jumped ([`is_same_point`]).
-/// Returns `true` if it moved the points; else `false`, with nothing changed. The nearest point
-/// gets exactly `distance`, the distance of the separation. `size` computes the size of the pair.
-pub(in crate::collide) fn renew<N: Real, const D: usize>(
+/// Returns `true` if it moved the points; else `false`, with nothing changed. The normal stays. The
+/// nearest point gets exactly the distance of the pair.
+pub(super) fn renew<N: Real, const D: usize>(
     candidates: &[Candidate<N, D>],
-    distance: N,
-    size: impl Fn() -> N,
+    choice: &PointChoice<'_, N, D>,
     out: &mut RawManifold<N, D>,
 ) -> bool {
+    let normals = || [out.normal, *choice.pose.normal];
     let old = out.points.as_mut_slice();
     let is_same = |(point, new): (&RawPoint<N, D>, &Candidate<N, D>)| {
         let features = [point.feature1, point.feature2];
-        features == new.features && is_same_point(features, &(new.point1 - point.point1), &size)
+        let moved = new.point1 - point.point1;
+        features == new.features && is_same_point(features, &moved, normals, choice.size)
     };
     if old.len() != candidates.len() || !old.iter().zip(candidates).all(is_same) {
         return false;
@@ -275,7 +279,7 @@ pub(in crate::collide) fn renew<N: Real, const D: usize>(
         }
     }
     if let Some(point) = old.get_mut(deepest) {
-        point.distance = distance;
+        point.distance = choice.distance;
     }
     true
 }

@@ -272,7 +272,7 @@ pub(in crate::collide) fn choose<N: Real, const D: usize>(
 ) {
     let PointChoice { distance, tolerance, .. } = *choice;
     let limit = choice.limit.max(1);
-    if !(candidates.len() <= limit.min(ALL) && ids::renew(candidates, distance, choice.size, out)) {
+    if !(candidates.len() <= limit.min(ALL) && ids::renew(candidates, choice, out)) {
         let is_over = candidates.len() > limit.min(ALL) && !out.points.is_empty();
         if !out.points.is_empty() {
             ids::inherit_by_features(out, candidates);

@@ -123,7 +123,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
     ) {
         let mut kept = self.kept(&raw.points, slot_features);
         if !kept.is_still {
-            self.drop_jumped(&raw.points, &mut kept);
+            self.drop_jumped(raw, &mut kept);
         }
         let normal = self.normal();
         // Ids pass by position only if the normal turned by at most 45°.
@@ -181,20 +181,27 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
     /// Removes the ids of slots whose candidate is too far from the old point with the same
     /// features ([`is_same_point`]).
     #[inline(always)]
-    fn drop_jumped(&self, old: &[RawPoint<N, D>], kept: &mut KeptSlots<COUNT>) {
-        for (at, point) in old.iter().enumerate() {
+    fn drop_jumped(&self, raw: &RawManifold<N, D>, kept: &mut KeptSlots<COUNT>) {
+        for (at, point) in raw.points.iter().enumerate() {
             let (slot, is_left) = (usize::from(kept.heirs[at % COUNT]), kept.left >> (at & 31) & 1);
-            if is_left == 0 && !self.is_same(point, &self.point1(slot)) {
+            if is_left == 0 && !self.is_same(point, &raw.normal, &self.point1(slot)) {
                 kept.slots &= !(1 << slot);
                 kept.left |= 1 << (at & 31);
             }
         }
     }
 
-    /// Returns whether a candidate at `position`, with the features of `old`, continues `old`.
+    /// Returns whether a candidate at `position`, with the features of `old`, continues `old`, a
+    /// point of a contact with `old_normal`.
     #[inline(always)]
-    fn is_same(&self, old: &RawPoint<N, D>, position: &Point<N, D>) -> bool {
-        is_same_point([old.feature1, old.feature2], &(position - old.point1), || self.size)
+    fn is_same(
+        &self,
+        old: &RawPoint<N, D>,
+        old_normal: &Vector<N, D>,
+        position: &Point<N, D>,
+    ) -> bool {
+        let (features, moved) = ([old.feature1, old.feature2], position - old.point1);
+        is_same_point(features, &moved, || [*old_normal, self.normal()], || self.size)
     }
 
     /// Passes the ids of the old points in `kept.left` to slots in `some` that have no id: each to
@@ -236,8 +243,8 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         for point in &mut raw.points {
             let old = *point;
             self.write_position(slot_of(point.code), deepest, point);
-            // A crossing of two edges whose position jumped is a new contact and gets a new id.
-            if !self.is_same(&old, &point.point1) {
+            // A crossing of two edges that jumped or turned is a new contact and gets a new id.
+            if !self.is_same(&old, &raw.normal, &point.point1) {
                 (point.id, has_jumped) = (raw.ids.next(), true);
             }
         }
