@@ -311,7 +311,7 @@ fn chosen<N: Real, const D: usize>(
         return (0..candidates.len()).collect();
     }
     let flattened = candidates.iter().map(|c| (c.flat, c.distance, c.is_old()));
-    reduce::chosen(&mut reduce::projected(flattened, levels), limit, tolerance)
+    reduce::chosen(&mut reduce::projected(flattened, levels, limit), limit, tolerance)
 }
 
 /// Adds the nearest points, which lie on `features`, as a candidate. If exactly one candidate has

@@ -86,7 +86,7 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
             members.iter().map(|member| (member.flat, self.distance(member), self.is_old(member)));
         let tolerance = self.merging.tolerance;
         let slack = slack_level(level - tolerance, self.merging.size(), tolerance);
-        let mut points = projected(flattened, [level, slack]);
+        let mut points = projected(flattened, [level, slack], limit);
         let indices = if is_line {
             keep_ends(&mut points);
             reduce::chosen(&mut points, limit, tolerance)
@@ -223,10 +223,11 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
 /// Keeps the two ends of a line of sorted points, the points that continue old points and, if
 /// neither end is marked as deepest, one deepest point.
 fn keep_ends<N: Real>(points: &mut Projections<N>) {
-    let (last, deepest) = (points.len() - 1, a_deepest(points));
+    let (last, deepest) = (points.len() - 1, points[a_deepest(points)].index);
     let is_inner = !(points[0].is_deepest || points[last].is_deepest);
+    let ends = [points[0].index, points[last].index];
     points.retain(|point| {
-        let is_end = point.index == 0 || point.index == last;
+        let is_end = ends.contains(&point.index);
         is_end || point.is_kept || is_inner && point.index == deepest
     });
 }

@@ -159,3 +159,52 @@ fn a_rounded_box_lies_on_four_corners() {
         "{raw:?}"
     );
 }
+
+/// Returns the contacts of a plate that lies on a half-space with the side `down` along `axis`,
+/// tilted by `tilt`: their distances, and whether each is a corner of that side.
+fn contacts_of_plate<N: Scene<3> + Space<3>>(
+    (axis, down): (usize, f64),
+    tilt: f64,
+    depth: f64,
+    [prediction, sine]: [f64; 2],
+) -> Vec<(f64, bool)> {
+    let along = |index: usize| if index == axis { 0.05 } else { 1.0 };
+    let plate = Cuboid::new(Vector::<N, 3>::from_fn(|index, _| N::lit(along(index))));
+    let mut out = Vector::<N, 3>::zeros();
+    (out[axis], out[(axis + 1) % 3]) = (N::lit(-down), N::lit(tilt));
+    let plane = Plane::new(Unit::new_normalize(out));
+    let pose12 = Pose::from_translation(Vector::<N, 3>::zeros());
+    let mut pair = Pair { first: plate.geometry().0, second: Kind::Plane(&plane), pose12 };
+    pair.pose12.translation = plane.normal().into_inner() * (fact(&pair).distance + N::lit(depth));
+    let mut raw = RawManifold::default();
+    let mut found = Vec::new();
+    // The second manifold has old points among its candidates.
+    for _ in 0..2 {
+        build3(&pair, &fact(&pair), &request::<N>(prediction, sine), &mut raw);
+        let is_low = |p: &Point<N, 3>| p[axis] == N::lit(0.05 * down);
+        found = raw.points.iter().map(|p| (p.distance.as_f64(), is_low(&p.point1))).collect();
+    }
+    found
+}
+
+/// Asserts that a plate touches with the four corners of the side on which it lies, although the
+/// corners of its upper side are within the prediction, too.
+fn plates_lie_on_their_lower_side<N: Scene<3> + Space<3>>() {
+    for side in [0, 1, 2].into_iter().flat_map(|axis| [(axis, 1.0), (axis, -1.0)]) {
+        for tilt in [0.0, 1e-6, 1e-4, 1e-2] {
+            for (depth, request) in [(0.0, [0.2, 0.0]), (0.0, [0.02, 0.09]), (0.12, [0.0, 0.0])] {
+                let found = contacts_of_plate::<N>(side, tilt, depth, request);
+                let what = format!("{side:?} {tilt} {depth} {request:?}: {found:?}");
+                assert_eq!(found.len(), 4, "{what}");
+                assert!(found.iter().all(|&(_, is_low)| is_low), "{what}");
+                assert!(found.iter().all(|(at, _)| (at + depth).abs() < 0.03), "{what}");
+            }
+        }
+    }
+}
+
+#[test]
+fn plates_lie_on_the_corners_of_their_lower_side() {
+    plates_lie_on_their_lower_side::<f32>();
+    plates_lie_on_their_lower_side::<f64>();
+}
