@@ -374,9 +374,19 @@ fn of_parts<N: Space<D>, const D: usize>(
     request: &ManifoldRequest<N>,
 ) -> ManifoldRequest<N> {
     let ManifoldRequest { prediction, sine, .. } = *request;
-    let map = Geometry(between.pair.first).as_support_map().filter(|_| sine > N::ZERO);
-    let margin = map.map_or(N::ZERO, |map| sine * (N::TWO * size(map)));
+    let Pair { first, second, .. } = between.pair;
+    // Two half-spaces have no parts, so one of the diameters is finite if a margin is needed.
+    let margin = if sine > N::ZERO { sine * min(diameter(first), diameter(second)) } else { sine };
     ManifoldRequest { prediction: prediction + margin, sine: N::ZERO, max_points: PART_POINTS }
+}
+
+/// Returns a length that no distance between two points of a shape exceeds; infinite for a
+/// half-space.
+fn diameter<N: Space<D>, const D: usize>(kind: Kind<'_, N, D>) -> N {
+    match Geometry(kind).as_support_map() {
+        Some(map) => N::TWO * size(map),
+        None => N::TWO * aabb_of(kind, &Pose::identity()).half_extents().norm(),
+    }
 }
 
 /// Returns the bounding radius of a solid around its origin, including its rounding radius.

@@ -7,7 +7,7 @@ use impinge::math::{Isometry2, Isometry3, Point, Real, Space, Unit, Vector};
 use impinge::narrow_phase::GeometricQueryType;
 use impinge::query::contact;
 use impinge::shape::{Ball, Capsule, ConvexHull, Cuboid, Cylinder, Segment, Shape, Triangle};
-use impinge::shape::{Plane, Polyline, ShapeHandle, TriMesh};
+use impinge::shape::{Compound, Plane, Polyline, ShapeHandle, TriMesh};
 use impinge::world::{CollisionGroups, CollisionWorld};
 use impinge_reference::random::Random;
 
@@ -190,15 +190,18 @@ fn corners_that_turning_brings_near<N: Space<3, Isometry = Isometry3<N>>>() {
         Point::<N, 3>::new(place(0), place(1) - N::ONE, place(2))
     };
     let slab: Vec<_> = (0..8).map(lowered).collect();
-    let solids =
+    let alone = |shape: &ShapeHandle<N, 3>| {
+        ShapeHandle::new(Compound::new(vec![(Isometry3::identity(), shape.clone())]))
+    };
+    let [cube, hull] =
         [ShapeHandle::new(Cuboid::new(one)), ShapeHandle::new(ConvexHull::from_points(&corners))];
-    let floors = [
-        ShapeHandle::new(ConvexHull::from_points(&slab)),
-        ShapeHandle::new(Plane::new(Unit::new_unchecked(Vector::<N, 3>::y()))),
-    ];
+    let solids = [alone(&cube), cube, hull];
+    let slab = ShapeHandle::new(ConvexHull::from_points(&slab));
+    let plane = ShapeHandle::new(Plane::new(Unit::new_unchecked(Vector::<N, 3>::y())));
+    let floors = [alone(&slab), slab, plane];
     for (solid, floor) in solids.iter().flat_map(|solid| floors.iter().map(move |f| (solid, f))) {
         for tilt in [0.01, 0.1, 0.25] {
-            let counts = [0.0, tilt / 8.0, tilt * 2.0]
+            let counts = [0.0, tilt / 8.0, tilt]
                 .map(|angle| corners_of_tilted_box(solid, floor, tilt, angle));
             assert_eq!(counts, [2, 2, 4], "{solid:?} on {floor:?}, tilted by {tilt}");
         }
@@ -237,4 +240,53 @@ fn corners_of_boxes_in_batches() {
         let found = world.contact_pair(upon, below).map_or(0, |pair| pair.num_contacts());
         assert_eq!(found, count, "{upon:?}");
     }
+}
+
+/// Asserts that all legs of a table have a contact at distance 0, although the corners of its top
+/// span more and are within the angular prediction, too.
+fn tables_stand_on_their_legs<N: Space<3, Isometry = Isometry3<N>>>() {
+    let at = |x: f64, y: f64, z: f64| {
+        Isometry3::new(Vector::from([x, y, z].map(N::lit)), Vector::zeros())
+    };
+    let block = |half: [f64; 3]| ShapeHandle::new(Cuboid::new(Vector::from(half.map(N::lit))));
+    let feet = [(-0.8, -0.8), (-0.8, 0.8), (0.8, -0.8), (0.8, 0.8)];
+    let mut parts = vec![(at(0.0, 0.15, 0.0), block([1.0, 0.05, 1.0]))];
+    parts.extend(feet.map(|(x, z)| (at(x, 0.05, z), block([0.05; 3]))));
+    let table = ShapeHandle::new(Compound::new(parts));
+    let corners = [[-8.0, -8.0], [-8.0, 8.0], [8.0, -8.0], [8.0, 8.0]];
+    let corners = corners.map(|[x, z]| Point::<N, 3>::new(N::lit(x), N::ZERO, N::lit(z)));
+    let floors = [
+        (0.0, ShapeHandle::new(Plane::new(Unit::new_unchecked(Vector::<N, 3>::y())))),
+        (0.0, ShapeHandle::new(TriMesh::new(corners.to_vec(), vec![[0, 1, 2], [1, 3, 2]]))),
+        (-1.0, block([8.0, 1.0, 8.0])),
+    ];
+    for (height, floor) in floors {
+        let mut world = CollisionWorld::<N, 3, ()>::new(N::lit(0.02));
+        let query = GeometricQueryType::Contacts(N::lit(0.01), N::lit(0.09));
+        let groups = CollisionGroups::new();
+        world.add(at(0.0, height, 0.0), floor.clone(), groups, query, ());
+        world.add(at(0.0, 0.0, 0.0), table.clone(), groups, query, ());
+        world.update();
+        let mut touched = [false; 4];
+        for (_, _, view) in world.contact_views() {
+            for contact in view.contacts().map(|point| point.contact) {
+                let own = feet.map(|(x, z)| {
+                    let near = |at: N, foot: f64| (at - N::lit(foot)).abs() <= N::lit(0.06);
+                    near(contact.world1.x, x) && near(contact.world1.z, z)
+                });
+                let is_touching = contact.depth.abs() < N::lit(1e-4);
+                touched
+                    .iter_mut()
+                    .zip(own)
+                    .for_each(|(foot, is_own)| *foot |= is_own && is_touching);
+            }
+        }
+        assert_eq!(touched, [true; 4], "on {floor:?}");
+    }
+}
+
+#[test]
+fn tables_on_floors_stand_on_their_legs() {
+    tables_stand_on_their_legs::<f32>();
+    tables_stand_on_their_legs::<f64>();
 }
