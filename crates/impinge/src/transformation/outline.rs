@@ -3,34 +3,79 @@
 use super::hull2::convex_hull2;
 use super::lattice::area;
 use super::span::{Scaled, distance_from_segment, first_three};
-use crate::math::{Point, Real};
+use crate::math::{Point, Real, Vector, cross2};
 use crate::shape::{ConvexPolygon, ShapeError};
 
 type P2 = Point<f64, 2>;
 
-/// Removes points of a ring that lie, within `tolerance`, on the segment between their neighbours.
+/// The directions from a point that lead past other points within a tolerance (K. Reumann and
+/// A. P. M. Witkam's strip, narrowed by each point as by H. Imai and M. Iri, 1986).
+///
+/// ```text
+///          · · high          each point narrows the wedge to the
+///   from ·──────(p)──── ·    tangents of the circle around it
+///          · · low
+/// ```
+#[derive(Default)]
+struct Wedge {
+    /// Unit vectors along the right and the left side; `None` if every direction is allowed.
+    sides: Option<[Vector<f64, 2>; 2]>,
+    /// Distance of the farthest point.
+    reach: f64,
+}
+
+impl Wedge {
+    /// Returns whether all points added lie, within `tolerance`, on the segment from the tip to
+    /// `end`, which is relative to the tip.
+    fn leads_to(&self, end: &Vector<f64, 2>, tolerance: f64) -> bool {
+        let is_between = |[right, left]: [Vector<f64, 2>; 2]| {
+            cross2(&right, end) >= 0.0 && cross2(end, &left) >= 0.0
+        };
+        self.sides.is_none_or(is_between) && end.norm() + tolerance >= self.reach
+    }
+
+    /// Narrows the wedge to the directions that lead past `point`, which is relative to the tip.
+    fn add(&mut self, point: &Vector<f64, 2>, tolerance: f64) {
+        let length = point.norm();
+        self.reach = self.reach.max(length);
+        if length <= tolerance {
+            return;
+        }
+        let sine = tolerance / length;
+        let (along, aside) = ((1.0 - sine * sine).sqrt() / length, sine / length);
+        let across = Vector::<f64, 2>::new(-point.y, point.x) * aside;
+        let [right, left] = [point * along - across, point * along + across];
+        let [old_right, old_left] = self.sides.unwrap_or([right, left]);
+        let is_inside = [cross2(&old_right, &right) > 0.0, cross2(&left, &old_left) > 0.0];
+        self.sides = Some([
+            if is_inside[0] { right } else { old_right },
+            if is_inside[1] { left } else { old_left },
+        ]);
+    }
+}
+
+/// Removes points of a ring that lie, within `tolerance`, on a side of what is left. A point near
+/// the first one may be twice that far from the side.
 pub(super) fn thinned(points: &[P2], ring: Vec<usize>, tolerance: f64) -> Vec<usize> {
+    let mut kept = vec![ring[0]];
+    let (mut from, mut last, mut wedge) = (ring[0], None, Wedge::default());
+    for index in ring[1..].iter().copied().chain([ring[0]]) {
+        if let Some(corner) = last
+            && !wedge.leads_to(&(points[index] - points[from]), tolerance)
+        {
+            kept.push(corner);
+            (from, wedge) = (corner, Wedge::default());
+        }
+        wedge.add(&(points[index] - points[from]), tolerance);
+        last = Some(index);
+    }
     let adds_nothing = |before: usize, at: usize, after: usize| {
         distance_from_segment(&points[at], &points[before], &points[after]) <= tolerance
     };
-    let mut kept: Vec<usize> = Vec::with_capacity(ring.len());
-    for index in ring {
-        while let [.., before, last] = kept[..]
-            && adds_nothing(before, last, index)
-        {
-            kept.pop();
-        }
-        kept.push(index);
-    }
-    // At the ends of the list, each iteration removes a point or ends the loop.
-    while let [first, second, .., before, last] = kept[..] {
-        if adds_nothing(before, last, first) {
-            kept.pop();
-        } else if adds_nothing(last, first, second) {
-            kept.remove(0);
-        } else {
-            break;
-        }
+    if let [first, second, _, .., last] = kept[..]
+        && adds_nothing(last, first, second)
+    {
+        kept.remove(0);
     }
     kept
 }

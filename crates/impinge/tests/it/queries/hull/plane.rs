@@ -121,3 +121,35 @@ fn bad_outlines_are_named() {
         "none"
     );
 }
+
+/// Asserts that points on a circle, so dense that each lies on the segment between its neighbours
+/// up to rounding, stay within twice the tolerance of the hull, and of the polygon of the outline.
+fn dense_circles<N: Real>() {
+    for count in [1_000, 100_000] {
+        let at = |index: u32| {
+            let (sine, cosine) =
+                (f64::from(index) * core::f64::consts::TAU / f64::from(count)).sin_cos();
+            [cosine, sine]
+        };
+        let circle = points::<N>(&(0..count).map(at).collect::<Vec<_>>());
+        let ring = convex_hull2(&circle).expect("an area");
+        let tolerance = 8.0 * N::EPSILON.as_f64();
+        let strided: Vec<_> = circle.iter().copied().step_by(97).collect();
+        let corners: Vec<_> = ring.iter().map(|&index| circle[index]).collect();
+        let all = [corners.clone(), strided].concat();
+        let hull: Vec<usize> = (0..corners.len()).collect();
+        assert!(outside(&all, &hull) <= tolerance, "{count}: {}", outside(&all, &hull));
+        let polygon = ConvexPolygon::new(&circle);
+        assert_eq!(ConvexPolygon::new(polygon.vertices()), polygon, "an outline is its own hull");
+        let all =
+            [polygon.vertices().to_vec(), circle.iter().copied().step_by(97).collect()].concat();
+        let hull: Vec<usize> = (0..polygon.vertices().len()).collect();
+        assert!(outside(&all, &hull) <= tolerance, "{count}: {}", outside(&all, &hull));
+    }
+}
+
+#[test]
+fn dense_circles_keep_their_size() {
+    dense_circles::<f32>();
+    dense_circles::<f64>();
+}
