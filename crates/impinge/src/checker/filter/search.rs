@@ -253,9 +253,12 @@ impl CollisionSearch {
         let exact = (0..LANES).filter(|ball| (mask & distances.exact) >> ball & 1 == 1);
         let upper = exact.fold(f32::INFINITY, |upper, ball| min(bounds[ball], upper));
         // The upper bound is the lower bound plus twice the error margin, or zero if that is
-        // negative. The last term is the margin for slides, which `outer` includes.
-        let upper = max(upper + 2.0 * (distances.margin + slack), 0.0) + slack;
-        self.outer[lane] = min(upper, self.outer[lane]);
+        // negative. The last term is the margin for slides, which `outer` includes. Beside an
+        // unbounded ball the margin is infinite, and the distances of the group give no bound.
+        if distances.margin.is_finite() {
+            let upper = max(upper + 2.0 * (distances.margin + slack), 0.0) + slack;
+            self.outer[lane] = min(upper, self.outer[lane]);
+        }
         self.farthest = self.outer.iter().fold(0.0, |most, &outer| max(outer, most));
         bounds
     }

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use impinge::batch::{BatchError, Control};
 use impinge::checker::{Body, Checker, Frame, FrameTree, Joint, NO_PAIR, NearestColumns, Obstacle};
 use impinge::math::{Pose, Real, Space, Unit, Vector};
-use impinge::shape::{Ball, Cuboid, ShapeHandle};
+use impinge::shape::{Ball, Cuboid, Plane, ShapeHandle};
 
 fn along<N: Real, const D: usize>(axis: usize, by: f64) -> Pose<N, D> {
     let mut by_axis = Vector::<N, D>::zeros();
@@ -116,4 +116,38 @@ fn a_callback_cancels() {
         |done: usize| if done < 128 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
     let found = checker.are_free(&rows, 0.0, &Control::with_progress(&stop), &mut [true; 1000]);
     assert!(matches!(found, Err(BatchError::Cancelled { .. })), "{found:?}");
+}
+
+/// A half-space and a ball on one frame, beside a ball that an obstacle is nearest to: the half-space
+/// has no bounding ball, and must not hide the nearest pair.
+fn half_spaces_hide_no_nearest_pair<N: Space<3>>() {
+    let at = |x: f64, y: f64| -> Pose<N, 3> {
+        Pose::from_translation(Vector::<N, 3>::new(N::lit(x), N::lit(y), N::ZERO))
+    };
+    let ball = || ShapeHandle::new(Ball::<N>::new(N::HALF));
+    let floor = ShapeHandle::new(Plane::new(Unit::new_unchecked(Vector::<N, 3>::y())));
+    let slide = Joint::prismatic(Unit::new_unchecked(Vector::<N, 3>::y()), 0);
+    let frames = [
+        Frame { parent: None, origin: at(0.0, 0.0), joint: Joint::fixed() },
+        Frame { parent: Some(0), origin: at(0.0, 3.0), joint: slide },
+    ];
+    let bodies = vec![
+        Body { frame: 0, shape: floor, pose: at(0.0, 0.0) },
+        Body { frame: 0, shape: ball(), pose: at(0.0, 1.0) },
+        Body { frame: 1, shape: ball(), pose: at(0.0, 0.0) },
+    ];
+    let tree = FrameTree::try_new(&frames, 1).expect("a tree");
+    let mut checker = Checker::try_new(tree, bodies, &[[1, 2]]).expect("three bodies");
+    let obstacle = Obstacle { shape: ball(), pose: at(1.25, 3.0) };
+    checker.try_set_obstacles(vec![obstacle], &[]).expect("one obstacle");
+    let (mut distance, mut pair) = ([N::ZERO], [NO_PAIR]);
+    let out = NearestColumns { distance: &mut distance, pair: &mut pair };
+    checker.nearest(&[N::ZERO], N::INFINITY, &Control::new(), out).expect("one row");
+    assert_eq!((distance, pair), ([N::lit(0.25)], [[2, 3]]), "the obstacle");
+}
+
+#[test]
+fn unbounded_bodies_hide_no_nearest_pair() {
+    half_spaces_hide_no_nearest_pair::<f32>();
+    half_spaces_hide_no_nearest_pair::<f64>();
 }
