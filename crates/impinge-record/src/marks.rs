@@ -64,11 +64,11 @@ pub struct Mark {
     /// The number of removed objects.
     pub removed: u32,
     /// The number of calls that set a position, counted per object: an object that is moved twice
-    /// counts twice. A key frame repeats predicted positions, which count again.
+    /// counts twice. Predicted positions that a key frame repeats do not count again.
     pub moved: u32,
     /// The number of other changes: of shapes, groups, query types, data, filters, skins, fixed
-    /// flags, and requests to filter again. A key frame repeats fixed flags and skins, which count
-    /// again.
+    /// flags, and requests to filter again. Fixed flags and skins that a key frame repeats do not
+    /// count again.
     pub changed: u32,
     /// The number of queries.
     pub queries: u32,
@@ -105,6 +105,11 @@ impl Mark {
     }
 }
 
+/// Returns `true` for the calls that a recorder writes again after a key frame.
+const fn is_repeated<N: Recordable<D>, const D: usize>(call: &Call<N, D>) -> bool {
+    matches!(call, Call::SetFixed { .. } | Call::SetSkin { .. } | Call::Predict { .. })
+}
+
 /// Converts a count to 32 bits. All counts fit: counted items take bytes of the recording, or are
 /// pairs of a world.
 fn small(count: usize) -> u32 {
@@ -135,6 +140,9 @@ pub(crate) struct Timeline {
     frames: Vec<FrameMark>,
     /// Whether `keep_events` was called since the last update.
     keeps_events: bool,
+    /// Whether a key frame came since the last update. The records between a key frame and its
+    /// update repeat properties of objects.
+    is_repeating: bool,
     /// The counts of the calls since the last update.
     next: Mark,
 }
@@ -146,9 +154,12 @@ impl Timeline {
         call: &Call<N, D>,
         offset: usize,
     ) {
-        self.next.count(call);
+        if !(self.is_repeating && is_repeated(call)) {
+            self.next.count(call);
+        }
         match call {
             Call::KeyFrame(_) => {
+                self.is_repeating = true;
                 let step = self.marks.len();
                 self.frames.push(FrameMark { step, offset, whole_from: step + 2 });
             }
@@ -160,6 +171,7 @@ impl Timeline {
 
     fn note_update(&mut self) {
         self.marks.push(std::mem::take(&mut self.next));
+        self.is_repeating = false;
         let step = self.marks.len();
         if std::mem::take(&mut self.keeps_events) {
             let begun = self.frames.iter_mut().rev().take_while(|frame| frame.whole_from >= step);

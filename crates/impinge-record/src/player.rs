@@ -53,6 +53,11 @@ pub(crate) struct Player<N: Recordable<D>, const D: usize, T> {
     keeps_events: bool,
 }
 
+/// The bound of the new indices that a replay passes over. A recorded world may have retired indices
+/// above all its objects before the recording began, and no key frame lists those. The bound limits
+/// the memory that an invalid recording can request.
+const MAX_UNKNOWN: usize = 1 << 10;
+
 /// Replaces the phases of a world (the broad phase and the narrow phase) by new ones, whose pairs
 /// start at the next update. The later results then depend only on the objects, not on the history
 /// of the world.
@@ -151,16 +156,46 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         handle.ok_or(Problem::NoSuchObject(index))
     }
 
-    /// Adds an object. The world assigns its index, which must be the recorded one.
+    /// Adds an object, which must get the recorded index.
     fn add(
         &mut self,
         object: ObjectData<N, D>,
         resources: &Resources<N, D, T>,
     ) -> Result<(), Problem> {
         let ObjectData { index, position, shape, groups, query_type, data } = object;
-        let shape = resources.shapes.get(shape)?.clone();
-        let handle = self.world.try_add(position, shape, groups, query_type, data_of(&data)?)?;
-        self.enter(handle, index)
+        let (shape, data) = (resources.shapes.get(shape)?.clone(), data_of(&data)?);
+        let passed = self.pass_retired(index)?;
+        let added = self.world.try_add(position, shape, groups, query_type, data);
+        // In this order the free indices are those of before, without `index`.
+        passed.iter().rev().try_for_each(|index| self.remove(&[*index]))?;
+        self.enter(added?, index)
+    }
+
+    /// Holds the places of the indices that the world would assign before `index`, and returns
+    /// these indices in order.
+    ///
+    /// The recorded world has retired them: it does not reuse an index whose generations are
+    /// exhausted. A world that is rebuilt at a key frame counts generations from 0, so it would
+    /// still assign them. The temporary objects do not change results, which are in the order of
+    /// handles.
+    fn pass_retired(&mut self, index: u32) -> Result<Vec<u32>, Problem> {
+        let mut passed = Vec::new();
+        while let Some(next) = self.next_before(index) {
+            self.hold_place(next)?;
+            passed.push(next);
+        }
+        Ok(passed)
+    }
+
+    /// Returns the index that the world assigns next, if it differs from `index` and the world may
+    /// assign `index` afterwards; otherwise `None`.
+    fn next_before(&self, index: u32) -> Option<u32> {
+        let (free, new) = (self.world.vacant_indices().next_back(), self.handles.len());
+        let is_before = match free {
+            Some(free) => free != index as usize,
+            None => new < MAX_UNKNOWN.min(index as usize),
+        };
+        u32::try_from(free.unwrap_or(new)).ok().filter(|_| is_before)
     }
 
     /// Stores the handle of a new object, which must have the recorded index.
@@ -275,8 +310,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         Ok(())
     }
 
-    /// Adds a temporary object that only occupies an index. The temporary object is removed before
-    /// the next update.
+    /// Adds a temporary object that only occupies an index. The caller removes the temporary object
+    /// before the next update.
     fn hold_place(&mut self, index: u32) -> Result<(), Problem> {
         let (position, ball) = (N::isometry(&Pose::identity()), Ball::try_new(N::ONE)?);
         let (shape, groups) = (ShapeHandle::new(ball), CollisionGroups::empty());

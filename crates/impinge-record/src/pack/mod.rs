@@ -39,11 +39,12 @@ pub fn is_packed(bytes: &[u8]) -> bool {
 /// detected at its step, by the hash of the state, but the object is unknown. Updates of version 1
 /// of the format keep the hashes.
 ///
-/// Costs time in proportion to the number of bytes, and about three times their memory.
+/// Costs time in proportion to the number of bytes, and about three times their memory, beside at
+/// most 700 bytes for each object.
 ///
 /// # Errors
-/// If the bytes are no recording, a checksum is wrong, a record is incomplete, or the recording has
-/// more than [`MAX_UNPACKED`] bytes.
+/// If the bytes are no recording, a checksum is wrong, a record is incomplete, a record moves an
+/// object that was never added, or the recording has more than [`MAX_UNPACKED`] bytes.
 ///
 /// ```
 /// use impinge_record::{Recorder, Registry, is_packed, pack, unpack, validate};
@@ -78,7 +79,8 @@ pub fn pack(bytes: &[u8]) -> Result<Vec<u8>, ReadError> {
 /// Unpacks a recording.
 ///
 /// Costs time in proportion to the number of bytes of the recording, and about three times their
-/// memory. Errors in compressed data have the offset at which this data begins.
+/// memory, beside at most 700 bytes for each object. Errors in compressed data have the offset at
+/// which this data begins.
 ///
 /// # Errors
 /// If the bytes are no packed recording of a supported version, if they were changed, or if the

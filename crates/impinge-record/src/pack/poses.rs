@@ -8,7 +8,7 @@
 
 use std::collections::BTreeMap;
 
-use super::streams::{Inflated, Streams};
+use super::streams::{INDICES, Inflated, Streams};
 use super::tracks::{Bits, MAX_NUMBERS, Track};
 use crate::bytes::{from_zigzag, zigzag};
 use crate::error::{Problem, ReadError};
@@ -113,16 +113,33 @@ impl Poses {
         Self { layout, tracks: BTreeMap::new() }
     }
 
-    /// Writes the residuals of a pose.
-    pub(super) fn write(&mut self, index: u32, pose: &Bits, kind: PoseKind, streams: &mut Streams) {
-        let track = self.tracks.entry(index).or_default();
-        let predictions = track.predictions(&self.layout, kind);
-        for (number, bits) in pose.iter().enumerate().take(self.layout.numbers) {
-            let predicted = track.best(number, &predictions);
-            let actual = self.layout.ordered(*bits);
-            streams.residual(number, self.layout.residual(actual, predicted));
+    /// Returns the track of an object; an error if the object is moved but was never placed. So the
+    /// bytes of a recording pay for its tracks: a move takes few packed bytes, a placed object many.
+    fn track(&mut self, index: u32, kind: PoseKind) -> Result<&mut Track, Problem> {
+        match kind {
+            PoseKind::Placed => Ok(self.tracks.entry(index).or_default()),
+            PoseKind::Moved => self.tracks.get_mut(&index).ok_or(Problem::NoSuchObject(index)),
         }
-        track.learn(&self.layout, pose, kind, &predictions);
+    }
+
+    /// Writes the residuals of a pose.
+    pub(super) fn write(
+        &mut self,
+        index: u32,
+        pose: &Bits,
+        kind: PoseKind,
+        streams: &mut Streams,
+    ) -> Result<(), Problem> {
+        let layout = self.layout;
+        let track = self.track(index, kind)?;
+        let predictions = track.predictions(&layout, kind);
+        for (number, bits) in pose.iter().enumerate().take(layout.numbers) {
+            let predicted = track.best(number, &predictions);
+            let actual = layout.ordered(*bits);
+            streams.residual(number, layout.residual(actual, predicted));
+        }
+        track.learn(&layout, pose, kind, &predictions);
+        Ok(())
     }
 
     /// Reads the residuals of a pose.
@@ -132,15 +149,51 @@ impl Poses {
         kind: PoseKind,
         streams: &mut Inflated,
     ) -> Result<Bits, ReadError> {
-        let track = self.tracks.entry(index).or_default();
-        let predictions = track.predictions(&self.layout, kind);
+        let layout = self.layout;
+        let track = self.track(index, kind).map_err(|problem| streams.error(INDICES, problem))?;
+        let predictions = track.predictions(&layout, kind);
         let mut pose = [0; MAX_NUMBERS];
-        for (number, bits) in pose.iter_mut().enumerate().take(self.layout.numbers) {
+        for (number, bits) in pose.iter_mut().enumerate().take(layout.numbers) {
             let predicted = track.best(number, &predictions);
-            let actual = self.layout.with_residual(predicted, streams.residual(number)?);
-            *bits = self.layout.unordered(actual);
+            let actual = layout.with_residual(predicted, streams.residual(number)?);
+            *bits = layout.unordered(actual);
         }
-        track.learn(&self.layout, &pose, kind, &predictions);
+        track.learn(&layout, &pose, kind, &predictions);
         Ok(pose)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bytes::{Sink, Source};
+
+    /// Returns the streams of a list of poses, which are all zero.
+    fn streams(poses: usize, layout: &Layout) -> Inflated {
+        let mut streams = Streams::new(layout.numbers);
+        for number in (0..poses).flat_map(|_| 0..layout.numbers) {
+            streams.residual(number, 0);
+        }
+        let mut sink = Sink::default();
+        streams.write(&mut sink);
+        let mut source = Source::new(&sink.bytes, 0..sink.bytes.len());
+        Inflated::read(&mut source, 1000).expect("they were just written")
+    }
+
+    #[test]
+    fn a_packed_move_of_no_object_is_an_error() {
+        let layout = Layout::new(4, 3).expect("a layout");
+        let (mut poses, mut streams) = (Poses::new(layout), streams(3, &layout));
+        let mut read = |index, kind| poses.read(index, kind, &mut streams);
+        assert!(read(5, PoseKind::Placed).is_ok() && read(5, PoseKind::Moved).is_ok());
+        let error = read(6, PoseKind::Moved).expect_err("there is no object 6");
+        assert_eq!(error.problem, Problem::NoSuchObject(6));
+        assert_eq!(poses.tracks.len(), 1, "it takes no memory");
+    }
+
+    /// Asserts that an object that is only placed takes about as much memory as its bytes.
+    #[test]
+    fn placed_objects_have_no_history() {
+        assert_eq!(size_of::<Track>(), 8 * MAX_NUMBERS + size_of::<usize>());
     }
 }

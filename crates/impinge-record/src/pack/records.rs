@@ -158,12 +158,14 @@ impl Packer {
 
     /// Packs the index and the pose of an object; returns the index.
     fn pose(&mut self, source: &mut Source<'_>, kind: PoseKind) -> Result<u32, ReadError> {
+        let place = source.offset();
         let index = source.word()?;
         let difference = i64::from(index) - i64::from(self.index);
         self.streams.sink(INDICES).varint(zigzag(difference));
         self.index = index;
         let pose = self.layout.bits(source.take(self.layout.pose_bytes())?);
-        self.poses.write(index, &pose, kind, &mut self.streams);
+        let written = self.poses.write(index, &pose, kind, &mut self.streams);
+        written.map_err(|problem| ReadError { offset: place, problem })?;
         Ok(index)
     }
 }

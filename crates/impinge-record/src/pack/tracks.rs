@@ -21,10 +21,17 @@ pub(super) type Predictions = [Bits; CANDIDATES];
 /// The number of poses that are stored for predictions.
 const HISTORY: usize = 5;
 
-/// The last poses of an object, and the costs of the candidates.
+/// The last pose of an object, and what its moves have taught.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Track {
     last: Bits,
+    /// `None` until the object is moved. Most objects of many recordings are never moved.
+    moves: Option<Box<Moves>>,
+}
+
+/// The last poses of an object that was moved, and the costs of the candidates.
+#[derive(Clone, Debug)]
+struct Moves {
     /// The last poses, the latest first. NaN and infinities in them give predictions that are not
     /// used.
     history: [Numbers; HISTORY],
@@ -36,13 +43,14 @@ pub(super) struct Track {
 impl Track {
     /// Returns the predictions of all candidates. If the object is placed, each candidate predicts
     /// the last pose.
-    pub(super) fn predictions(&self, layout: &Layout, kind: PoseKind) -> Predictions {
+    pub(super) fn predictions(&mut self, layout: &Layout, kind: PoseKind) -> Predictions {
         let last = self.last.map(|bits| layout.ordered(bits));
         if kind == PoseKind::Placed {
             return [last; CANDIDATES];
         }
         let [same, others @ ..] = &mut [last; CANDIDATES];
-        for (prediction, numbers) in others.iter_mut().zip(self.extrapolated(layout)) {
+        let extrapolated = self.moves(layout).extrapolated(layout);
+        for (prediction, numbers) in others.iter_mut().zip(extrapolated) {
             for (own, number) in prediction.iter_mut().zip(numbers).take(layout.numbers) {
                 // Predictions that are not finite are not used, since the bits of a computed NaN
                 // differ between machines.
@@ -55,6 +63,44 @@ impl Track {
         [*same, first, second, third]
     }
 
+    /// Returns the last poses; before the first move all of them are the last pose.
+    fn moves(&mut self, layout: &Layout) -> &mut Moves {
+        let last = self.last;
+        self.moves.get_or_insert_with(|| {
+            let numbers = last.map(|bits| number_of(bits, layout));
+            Box::new(Moves { history: [numbers; HISTORY], costs: Default::default() })
+        })
+    }
+
+    /// Returns the prediction of the candidate with the lowest cost. Among equal costs it is the
+    /// first candidate.
+    pub(super) fn best(&self, number: usize, predictions: &Predictions) -> u64 {
+        let costs = self.moves.as_ref().map_or([0; CANDIDATES], |moves| moves.costs[number]);
+        let costs = costs.iter().zip(predictions);
+        costs.min_by_key(|(cost, _)| **cost).map_or(0, |(_, prediction)| prediction[number])
+    }
+
+    /// Stores a pose and updates the costs of the candidates. A placed object that has another pose
+    /// than the last one starts a new history; with the same pose nothing changes.
+    pub(super) fn learn(
+        &mut self,
+        layout: &Layout,
+        pose: &Bits,
+        kind: PoseKind,
+        predictions: &Predictions,
+    ) {
+        match kind {
+            PoseKind::Placed if *pose != self.last => *self = Self { last: *pose, moves: None },
+            PoseKind::Placed => {}
+            PoseKind::Moved => {
+                self.moves(layout).learn(layout, pose, predictions);
+                self.last = *pose;
+            }
+        }
+    }
+}
+
+impl Moves {
     /// Returns three extrapolations of the last pose: by the last step, by the last step plus its
     /// change since the step before, and by the mean of the last four steps.
     fn extrapolated(&self, layout: &Layout) -> [Numbers; CANDIDATES - 1] {
@@ -78,30 +124,8 @@ impl Track {
         [again, bent, mean]
     }
 
-    /// Returns the prediction of the candidate with the lowest cost. Among equal costs it is the
-    /// first candidate.
-    pub(super) fn best(&self, number: usize, predictions: &Predictions) -> u64 {
-        let costs = self.costs[number].iter().zip(predictions);
-        costs.min_by_key(|(cost, _)| **cost).map_or(0, |(_, prediction)| prediction[number])
-    }
-
-    /// Stores a pose and updates the costs of the candidates. A placed object that has another pose
-    /// than the last one starts a new history; with the same pose nothing changes.
-    pub(super) fn learn(
-        &mut self,
-        layout: &Layout,
-        pose: &Bits,
-        kind: PoseKind,
-        predictions: &Predictions,
-    ) {
-        let numbers = pose.map(|bits| number_of(bits, layout));
-        if kind == PoseKind::Placed {
-            if *pose != self.last {
-                *self =
-                    Self { last: *pose, history: [numbers; HISTORY], costs: Default::default() };
-            }
-            return;
-        }
+    /// Stores a pose and updates the costs of the candidates.
+    fn learn(&mut self, layout: &Layout, pose: &Bits, predictions: &Predictions) {
         for (number, costs) in self.costs.iter_mut().enumerate().take(layout.numbers) {
             let actual = layout.ordered(pose[number]);
             for (cost, prediction) in costs.iter_mut().zip(predictions) {
@@ -110,9 +134,8 @@ impl Track {
                 *cost = (3 * *cost + 16 * length) / 4;
             }
         }
-        self.last = *pose;
         self.history.rotate_right(1);
-        self.history[0] = numbers;
+        self.history[0] = pose.map(|bits| number_of(bits, layout));
     }
 }
 

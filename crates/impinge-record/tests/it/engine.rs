@@ -103,6 +103,24 @@ fn calls_of_engines_in_3d() {
     check::<f64, 3>();
 }
 
+/// Asserts that the time line counts calls, not the properties that a key frame repeats.
+fn time_line<N: Stage<D>, const D: usize>() {
+    let counts = |key_frames| -> Vec<_> {
+        let bytes = written::<N, D>(key_frames);
+        let replay = Replay::<N, D, u32>::open(bytes, &N::registry()).expect("a recording");
+        replay.marks().iter().map(|mark| (mark.moved, mark.changed)).collect()
+    };
+    let plain = counts(None);
+    assert_eq!(plain[..4], [(2, 4), (2, 0), (2, 0), (2, 1)], "two moves in each step");
+    assert_eq!((counts(Some(1)), counts(Some(4))), (plain.clone(), plain));
+}
+
+#[test]
+fn the_time_line_does_not_depend_on_key_frames() {
+    time_line::<f32, 2>();
+    time_line::<f64, 3>();
+}
+
 /// Asserts that a record with the index of an unknown object is an error.
 #[test]
 fn calls_about_nobody_are_errors() {

@@ -8,6 +8,7 @@ mod golden;
 mod growing;
 mod packing;
 mod refusals;
+mod retired;
 mod roundtrip;
 mod scene;
 mod solids;

@@ -137,6 +137,24 @@ fn declared_lengths_are_bounded() {
     assert_eq!(unpack(&other).expect_err("no scalar").problem, Problem::Scalar { found: 5 });
 }
 
+/// Asserts that a move of an object that was never added is an error. Otherwise each index that is
+/// moved would take twenty times the memory of its bytes.
+#[test]
+fn moves_of_no_object_are_errors() {
+    let mut recorder = Recorder::<f32, 3, u32>::new(0.02, Registry::new()).expect("usable");
+    let (ball, kind) = (ShapeHandle::new(Ball::new(1.0)), GeometricQueryType::Proximity(0.0));
+    let ball = recorder.add(Isometry::identity(), ball, CollisionGroups::new(), kind, 0);
+    recorder.set_position(ball.expect("a ball"), Isometry::identity()).expect("finite");
+    let mut bytes = recorder.finish().bytes;
+    // The record of the move: kind 3, 36 bytes, one position, of object 0.
+    let record = [3, 36, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0];
+    let place = bytes.windows(13).position(|window| window == record).expect("it is moved") + 9;
+    bytes[place] = 77;
+    reseal(&mut bytes);
+    let error = pack(&bytes).expect_err("there is no object 77");
+    assert_eq!((error.offset, error.problem), (place, Problem::NoSuchObject(77)));
+}
+
 /// Returns the number of packed bytes per pose, which has 32 bytes unpacked. 200 balls move by
 /// `pose`, a function of the ball and the time.
 fn bytes_per_pose(mut pose: impl FnMut(u32, f64) -> Isometry<f32>) -> f64 {
