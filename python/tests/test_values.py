@@ -152,6 +152,25 @@ def test_a_pickled_world(dim, dtype):
         copied.containing([0.0] * dim)
 
 
+def test_a_pickled_world_whose_index_is_used_up():
+    world, ball = impinge.World(), impinge.Ball(1)
+    first, kept = world.add([ball] * 2, None)
+    for _ in range(1 << 16):
+        world.remove(first)
+        (first,) = world.add(ball, None)
+    copied = pickle.loads(pickle.dumps(world))
+    assert first == 2 and copied.handles().tolist() == world.handles().tolist() == [kept, first]
+    copied.update()
+    assert len(copied.contacts()) == 1
+    # The index 0, which the world does not use again, is the last one that the copy uses. Its handles are new.
+    world.remove(first)
+    copied.remove(first)
+    after = [one.add([ball] * 2, None).tolist() for one in (world, copied)]
+    assert after == [[1 << 32 | 2, 3], [1 << 32 | 2, 1 << 48]]
+    with pytest.raises(ValueError, match="no such object"):
+        copied.poses(0)
+
+
 def test_a_recorded_world_is_not_pickled():
     world = impinge.World()
     with world.record("film"), pytest.raises(TypeError, match="film"):

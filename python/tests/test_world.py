@@ -1,5 +1,7 @@
 """Worlds: bulk changes, events, queries and stale handles."""
 
+import pickle
+
 import impinge
 import numpy as np
 import pytest
@@ -89,6 +91,27 @@ def test_refused_objects_leave_nothing():
     assert len(world) == 0
     with pytest.raises(ValueError, match="margin"):
         impinge.World(-1)
+
+
+def test_refused_objects_leave_the_next_handles():
+    # A mesh whose coincident vertices were moved apart: a recorded world refuses it, here as the last of four objects.
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]], dtype=float)
+    world, ball = impinge.World(), impinge.Ball(1)
+    mesh = world.add(impinge.TriMesh(corners, [[0, 1, 2], [3, 5, 4]]), None)
+    corners[3, 0] = 3
+    world.set_vertices(mesh[0], corners)
+    pair = [ball, *world.shapes()]
+    worlds = [impinge.World(), impinge.World()]
+    with worlds[0].record("plain"), worlds[1].record("refusing"):
+        for number in range(3):
+            with pytest.raises(ValueError, match=r"poses\[3\]"):
+                worlds[1].add([ball] * 2 + pair, None)
+            first, second = ([*world.add([ball] * 3, None), *world.handles()] for world in worlds)
+            assert first == second
+            for world in worlds:
+                world.remove(first[number + 1 : 3])
+    copied = pickle.loads(pickle.dumps(worlds[1]))
+    assert copied.add([ball] * 5, None).tolist() == worlds[0].add([ball] * 5, None).tolist()
 
 
 def test_queries():

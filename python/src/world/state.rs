@@ -2,13 +2,14 @@
 //!
 //! While the recording is made, placeholders occupy the indices without an object; they are removed
 //! at the end. So all objects keep their indices, and the world read from the bytes gives the next
-//! object the index that the written world would give it. The number of earlier uses of each index
-//! is stored beside the bytes.
+//! object the index that the written world would give it. Only an index that the written world has
+//! retired, because 2^16 objects had it, is used again, after all free ones. The number of earlier
+//! uses of each index is stored beside the bytes, so the handles in Python are new all the same.
 
 use impinge::math::Pose;
 use impinge::narrow_phase::GeometricQueryType;
 use impinge::shape::{Ball, ShapeHandle};
-use impinge::world::{CollisionGroups, CollisionObject};
+use impinge::world::{CollisionGroups, CollisionObject, CollisionWorld};
 use impinge_record::{ReadError, RecordError, Recorder, Registry, Replay};
 
 use super::typed::TypedWorld;
@@ -36,17 +37,11 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
                 }
             }?);
         }
-        for index in self.vacant() {
+        for index in vacant(&self.world, handles.len()) {
             recorder.remove(&[handles[index]])?;
         }
         let ages = self.slots.iter().map(|slot| slot.0).collect();
         Ok((recorder.finish().bytes, ages))
-    }
-
-    /// Returns the indices without an object, in an order in which their placeholders can be
-    /// removed: later objects then reuse the indices in the order of the written world.
-    fn vacant(&self) -> impl Iterator<Item = usize> {
-        self.world.vacant_indices().filter(|index| *index < self.slots.len())
     }
 
     /// Fills this new world from the bytes.
@@ -66,12 +61,12 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
                 self.note_surface(handle, object.shape());
             }
         }
-        if objects.next().is_some() {
+        let is_free_beyond = old.vacant_indices().any(|index| index >= ages.len());
+        if objects.next().is_some() || is_free_beyond {
             return Err(Damage::Handles);
         }
-        for index in old.vacant_indices() {
-            let slot = self.slots.get(index).ok_or(Damage::Handles)?;
-            self.world.remove(&[slot.1])?;
+        for index in vacant(old, ages.len()) {
+            self.world.remove(&[self.slots[index].1])?;
         }
         Ok(())
     }
@@ -92,6 +87,19 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
             }
         }
     }
+}
+
+/// Returns the indices without an object, in the order in which their placeholders are removed. The
+/// retired indices of the world come first, then its free ones, the next one last. All indices of
+/// the world are below `len`.
+fn vacant<N: Numeric<D>, const D: usize>(
+    world: &CollisionWorld<N, D, ()>,
+    len: usize,
+) -> Vec<usize> {
+    let used = world.collision_objects().map(|object| object.handle().uid());
+    let mut is_retired = vec![true; len];
+    used.chain(world.vacant_indices()).for_each(|index| is_retired[index] = false);
+    (0..len).filter(|index| is_retired[*index]).chain(world.vacant_indices()).collect()
 }
 
 /// The reason why bytes cannot be read as a world.

@@ -30,7 +30,8 @@ use crate::world::{AnyWorld, Arrays};
 pub(crate) struct TypedWorld<N: Numeric<D>, const D: usize> {
     pub(crate) world: KeptWorld<N, D>,
     pub(super) margin: N,
-    /// For each index the number of its earlier objects, and the current handle of the library.
+    /// For each index of the library the number of its earlier objects, and the current handle of
+    /// the library. The number is `u32::MAX` until the first call that adds an object succeeds.
     pub(super) slots: Vec<(u32, CollisionObjectHandle)>,
     /// The objects that are surfaces or polylines, or have such children.
     pub(super) surfaces: BTreeMap<CollisionObjectHandle, Standing>,
@@ -83,6 +84,20 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
             }
         };
         u64::from(age) << 32 | index as u64
+    }
+
+    /// Removes the objects of a call that failed, in order of their addition. Later objects get the
+    /// handles that they would get without this call.
+    fn withdraw(&mut self, mut added: Vec<CollisionObjectHandle>) {
+        for handle in &added {
+            if handle.uid() == self.slots.len() {
+                self.slots.push((u32::MAX, *handle));
+            }
+        }
+        // The index that is freed last is used next.
+        added.reverse();
+        let removed = self.world.remove(&added);
+        debug_assert!(removed.is_ok(), "they were just added");
     }
 
     pub(crate) fn of(&self, handle: CollisionObjectHandle) -> u64 {
@@ -160,9 +175,7 @@ impl<N: Numeric<D>, const D: usize> AnyWorld for TypedWorld<N, D> {
             match self.world.add(N::isometry(&pose), shape, groups, query) {
                 Ok(handle) => added.push(handle),
                 Err(refused) => {
-                    // A call that fails adds no objects.
-                    let removed = self.world.remove(&added);
-                    debug_assert!(removed.is_ok(), "they were just added");
+                    self.withdraw(added);
                     return Err(error::of_row(&refused, "poses", element));
                 }
             }
