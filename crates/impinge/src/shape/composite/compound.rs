@@ -224,6 +224,9 @@ fn scaled_pose<N: Real, const D: usize>(
 }
 
 /// Returns the diagonal of `Rᵀ P R`; `None` if an off-diagonal element exceeds the rounding error.
+///
+/// An element within the rounding error of a magnitude is that magnitude, so that equal factors stay
+/// equal: cylinders and cones need equal factors across their axis.
 fn own_factors<N: Real, const D: usize>(
     rotation: &Matrix<N, D>,
     magnitudes: &Vector<N, D>,
@@ -232,7 +235,12 @@ fn own_factors<N: Real, const D: usize>(
     let tolerance = N::lit(16.0) * N::EPSILON * max_component(magnitudes);
     let is_beside = |at: (usize, usize)| at.0 != at.1 && rotated[at].abs() > tolerance;
     let mut all = (0..D).flat_map(|row| (0..D).map(move |column| (row, column)));
-    (!all.any(is_beside)).then(|| rotated.diagonal())
+    let snapped = |x: N| {
+        let near = magnitudes.iter().copied().filter(|own| (*own - x).abs() <= tolerance);
+        let nearer = |a: N, b: N| if (b - x).abs() < (a - x).abs() { b } else { a };
+        near.reduce(nearer).unwrap_or(x)
+    };
+    (!all.any(is_beside)).then(|| rotated.diagonal().map(snapped))
 }
 
 /// Computes [`Compound::firsts`]: the index of the first part of each child, then the number of

@@ -6,7 +6,7 @@ use crate::support::query_support;
 use impinge::bounding_volume::Aabb;
 use impinge::dim2::shape::Compound as Compound2;
 use impinge::dim3::shape::Compound as Compound3;
-use impinge::math::{Isometry2, Isometry3, Point, Pose, Real, Unit, Vector};
+use impinge::math::{Isometry2, Isometry3, Point, Pose, Real, Space, Unit, Vector};
 use impinge::shape::{
     Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Diagonals, Ellipsoid,
     Geometry, HeightField, Plane, Polyline, Rounded, ScaleError, Segment, Shape, ShapeHandle,
@@ -272,6 +272,37 @@ fn compounds_are_scaled_where_no_child_is_sheared() {
         Handle::new(Segment::new(Point::<f64, 2>::new(0.0, 1.0), Point::<f64, 2>::new(2.0, 5.0))),
     )]);
     check(&Handle::new(plane), [-3.0, 3.0], &mut random);
+}
+
+/// Asserts that cylinders and cones whose axis is turned onto another axis are scaled along it.
+fn check_quarter_turns<N: Space<3, Isometry = Isometry3<N>>>() {
+    let mut random = Random(96, false);
+    let solids: [Handle<N, 3>; 2] =
+        [Handle::new(Cylinder::new(N::TWO, N::ONE)), Handle::new(Cone::new(N::TWO, N::ONE))];
+    let quarter = std::f64::consts::FRAC_PI_2;
+    // A turn about x and one about z by these numbers of quarters, and the axis on which y lies then.
+    for (about_x, about_z, axis) in
+        [(0.0, 1.0, 0), (0.0, -1.0, 0), (0.0, 2.0, 1), (1.0, 0.0, 2), (-1.0, 0.0, 2), (1.0, 1.0, 0)]
+    {
+        let turn = |axis: usize, quarters: f64| {
+            let mut about = Vector::<N, 3>::zeros();
+            about[axis] = N::lit(quarters * quarter);
+            Isometry3::new(Vector::<N, 3>::zeros(), about)
+        };
+        let position = turn(0, about_x) * turn(2, about_z);
+        let mut factors = [2.0; 3];
+        factors[axis] = 3.0;
+        for solid in &solids {
+            let turned = Handle::new(Compound3::<N>::new(vec![(position, solid.clone())]));
+            check(&turned, factors, &mut random);
+        }
+    }
+}
+
+#[test]
+fn turned_cylinders_and_cones_are_scaled_along_their_axis() {
+    check_quarter_turns::<f32>();
+    check_quarter_turns::<f64>();
 }
 
 #[derive(Debug)]
