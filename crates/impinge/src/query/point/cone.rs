@@ -35,8 +35,11 @@ pub(super) fn surface_point<N: Real>(cone: &Cone<N>, point: &Point<N, 3>) -> Sur
 
 /// Returns whether the cone contains a point; `flat` is (distance from the axis, height).
 fn contains<N: Real>(cone: &Cone<N>, flat: &Point<N, 2>) -> bool {
-    let (radius, half_height) = (cone.radius(), cone.half_height());
-    flat.y.abs() <= half_height
-        && flat.x <= radius
-        && flat.x * (half_height + half_height) <= radius * (half_height - flat.y)
+    // Divides lengths by powers of two, so that the products neither overflow nor underflow.
+    let units = [cone.radius(), cone.half_height()].map(N::power_of_two_below);
+    let (radius, x) = (cone.radius() / units[0], flat.x / units[0]);
+    let (half_height, y) = (cone.half_height() / units[1], flat.y / units[1]);
+    y.abs() <= half_height
+        && x <= radius
+        && x * (half_height + half_height) <= radius * (half_height - y)
 }

@@ -1,6 +1,6 @@
 //! Tests queries of points whose results are computed by hand.
 
-use impinge::math::{Isometry2, Isometry3, Point, Space, Unit, Vector};
+use impinge::math::{Isometry2, Isometry3, Point, Real, Space, Unit, Vector};
 use impinge::query::PointQuery;
 use impinge::shape::{
     Ball, Capsule, Cone, Cuboid, Cylinder, FeatureId, Plane, Segment, Shape, Triangle,
@@ -238,6 +238,25 @@ fn cones() {
             ([0.5, 0.0, 0.0], true, [0.5, 0.0, 0.0], Face(0)),
         ],
     );
+}
+
+/// Asserts that the point at 0.9 of the radius and the half height is outside a cone of any size, and
+/// that the point at 0.25 of both is inside.
+fn check_cones<N: Real>(sizes: &[f64]) {
+    for &size in sizes {
+        let cone = Cone::new(N::lit(size), N::lit(size));
+        let at = |share: f64| {
+            let along = N::lit(share * size);
+            cone.contains_local_point(&Point::<N, 3>::new(along, along, N::ZERO))
+        };
+        assert!(!at(0.9) && at(0.25), "{size}: {} {}", at(0.9), at(0.25));
+    }
+}
+
+#[test]
+fn points_beside_very_large_and_small_cones_are_outside() {
+    check_cones::<f32>(&[1e-37, 1e-23, 1.0, 1e20, 3e38]);
+    check_cones::<f64>(&[1e-307, 1e-200, 1.0, 1e200, 1e308]);
 }
 
 #[test]
