@@ -74,3 +74,22 @@ fn diagonals_have_heights() {
         }
     }
 }
+
+/// Asserts that a cell that rises from 0 to 1 along z has the height 0.75 at three quarters, however
+/// wide it is.
+fn check_height_at<N: Real>(widths: &[f64]) {
+    let heights = || [0.0, 0.0, 1.0, 1.0].map(N::lit).to_vec();
+    for &width in widths {
+        let scale = Vector::<N, 3>::new(N::lit(width), N::ONE, N::lit(width));
+        let field = HeightField::<N, 3>::new(2, 2, heights(), scale);
+        let quarter = scale.x * N::lit(0.25);
+        let height = field.height_at(-quarter, quarter).expect("it is over the field");
+        assert!((height - N::lit(0.75)).abs() <= N::EPSILON, "{height} at a width of {width}");
+    }
+}
+
+#[test]
+fn very_wide_and_narrow_fields_have_heights() {
+    check_height_at::<f32>(&[4e-30, 4e-23, 4.0, 4e20, 3e38]);
+    check_height_at::<f64>(&[4e-300, 4e-200, 4.0, 4e200, 1e308]);
+}

@@ -8,7 +8,7 @@ use super::marks::{Diagonal, Diagonals};
 use super::pyramid::{HeightSpan, Pyramid, merged, no_span};
 use super::{HeightField, check_count, check_heights, check_parts, grid};
 use crate::bounding_volume::Aabb;
-use crate::math::{Point, Pose, Real, Vector, max, min};
+use crate::math::{Point, Pose, Real, Vector, max, max_component, min};
 use crate::shape::error::or_panic;
 use crate::shape::scale::Scale;
 use crate::shape::{
@@ -346,8 +346,10 @@ fn height_over<N: Real>(corners: &[Point<N, 3>; 3], x: N, z: N) -> Option<N> {
     let [a, b, c] = corners;
     // Measured from (x, z), so `side(p, q)` is exactly `-side(q, p)`: a point at a side of two
     // triangles is beside at most one of them.
-    let side = |p: &Point<N, 3>, q: &Point<N, 3>| (q.x - x) * (p.z - z) - (q.z - z) * (p.x - x);
-    let weights = [side(b, c), side(c, a), side(a, b)];
+    let xs = in_own_unit([a.x - x, b.x - x, c.x - x]);
+    let zs = in_own_unit([a.z - z, b.z - z, c.z - z]);
+    let side = |p: usize, q: usize| xs[q] * zs[p] - zs[q] * xs[p];
+    let weights = [side(1, 2), side(2, 0), side(0, 1)];
     let total = weights[0] + weights[1] + weights[2];
     let is_beside = weights.iter().any(|weight| *weight * total < N::ZERO);
     if is_beside || total == N::ZERO {
@@ -357,6 +359,13 @@ fn height_over<N: Real>(corners: &[Point<N, 3>; 3], x: N, z: N) -> Option<N> {
     let low = min(min(a.y, b.y), c.y);
     let height = a.y + (b.y - a.y) * (weights[1] / total) + (c.y - a.y) * (weights[2] / total);
     Some(max(min(height, high), low))
+}
+
+/// Returns three lengths divided by a power of two near the largest of them, so that products of
+/// results neither overflow nor underflow.
+fn in_own_unit<N: Real>(lengths: [N; 3]) -> [N; 3] {
+    let unit = max_component(&Vector::<N, 3>::from(lengths)).power_of_two_below();
+    lengths.map(|length| length / unit)
 }
 
 impl<N: Real> GridCells<N> for HeightField<N, 3> {
