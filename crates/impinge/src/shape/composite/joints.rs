@@ -84,12 +84,19 @@ impl Joints {
         &self.parts[start..end]
     }
 
-    /// Returns whether all vertices of each joint still have the same position.
-    pub(in crate::shape) fn are_together<N: Real, const D: usize>(
+    /// Returns whether all vertices of each joint that belong to one of `parts` still have the same
+    /// position.
+    pub(in crate::shape) fn are_together<N: Real, const D: usize, const K: usize>(
         &self,
         vertices: &[Point<N, D>],
+        parts: &[[u32; K]],
     ) -> bool {
-        self.of_vertex.iter().zip(vertices).all(|(&joint, at)| vertices[joint as usize] == *at)
+        // The position of each joint: that of the first vertex of a part there.
+        let mut positions = vec![None; vertices.len()];
+        parts.as_flattened().iter().all(|&vertex| {
+            let position = &vertices[vertex as usize];
+            *positions[self.of(vertex) as usize].get_or_insert(position) == position
+        })
     }
 }
 
@@ -122,5 +129,14 @@ mod tests {
         assert_eq!(joints.parts(0), [0, 2], "zeros of both signs are equal");
         assert_eq!(joints.parts(1), [0, 1, 2, 3], "the last part only once");
         assert_eq!((joints.parts(4), joints.parts(5)), ([1].as_slice(), [].as_slice()), "others");
+    }
+
+    #[test]
+    fn only_vertices_of_parts_are_together() {
+        let at = |xs: [f64; 4]| xs.mapped(|x| Point::<f64, 2>::new(x, 0.0));
+        let parts = [[1, 3], [3, 2]];
+        let joints = Joints::new(&at([0.0, 0.0, 0.0, 1.0]), &parts);
+        assert!(joints.are_together(&at([0.0, 2.0, 2.0, 1.0]), &parts), "0 belongs to no part");
+        assert!(!joints.are_together(&at([2.0, 2.0, 0.0, 1.0]), &parts), "1 and 2 are apart");
     }
 }

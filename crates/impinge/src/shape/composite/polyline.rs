@@ -190,7 +190,7 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
         self.is_moved = true;
         self.revision = Revision::new();
         self.pieces = OnceLock::new();
-        let is_whole = self.joints.are_together(vertices);
+        let is_whole = self.joints.are_together(vertices, &self.segments);
         self.is_cycle = is_whole && is_cycle(vertices.len(), &self.segments, &self.joints);
         Ok(())
     }
@@ -201,7 +201,7 @@ impl<N: Real, const D: usize> Polyline<N, D> {
     /// Replaces the joints by the joints of a saved line. The vertices of that line were moved
     /// after construction, so positions no longer determine the joints.
     pub(in crate::shape) fn move_joints(&mut self, joints: Joints) {
-        let is_whole = joints.are_together(&self.vertices);
+        let is_whole = joints.are_together(&self.vertices, &self.segments);
         self.is_cycle = is_whole && is_cycle(self.vertices.len(), &self.segments, &joints);
         (self.joints, self.is_moved) = (joints, true);
     }
@@ -276,7 +276,8 @@ impl<N: Real, const D: usize> Polyline<N, D> {
     /// one piece.
     pub(in crate::shape) fn pieces(&self) -> &[u32] {
         self.pieces.get_or_init(|| {
-            let are_together = !self.is_moved || self.joints.are_together(&self.vertices);
+            let are_together =
+                !self.is_moved || self.joints.are_together(&self.vertices, &self.segments);
             let number = |vertex| if are_together { self.joints.of(vertex) } else { vertex };
             pieces(&self.segments, self.vertices.len(), number)
         })

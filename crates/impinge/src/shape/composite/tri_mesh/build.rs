@@ -207,7 +207,8 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         self.revision = Revision::new();
         self.topology.is_moved = true;
         self.packed = <N::Algorithms>::mesh_packed(&self.tree, vertices, &self.triangles);
-        self.is_cycle = self.topology.is_cycle && self.topology.joints.are_together(vertices);
+        let is_whole = self.topology.joints.are_together(vertices, self.triangles());
+        self.is_cycle = self.topology.is_cycle && is_whole;
         Ok(())
     }
 }

@@ -31,7 +31,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         let own = record.moved_joints(vertices, mesh.triangles())?;
         let all = record.moved_joints(vertices, &mesh.triangles)?;
         if let Some((own, all)) = own.zip(all) {
-            let is_whole = all.are_together(&mesh.vertices);
+            let is_whole = all.are_together(&mesh.vertices, mesh.triangles());
             let is_cycle = Topology::of_joints(own, mesh.triangles()).is_cycle;
             mesh.topology = Topology::of_joints(all, &mesh.triangles);
             (mesh.topology.is_moved, mesh.topology.is_cycle) = (true, is_cycle);

@@ -18,10 +18,10 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
     /// belong to one piece.
     pub(super) fn pieces(&self) -> &[u32] {
         self.pieces.get_or_init(|| {
-            let joints = &self.topology.joints;
-            let are_together = !self.topology.is_moved || joints.are_together(&self.vertices);
+            let (joints, own) = (&self.topology.joints, self.triangles());
+            let are_together = !self.topology.is_moved || joints.are_together(&self.vertices, own);
             let number = |vertex| if are_together { joints.of(vertex) } else { vertex };
-            pieces(self.triangles(), self.vertices.len(), number)
+            pieces(own, self.vertices.len(), number)
         })
     }
 }

@@ -117,3 +117,26 @@ fn a_ball_mesh_of_dim2_is_filled_anyway() {
     let sphere = solid(ball::<f64>(1.0, 8));
     assert!(sphere.is_solid() && sphere.is_volume());
 }
+
+/// Asserts that a solid stays solid if a vertex that belongs to no part stays where a corner was.
+#[test]
+fn vertices_of_no_part_hold_nothing_together() {
+    let (corners, triangles) = cuboid::<f32>([1.0; 3], [0.0; 3]);
+    let named = triangles.iter().map(|corners| corners.map(|corner| corner + 1)).collect();
+    let at = |x: f32| {
+        let moved = corners.iter().map(|corner| corner + Vector::<f32, 3>::new(x, 0.0, 0.0));
+        [corners[0]].into_iter().chain(moved).collect::<Vec<_>>()
+    };
+    let mut block = TriMesh::new(at(0.0), named).solid();
+    block.set_vertices(&at(1.0));
+    assert!(block.is_solid() && mass_properties(&block, 1.0).is_ok(), "all corners moved alike");
+
+    let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let at = |x: f64| {
+        let moved = square.iter().map(|corner| Point::<f64, 2>::new(corner[0] + x, corner[1]));
+        [Point::<f64, 2>::origin()].into_iter().chain(moved).collect::<Vec<_>>()
+    };
+    let mut line = Polyline::new(at(0.0), vec![[1, 2], [2, 3], [3, 4], [4, 1]]).solid();
+    line.set_vertices(&at(1.0));
+    assert!(line.is_solid(), "all corners moved alike");
+}
