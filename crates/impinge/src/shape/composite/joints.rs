@@ -72,7 +72,6 @@ impl Joints {
     }
 
     /// Returns the joint of each vertex, in the order of the vertices.
-    #[cfg(feature = "serde")]
     pub(in crate::shape) fn of_vertices_in_order(&self) -> &[u32] {
         &self.of_vertex
     }

@@ -162,7 +162,10 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
         let vertices: Vec<_> = self.vertices.iter().map(scaled).collect();
         let is_mirrored = scale.iter().filter(|&&x| x < N::ZERO).count() % 2 == 1;
         let reversed = |&[a, b]: &[u32; 2]| if is_mirrored { [b, a] } else { [a, b] };
-        let made = Self::try_new(vertices, self.segments.iter().map(reversed).collect())?;
+        let mut made = Self::try_new(vertices, self.segments.iter().map(reversed).collect())?;
+        if self.is_moved {
+            made.move_joints(self.joints.of_vertices_in_order());
+        }
         let Self { front, is_solid, keeps_internal_edges, .. } = *self;
         Ok(Self { front, is_solid, keeps_internal_edges, ..made })
     }
@@ -178,8 +181,9 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
 
     /// Moves all vertices of a deforming line; `vertices` has the order of [`Self::vertices`].
     ///
-    /// Segments that were joined stay joined, even if their ends are now apart. The tree is
-    /// refitted, not rebuilt: O(n). On an error the line is unchanged.
+    /// Segments that were joined stay joined, even if their ends are now apart, also in lines that
+    /// are scaled from this one. The tree is refitted, not rebuilt: O(n). On an error the line is
+    /// unchanged.
     ///
     /// # Errors
     /// If a coordinate is not finite or the number of vertices differs.
@@ -196,11 +200,11 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
     }
 }
 
-#[cfg(feature = "serde")]
 impl<N: Real, const D: usize> Polyline<N, D> {
-    /// Replaces the joints by the joints of a saved line. The vertices of that line were moved
-    /// after construction, so positions no longer determine the joints.
-    pub(in crate::shape) fn move_joints(&mut self, joints: Joints) {
+    /// Replaces the joints by those of a line whose vertices were moved after construction, so that
+    /// positions no longer determine them. `of_vertex` is the joint of each vertex.
+    pub(in crate::shape) fn move_joints(&mut self, of_vertex: &[u32]) {
+        let joints = Joints::of_vertices(of_vertex.to_vec(), &self.segments);
         let is_whole = joints.are_together(&self.vertices, &self.segments);
         self.is_cycle = is_whole && is_cycle(self.vertices.len(), &self.segments, &joints);
         (self.joints, self.is_moved) = (joints, true);

@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 use super::ShapeRecord;
 use crate::math::numbers::{Damage, Numbers, ensure};
 use crate::math::{Real, Space};
-use crate::shape::composite::joints::Joints;
 use crate::shape::{MeshByDimension, Polyline, Shape, TriMesh};
 
 /// The record of a mesh or a polyline.
@@ -34,19 +33,15 @@ impl<N: Real> MeshRecord<N> {
         Ok(parts.to_vec())
     }
 
-    /// Checks and returns the joints of a mesh whose vertices were moved; `None` if they were not
-    /// moved.
-    pub(in crate::shape) fn moved_joints<const K: usize>(
-        &self,
-        vertices: usize,
-        parts: &[[u32; K]],
-    ) -> Result<Option<Joints>, Damage> {
+    /// Checks and returns the joint of each vertex of a mesh whose vertices were moved; `None` if
+    /// they were not moved.
+    pub(in crate::shape) fn moved_joints(&self, vertices: usize) -> Result<Option<&[u32]>, Damage> {
         let Some(joints) = &self.joints else { return Ok(None) };
         ensure(joints.len() == vertices, "there are other joints than vertices")?;
         let is_first =
             |(vertex, &joint): (u32, &u32)| joint <= vertex && joints[joint as usize] == joint;
         ensure((0..).zip(joints).all(is_first), "a joint is no first vertex")?;
-        Ok(Some(Joints::of_vertices(joints.clone(), parts)))
+        Ok(Some(joints))
     }
 }
 
@@ -76,7 +71,7 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
     pub(super) fn of_record(record: &MeshRecord<N>) -> Result<Self, Damage> {
         let line = Self::try_new(record.vertices.points()?, record.parts()?);
         let mut line = line.map_err(|error| Damage::found(&error))?;
-        if let Some(joints) = record.moved_joints(line.vertices.len(), &line.segments)? {
+        if let Some(joints) = record.moved_joints(line.vertices.len())? {
             line.move_joints(joints);
         }
         line.front = if record.is_one_sided { <N::Algorithms>::line_front() } else { None };

@@ -10,6 +10,7 @@ use crate::bounding_volume::Aabb;
 use crate::math::{Mapped, Point, Real, Space, Vector};
 use crate::partitioning::BoxTree;
 use crate::shape::Revision;
+use crate::shape::composite::joints::Joints;
 use crate::shape::composite::mesh_error::{
     MeshError, check_moved, check_parts, check_scale, check_vertices, or_panic,
 };
@@ -77,9 +78,8 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
     /// ```
     pub fn try_with_ghosts(self, ghosts: &[[u32; 3]]) -> Result<Self, MeshError> {
         let triangles = [self.triangles(), ghosts].concat();
-        let made = entries::build_mesh(self.vertices, triangles, ghosts.len())?;
-        let Self { is_one_sided, is_solid, keeps_internal_edges, .. } = self;
-        Ok(Self { is_one_sided, is_solid, keeps_internal_edges, ..made })
+        let joints = self.topology.joints.of_vertices_in_order();
+        self.with(self.vertices.clone(), triangles, ghosts.len(), joints)
     }
 
     /// Implements [`Self::try_new`]; the last `ghosts` triangles are ghosts.
@@ -123,19 +123,20 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
     #[must_use]
     pub fn with_vertices_merged(self) -> Self {
         let (mut number, mut kept) = (Vec::with_capacity(self.vertices.len()), Vec::new());
-        let mut next = 0..;
+        let (mut next, mut joints) = (0.., Vec::new());
         for (vertex, point) in (0..).zip(&self.vertices) {
             let first = self.topology.joints.of(vertex);
             if first == vertex || self.vertices[first as usize] != *point {
                 number.extend(next.next());
                 kept.push(*point);
+                joints.push(number[first as usize]);
             } else {
                 number.push(number[first as usize]);
             }
         }
         let renumbered = |vertex: u32| number[vertex as usize];
         let triangles = self.triangles.iter().map(|corners| corners.map(renumbered)).collect();
-        self.with(kept, triangles)
+        or_panic(self.with(kept, triangles, self.ghosts, &joints))
     }
 
     /// Reverses the front of each triangle: exchanges the second and third corner, and with them
@@ -143,8 +144,10 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
     #[must_use]
     pub fn flipped(self) -> Self {
         let triangles = self.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
-        let vertices = self.vertices.clone();
-        Self { is_solid: false, ..self.with(vertices, triangles) }
+        let (vertices, joints) =
+            (self.vertices.clone(), self.topology.joints.of_vertices_in_order());
+        let made = or_panic(self.with(vertices, triangles, self.ghosts, joints));
+        Self { is_solid: false, ..made }
     }
 
     /// Returns the mesh scaled along the axes of its frame, about its origin. A mirroring scale
@@ -156,20 +159,42 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
     pub fn try_scaled(&self, scale: &Vector<N, D>) -> Result<Self, MeshError> {
         check_scale(scale)?;
         let scaled = |point: &Point<N, D>| Point::from(point.coords.component_mul(scale));
-        let vertices: Vec<_> = self.vertices.iter().map(scaled).collect();
-        check_vertices(&vertices)?;
+        let vertices = self.vertices.iter().map(scaled).collect();
         let is_mirrored = scale.iter().filter(|&&x| x < N::ZERO).count() % 2 == 1;
         let reversed = |&[a, b, c]: &[u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
         let triangles = self.triangles.iter().map(reversed).collect();
-        Ok(self.with(vertices, triangles))
+        self.with(vertices, triangles, self.ghosts, self.topology.joints.of_vertices_in_order())
     }
 
-    /// Returns a mesh of the given vertices and triangles, which must be valid, with the options of
-    /// this mesh. The last triangles are ghosts, as many as this mesh has.
-    fn with(&self, vertices: Vec<Point<N, D>>, triangles: Vec<[u32; 3]>) -> Self {
-        let made = or_panic(entries::build_mesh(vertices, triangles, self.ghosts));
+    /// Returns a mesh of the given vertices and triangles, of which the last `ghosts` are ghosts,
+    /// with the options of this mesh. If vertices of this mesh were moved, `joints` has the joint
+    /// of each vertex of the result.
+    fn with(
+        &self,
+        vertices: Vec<Point<N, D>>,
+        triangles: Vec<[u32; 3]>,
+        ghosts: usize,
+        joints: &[u32],
+    ) -> Result<Self, MeshError> {
+        let mut made = entries::build_mesh(vertices, triangles, ghosts)?;
+        if self.topology.is_moved {
+            made.move_joints(joints);
+        }
         let Self { is_one_sided, is_solid, keeps_internal_edges, .. } = *self;
-        Self { is_one_sided, is_solid, keeps_internal_edges, ..made }
+        Ok(Self { is_one_sided, is_solid, keeps_internal_edges, ..made })
+    }
+
+    /// Replaces the joints by those of a mesh whose vertices were moved after construction, so that
+    /// positions no longer determine them. `of_vertex` is the joint of each vertex.
+    pub(super) fn move_joints(&mut self, of_vertex: &[u32]) {
+        let topology = |triangles: &[[u32; 3]]| {
+            Topology::of_joints(Joints::of_vertices(of_vertex.to_vec(), triangles), triangles)
+        };
+        let is_cycle = topology(self.triangles()).is_cycle;
+        self.topology = topology(&self.triangles);
+        (self.topology.is_cycle, self.topology.is_moved) = (is_cycle, true);
+        let is_whole = self.topology.joints.are_together(&self.vertices, self.triangles());
+        self.is_cycle = is_cycle && is_whole;
     }
 
     /// Moves the vertices; see [`Self::try_set_vertices`].
@@ -183,9 +208,10 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
 
     /// Moves all vertices of a deforming mesh; `vertices` has the order of [`Self::vertices`].
     ///
-    /// Triangles that were joined stay joined, even if their corners are now apart. The tree is
-    /// refitted, not rebuilt: O(n), a fifth to a tenth of the cost of building the mesh. A degraded
-    /// tree order is renewed over several calls. On an error the mesh is unchanged.
+    /// Triangles that were joined stay joined, even if their corners are now apart, also in meshes
+    /// that are made from this one. The tree is refitted, not rebuilt: O(n), a fifth to a tenth of
+    /// the cost of building the mesh. A degraded tree order is renewed over several calls. On an
+    /// error the mesh is unchanged.
     ///
     /// # Errors
     /// If a coordinate is not finite or the number of vertices differs.

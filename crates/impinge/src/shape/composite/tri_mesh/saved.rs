@@ -1,6 +1,5 @@
 //! Conversion of meshes to and from the records of saved worlds.
 
-use super::topology::Topology;
 use super::{TriMesh, entries};
 use crate::math::Space;
 use crate::math::numbers::{Damage, Numbers, ensure};
@@ -27,15 +26,8 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         ensure(ghosts < triangles.len(), "all triangles of a mesh are ghosts")?;
         let mesh = entries::build_mesh(record.vertices.points()?, triangles, ghosts);
         let mut mesh = mesh.map_err(|error| Damage::found(&error))?;
-        let vertices = mesh.vertices.len();
-        let own = record.moved_joints(vertices, mesh.triangles())?;
-        let all = record.moved_joints(vertices, &mesh.triangles)?;
-        if let Some((own, all)) = own.zip(all) {
-            let is_whole = all.are_together(&mesh.vertices, mesh.triangles());
-            let is_cycle = Topology::of_joints(own, mesh.triangles()).is_cycle;
-            mesh.topology = Topology::of_joints(all, &mesh.triangles);
-            (mesh.topology.is_moved, mesh.topology.is_cycle) = (true, is_cycle);
-            mesh.is_cycle = is_cycle && is_whole;
+        if let Some(joints) = record.moved_joints(mesh.vertices.len())? {
+            mesh.move_joints(joints);
         }
         mesh.is_one_sided = record.is_one_sided;
         mesh.is_solid = record.is_solid && record.is_one_sided;

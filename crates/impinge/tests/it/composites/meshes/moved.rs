@@ -95,6 +95,59 @@ fn what_hung_together_still_does() {
     assert!(line.are_adjacent(0, 1), "one joint");
 }
 
+/// Returns two cubes that share the corner (1, 1, 1) but no vertex, with the second moved by `x`.
+fn two_cubes(x: f64) -> Vec<[f64; 3]> {
+    let corner = |at: u32, low: f64| [0, 1, 2].map(|axis| low + f64::from((at >> axis) & 1));
+    let second =
+        (0..8).map(|at| corner(at, 1.0)).map(|corner| [corner[0] + x, corner[1], corner[2]]);
+    (0..8).map(|at| corner(at, 0.0)).chain(second).collect()
+}
+
+/// Asserts that meshes made of a moved mesh have its joints: cubes that were built with a common
+/// corner are no solid while they are apart, and a solid when they meet there again.
+#[test]
+fn meshes_made_of_a_moved_mesh_keep_its_joints() {
+    let cube = [[0, 2, 3], [0, 3, 1], [4, 5, 7], [4, 7, 6], [0, 1, 5], [0, 5, 4]];
+    let rest = [[2, 6, 7], [2, 7, 3], [0, 4, 6], [0, 6, 2], [1, 3, 7], [1, 7, 5]];
+    let first = [cube, rest].concat();
+    let second = first.iter().map(|corners| corners.map(|corner| corner + 8));
+    let triangles = first.iter().copied().chain(second).collect();
+    let mut cubes = TriMesh::<f64, 3>::new(points(&two_cubes(0.0)), triangles).solid();
+    cubes.set_vertices(&points(&two_cubes(1.0)));
+    assert!(!cubes.is_volume() && cubes.are_adjacent(11, 12), "apart");
+    let again = [
+        cubes.try_scaled(&vector([1.0; 3])).expect("no zero"),
+        cubes.clone().flipped().flipped(),
+        cubes.clone().with_vertices_merged(),
+        cubes.clone().with_ghosts(&[[0, 1, 15]]),
+        cubes.clone().with_vertices_merged().try_scaled(&vector([1.0; 3])).expect("no zero"),
+    ];
+    for (index, mut mesh) in again.into_iter().enumerate() {
+        assert_eq!(mesh.vertices().len(), 16, "{index}: all are apart");
+        assert!(!mesh.is_volume() && !mesh.is_solid(), "{index}: apart");
+        assert!((0..12).any(|part| mesh.are_adjacent(part, 12)), "{index}: joined");
+        mesh.set_vertices(&points(&two_cubes(0.0)));
+        assert!(mesh.is_volume(), "{index}: together");
+    }
+}
+
+#[test]
+fn lines_scaled_from_a_moved_line_keep_its_joints() {
+    let at = |x: f64| {
+        let low = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let high = low.map(|[u, v]| [u + 1.0 + x, v + 1.0]);
+        points::<f64, 2>(&[low, high].concat())
+    };
+    let segments = (0..8).map(|at| [at, if at % 4 == 3 { at - 3 } else { at + 1 }]).collect();
+    let mut squares = Polyline::new(at(0.0), segments).solid();
+    squares.set_vertices(&at(1.0));
+    for factors in [[1.0, 1.0], [-1.0, 1.0]] {
+        let scaled = squares.try_scaled(&vector(factors)).expect("no zero");
+        assert!(!squares.is_solid() && !scaled.is_solid(), "{factors:?}: apart");
+        assert!(scaled.are_adjacent(1, 4), "{factors:?}: joined at (1, 1)");
+    }
+}
+
 #[test]
 fn trees_are_refitted_in_and_out_of_bounds() {
     let mut random = Random::new(9);
