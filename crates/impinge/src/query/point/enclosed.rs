@@ -6,6 +6,7 @@
 //! floating point fail at needles; the tests compare both methods.
 
 use super::crossing::{RayDirection, of_segment, of_triangle};
+use super::holds;
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Real, Space, max, max_component};
 use crate::partitioning::BoxTree;
@@ -63,6 +64,17 @@ impl<N: Real> TriMesh<N, 3> {
     /// mesh. A point on the mesh may instead get the number of a point beside it.
     fn winding(&self, point: &Point<N, 3>) -> Option<i64> {
         self.winding_of(point, |_| true)
+    }
+
+    /// Returns the winding number, around the point, of the triangles for which `counts` returns
+    /// `true`; `None` if the point lies on one of these triangles, up to rounding.
+    pub(crate) fn winding_beside(
+        &self,
+        point: &Point<N, 3>,
+        counts: impl Fn(u32) -> bool,
+    ) -> Option<i64> {
+        let is_on = lies_on(self, self.tree(), point, &counts);
+        if is_on { None } else { self.winding_of(point, counts) }
     }
 
     /// Returns the winding number, around the point, of the triangles for which `counts` returns
@@ -127,6 +139,17 @@ impl<N: Real> Polyline<N, 2> {
     }
 
     /// Returns the winding number, around the point, of the segments for which `counts` returns
+    /// `true`; `None` if the point lies on one of these segments, up to rounding.
+    pub(crate) fn winding_beside(
+        &self,
+        point: &Point<N, 2>,
+        counts: impl Fn(u32) -> bool,
+    ) -> Option<i64> {
+        let is_on = lies_on(self, self.tree(), point, &counts);
+        if is_on { None } else { self.winding_of(point, counts) }
+    }
+
+    /// Returns the winding number, around the point, of the segments for which `counts` returns
     /// `true`; `None` only if the point lies on one of these segments.
     pub(crate) fn winding_of(
         &self,
@@ -150,6 +173,19 @@ fn touches<N: Space<D>, const D: usize>(
     point: &Point<N, D>,
 ) -> bool {
     entries::nearest_part(parts, point, true).is_some()
+}
+
+/// Returns whether the point lies, up to rounding, on a part for which `counts` returns `true`.
+fn lies_on<N: Space<D>, const D: usize>(
+    parts: &dyn CompositeShape<N, D>,
+    tree: &BoxTree<N, D>,
+    point: &Point<N, D>,
+    counts: &impl Fn(u32) -> bool,
+) -> bool {
+    tree.containing(point).into_iter().any(|part| {
+        let part = u32::try_from(part).expect("a tree has fewer than 2^32 boxes");
+        counts(part) && holds(parts.part(part).solid.geometry(), point)
+    })
 }
 
 /// Returns the distance to the nearest part: positive if the winding number is zero, else negative;

@@ -86,15 +86,21 @@ fn root(above: &mut [u32], mut at: u32) -> u32 {
 /// bound a cavity.
 ///
 /// `cone(part)` returns the signed area or volume between a part and a point that is fixed for its
-/// piece; `is_cavity(part)` returns whether the other pieces wind around that part.
+/// piece; `winding(part)` returns the winding number of the other pieces around a point of the part,
+/// or `None` if they touch all points of it that are tried. The first part of a piece with a number
+/// decides; without any, the piece counts as a cavity.
 ///
 /// # Errors
 /// [`MeshError::InsideOut`] with the first part of a piece that is negative and bounds no cavity.
 pub(super) fn check_fronts(
     pieces: &[u32],
     cone: impl Fn(u32) -> f64,
-    is_cavity: impl Fn(u32) -> bool,
+    winding: impl Fn(u32) -> Option<i64>,
 ) -> Result<(), MeshError> {
+    let is_cavity = |piece: u32| {
+        let mut own = (0..).zip(pieces).filter(|&(_, &first)| first == piece);
+        own.find_map(|(part, _)| winding(part)).is_none_or(|winding| winding > 0)
+    };
     let mut contents = vec![[0.0; 2]; pieces.len()];
     for (part, &piece) in (0..).zip(pieces) {
         let (own, [sum, total]) = (cone(part), &mut contents[piece as usize]);
@@ -106,6 +112,16 @@ pub(super) fn check_fronts(
         }
     }
     Ok(())
+}
+
+/// Returns points of a part at which it may be compared with other pieces: its corners, and their
+/// mean.
+pub(super) fn samples_of<N: Real, const D: usize, const K: usize>(
+    corners: [Point<N, D>; K],
+) -> impl Iterator<Item = Point<N, D>> {
+    let share = N::ONE / N::lit(K as f64);
+    let mean = corners.iter().fold(Point::origin(), |sum, corner| sum + corner.coords * share);
+    corners.into_iter().chain([mean])
 }
 
 /// An upper bound of the rounding error of a signed area or volume, as a fraction of the sum of the
@@ -126,9 +142,16 @@ mod tests {
     #[test]
     fn a_piece_that_is_inside_out_has_to_be_a_cavity() {
         let cone = |part: u32| [1.0, 2.0, -0.5, -0.25][part as usize];
-        assert_eq!(check_fronts(&[0, 0, 2, 2], cone, |part| part == 2), Ok(()));
-        let refused = check_fronts(&[0, 0, 2, 2], cone, |_| false);
-        assert_eq!(refused, Err(MeshError::InsideOut { part: 2 }));
-        assert_eq!(check_fronts(&[0, 0], |part| f64::from(part) - 0.5, |_| false), Ok(()), "flat");
+        let check = |windings: [Option<i64>; 4]| {
+            check_fronts(&[0, 0, 2, 2], cone, |part| windings[part as usize])
+        };
+        assert_eq!(check([Some(0), Some(0), Some(1), Some(1)]), Ok(()));
+        let refused = Err(MeshError::InsideOut { part: 2 });
+        assert_eq!(check([Some(1), Some(1), Some(0), Some(0)]), refused);
+        assert_eq!(check([Some(1), Some(1), None, Some(0)]), refused, "part 3 decides");
+        assert_eq!(check([Some(0), Some(0), None, Some(1)]), Ok(()), "part 3 decides");
+        assert_eq!(check([Some(0), Some(0), None, None]), Ok(()), "undecided");
+        let flat = check_fronts(&[0, 0], |part| f64::from(part) - 0.5, |_| Some(0));
+        assert_eq!(flat, Ok(()), "flat");
     }
 }

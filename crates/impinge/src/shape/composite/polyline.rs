@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Real, Space, Vector, max, max_component};
 use crate::partitioning::{BoxTree, BoxTreeError};
-use crate::shape::composite::body::{check_fronts, pieces};
+use crate::shape::composite::body::{check_fronts, pieces, samples_of};
 use crate::shape::composite::joints::Joints;
 use crate::shape::composite::mesh_error::{
     MeshError, check_moved, check_parts, check_scale, check_vertices, or_panic,
@@ -373,12 +373,11 @@ impl<N: Real> Polyline<N, 2> {
             let [a, b] = self.ends(part).map(|end| (end - apex).map(|x| x.as_f64() / scale));
             a.perp(&b)
         };
-        let is_cavity = |part: u32| {
-            let winding =
-                self.winding_of(&self.ends(part)[0], |other| pieces[other as usize] != part);
-            winding.is_none_or(|winding| winding > 0)
+        let winding = |part: u32| {
+            let is_other = |other: u32| pieces[other as usize] != pieces[part as usize];
+            samples_of(self.ends(part)).find_map(|point| self.winding_beside(&point, is_other))
         };
-        check_fronts(pieces, cone, is_cavity)?;
+        check_fronts(pieces, cone, winding)?;
         self.is_solid = true;
         Ok(self.one_sided())
     }

@@ -2,7 +2,7 @@
 
 use super::TriMesh;
 use crate::math::{Mapped, Point, Real, max, max_component};
-use crate::shape::composite::body::{check_fronts, pieces};
+use crate::shape::composite::body::{check_fronts, pieces, samples_of};
 use crate::shape::composite::joints::Joints;
 use crate::shape::composite::mesh_error::{MeshError, or_panic};
 
@@ -52,7 +52,8 @@ impl<N: Real> TriMesh<N, 3> {
     /// mesh is a one-sided surface without an inside. [`Self::flipped`] makes it hollow
     /// permanently.
     ///
-    /// The cost is O(n), plus a search of the mesh for each inner surface.
+    /// The cost is O(n), plus a search of the mesh for each inner surface; more searches for one that
+    /// touches other pieces.
     ///
     /// # Errors
     /// - [`MeshError::NotClosed`] or [`MeshError::NotOriented`] if the mesh does not [bound a
@@ -92,12 +93,11 @@ impl<N: Real> TriMesh<N, 3> {
                 self.corners(part).mapped(|corner| (corner - apex).map(|x| x.as_f64() / scale));
             arms[0].dot(&arms[1].cross(&arms[2]))
         };
-        let is_cavity = |part: u32| {
-            let corner = self.corners(part)[0];
-            let winding = self.winding_of(&corner, |other| pieces[other as usize] != part);
-            winding.is_none_or(|winding| winding > 0)
+        let winding = |part: u32| {
+            let is_other = |other: u32| pieces[other as usize] != pieces[part as usize];
+            samples_of(self.corners(part)).find_map(|point| self.winding_beside(&point, is_other))
         };
-        check_fronts(pieces, cone, is_cavity)?;
+        check_fronts(pieces, cone, winding)?;
         (self.is_solid, self.is_one_sided) = (true, true);
         Ok(self)
     }

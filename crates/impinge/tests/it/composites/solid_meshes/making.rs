@@ -47,6 +47,49 @@ fn fronts_are_outside_but_in_cavities() {
     );
 }
 
+/// Returns the rotations of a list of numbers.
+fn rotations<T: Copy>(list: &[T]) -> impl Iterator<Item = Vec<T>> + '_ {
+    (0..list.len()).map(|by| [&list[by..], &list[..by]].concat())
+}
+
+/// Asserts that a hole flush with a wall is a cavity, and that a reversed box that touches the wall
+/// from outside is none, whatever the order of their triangles and corners.
+#[test]
+fn pieces_that_touch_are_told_apart_in_any_order() {
+    let wall = joined(&[cuboid([2.0; 3], [0.0; 3]), cuboid([2.0; 3], [8.0, 0.0, 0.0])]);
+    let hole = inverted(cuboid::<f64>([0.5; 3], [1.5, 0.0, 0.0]));
+    let beside = inverted(cuboid::<f64>([0.125, 0.5, 0.5], [2.125, 0.0, 0.0]));
+    for ((corners, triangles), expected) in
+        [(hole, None), (beside, Some(MeshError::InsideOut { part: 24 }))]
+    {
+        for (at, order) in (0..).zip(rotations(&triangles)) {
+            let order =
+                order.iter().map(|&[a, b, c]| [[a, b, c], [b, c, a], [c, a, b]][at % 3]).collect();
+            let mesh = skin(joined(&[wall.clone(), (corners.clone(), order)]));
+            assert_eq!(mesh.try_solid().err(), expected, "rotated by {at}");
+        }
+    }
+}
+
+#[test]
+fn outlines_that_touch_are_told_apart_in_any_order() {
+    type Line = Polyline<f64, 2>;
+    let ring = |low: [f64; 2], high: [f64; 2]| [low, [high[0], low[1]], high, [low[0], high[1]]];
+    let reversed = |ring: [[f64; 2]; 4]| [ring[3], ring[2], ring[1], ring[0]];
+    let wall = [ring([0.0, 0.0], [4.0, 4.0]), ring([6.0, 0.0], [10.0, 4.0])].concat();
+    let hole = reversed(ring([3.0, 1.5], [4.0, 2.5]));
+    let beside = reversed(ring([4.0, 1.5], [4.5, 2.5]));
+    for (piece, expected) in [(hole, None), (beside, Some(MeshError::InsideOut { part: 8 }))] {
+        for piece in rotations(&piece) {
+            let first = piece[0];
+            let corners = [wall.clone(), piece].concat().into_iter().map(Point::from).collect();
+            let loops = (0..12).map(|at| [at, if at % 4 == 3 { at - 3 } else { at + 1 }]);
+            let line = Line::new(corners, loops.collect());
+            assert_eq!(line.try_solid().err(), expected, "from {first:?}");
+        }
+    }
+}
+
 #[test]
 #[should_panic(expected = "a solid is closed")]
 fn solid_panics_where_try_solid_refuses() {
