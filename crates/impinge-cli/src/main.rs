@@ -13,6 +13,7 @@ mod convert;
 mod error;
 mod hits;
 mod input;
+mod itself;
 mod log;
 mod motion;
 mod near;

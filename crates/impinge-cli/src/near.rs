@@ -9,6 +9,7 @@ use impinge::partitioning::BoxTree;
 use impinge::world::{CollisionObject, CollisionWorld};
 
 use crate::error::CliError;
+use crate::itself;
 use crate::space::Stage;
 
 /// The relative enlargement of distances against rounding errors, in units of the machine epsilon.
@@ -52,8 +53,8 @@ impl<'a, N: Stage<D>, const D: usize, T> Boxed<'a, N, D, T> {
     /// Calls `visit` with the indices of two objects, the lower index first, for each pair that may
     /// interact by its groups and whose boxes are near each other. The boxes of a pair are near if
     /// they overlap after the first is enlarged on all sides by `reach` of its object. An object
-    /// whose groups allow self-interaction is a pair with itself. `goes_on` is called before each
-    /// object, and ends the search if it returns `false`.
+    /// that is tested against itself is a pair with itself. `goes_on` is called before each object,
+    /// and ends the search if it returns `false`.
     pub(crate) fn each(
         &self,
         reach: impl Fn(&CollisionObject<N, D, T>) -> N,
@@ -71,7 +72,7 @@ impl<'a, N: Stage<D>, const D: usize, T> Boxed<'a, N, D, T> {
                 let groups = own.collision_groups();
                 let may = match place.cmp(&found) {
                     Ordering::Less => groups.can_interact_with_groups(other.collision_groups()),
-                    Ordering::Equal => groups.can_interact_with_self(),
+                    Ordering::Equal => itself::is_tested(own),
                     Ordering::Greater => false,
                 };
                 if may {

@@ -9,7 +9,8 @@ use super::{Format, NonNegative, Reading, SceneArgs, Stepping};
 /// Find the objects that touch, or that are within a clearance.
 ///
 /// All pairs of objects that may interact by their groups are checked; the broad phase culls
-/// distant pairs. `touch` means that the distance is zero. The depth is then the length of the
+/// distant pairs. With `self_collision` in its groups, an object whose shape has parts is also a
+/// pair with itself: its parts that share no vertex are checked. `touch` means that the distance is zero. The depth is then the length of the
 /// shortest translation that separates the objects. `near` means that the distance is at most the
 /// clearance.
 #[derive(Args, Debug)]

@@ -4,12 +4,13 @@ use core::cell::RefCell;
 use core::cmp::Ordering;
 use core::fmt;
 
-use impinge::query::Proximity;
+use impinge::query::{Proximity, Witness};
 use serde::{Serialize, Serializer};
 
 use crate::args::CheckArgs;
 use crate::convert::scalar;
 use crate::error::CliError;
+use crate::itself;
 use crate::near::Boxed;
 use crate::number::Number;
 use crate::output::{CLEAR, FAINT, Outcome, Report, Subject, finish};
@@ -146,24 +147,41 @@ impl<N: Stage<D>, const D: usize> Measure<'_, N, D> {
     /// Returns the state and distance of a pair of objects; `None` if their distance exceeds the
     /// clearance.
     fn near(&self, objects: [u32; 2]) -> Option<Near> {
-        let [object1, object2] = objects.map(|object| self.boxed.object(object));
         // `proximity` decides whether objects touch, as in a world. The sign of the distance is not
         // used, since the distance is rounded.
-        let state = match N::proximity(object1, object2, self.clearance) {
+        let state = match self.proximity(objects) {
             Proximity::Disjoint => return None,
             Proximity::Intersecting => State::Touch,
             Proximity::WithinMargin => State::Near,
         };
-        let witness = N::witness(object1, object2, self.clearance);
-        let distance = witness.map_or(f64::NEG_INFINITY, |found| found.distance.as_f64());
+        let distance =
+            self.witness(objects).map_or(f64::NEG_INFINITY, |found| found.distance.as_f64());
         Some(Near { distance, state, objects })
+    }
+
+    /// Returns the proximity of a pair of objects for the clearance.
+    fn proximity(&self, objects: [u32; 2]) -> Proximity {
+        let [object1, object2] = objects.map(|object| self.boxed.object(object));
+        if objects[0] == objects[1] {
+            return itself::proximity(object1, self.clearance);
+        }
+        N::proximity(object1, object2, self.clearance)
+    }
+
+    /// Returns the nearest points of a pair of objects; `None` if their distance exceeds the
+    /// clearance or their overlap is unbounded.
+    fn witness(&self, objects: [u32; 2]) -> Option<Witness<N, D>> {
+        let [object1, object2] = objects.map(|object| self.boxed.object(object));
+        if objects[0] == objects[1] {
+            return itself::witness(object1, self.clearance);
+        }
+        N::witness(object1, object2, self.clearance)
     }
 
     /// Returns the fields of a pair in the report.
     fn separation(&self, &Near { state, objects, .. }: &Near) -> Separation {
-        let [object1, object2] = objects.map(|object| self.boxed.object(object));
-        let names = [object1.data().clone(), object2.data().clone()];
-        match N::witness(object1, object2, self.clearance) {
+        let names = objects.map(|object| self.boxed.object(object).data().clone());
+        match self.witness(objects) {
             Some(found) => {
                 Separation { state, ..Separation::of_witness(names, &found, self.clearance) }
             }

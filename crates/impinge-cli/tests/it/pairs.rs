@@ -127,6 +127,62 @@ fn a_limit_leaves_pairs_out_and_counts_them() {
     assert_eq!((names(&all).len(), &all["omitted"]), (2, &json!(0)));
 }
 
+/// Returns a scene of one object that is tested against itself.
+fn alone(dimension: usize, scalar: &str, shape: &Value) -> String {
+    let object = json!({"name": "a", "shape": shape, "groups": {"self_collision": true}});
+    json!({"dimension": dimension, "scalar": scalar, "objects": [object]}).to_string()
+}
+
+#[test]
+fn a_convex_solid_does_not_touch_itself() {
+    in_every_space(|desk, dimension, scalar| {
+        desk.write("scene.json", alone(dimension, scalar, &json!({"ball": {"radius": 0.5}})));
+        let report = desk.json("check scene.json --clearance 1", 0);
+        assert_eq!((&report["touching"], &report["near"]), (&json!(0), &json!(0)));
+    });
+}
+
+#[test]
+fn parts_of_one_object_are_apart_or_overlap() {
+    in_every_space(|desk, dimension, scalar| {
+        let balls = |x: f64| {
+            let at = |x: f64| [vec![x], vec![0.0; dimension - 1]].concat();
+            let ball =
+                |x| json!({"shape": {"ball": {"radius": 1.0}}, "position": {"translation": at(x)}});
+            let shape = json!({"compound": {"children": [ball(0.0), ball(x)]}});
+            alone(dimension, scalar, &shape)
+        };
+        desk.write("scene.json", balls(1.75));
+        let report = desk.json("check scene.json", 1);
+        let pair = &report["pairs"][0];
+        assert_eq!(names(&report), [("a".to_owned(), "a".to_owned())]);
+        assert_eq!((&pair["state"], &pair["depth"]), (&json!("touch"), &json!(0.25)));
+        assert_eq!((&pair["part1"], &pair["part2"]), (&json!(0), &json!(1)));
+        assert_eq!(numbers(&pair["normal"])[0], 1.0, "from the first part to the second");
+
+        desk.write("scene.json", balls(2.5));
+        assert_eq!(desk.json("check scene.json", 0)["touching"], 0);
+        assert_eq!(desk.json("check scene.json --clearance 0.4375", 0)["near"], 0);
+        let pair = &desk.json("check scene.json --clearance 0.5", 1)["pairs"][0];
+        assert_eq!((&pair["state"], &pair["distance"]), (&json!("near"), &json!(0.5)));
+        assert_eq!((&pair["part1"], &pair["part2"]), (&json!(0), &json!(1)));
+    });
+}
+
+#[test]
+fn parts_that_share_a_vertex_do_not_touch() {
+    let desk = Desk::new();
+    let rope = |end: f64| {
+        let vertices = json!([[0, 0], [4, 0], [4, 1], [1, 1], [1, end]]);
+        alone(2, "f64", &json!({"polyline": {"vertices": vertices}}))
+    };
+    desk.write("scene.json", rope(0.5));
+    assert_eq!(desk.json("check scene.json", 0)["touching"], 0);
+    desk.write("scene.json", rope(0.0));
+    let pair = &desk.json("check scene.json", 1)["pairs"][0];
+    assert_eq!((&pair["part1"], &pair["part2"]), (&json!(0), &json!(3)), "the end and the start");
+}
+
 #[test]
 fn half_spaces_that_overlap_without_bound() {
     let desk = Desk::new();
