@@ -1,10 +1,17 @@
-//! Formats texts from files for messages: escapes control characters, and shortens long texts.
+//! Texts of files: drops byte order marks, and formats texts for messages, which escapes control
+//! characters and shortens long texts.
 
 use core::fmt::{self, Write as _};
 use std::borrow::Cow;
 
 /// The maximum number of characters of a text in a message, before control characters are escaped.
 const MAX_TEXT: usize = 160;
+
+/// Returns the bytes of a text without a byte order mark at its start. Some editors write this mark,
+/// U+FEFF, before UTF-8.
+pub(crate) fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes)
+}
 
 /// Formats a text from a file for a terminal.
 ///

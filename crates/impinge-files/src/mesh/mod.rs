@@ -19,6 +19,7 @@ pub use report::{Defect, Defects, MAX_DEFECTS, MeshReport};
 
 use self::raw::{FormatError, RawPart};
 use crate::files::{Files, extension};
+use crate::text::without_mark;
 use crate::{FileError, Problem, ReadOptions};
 
 /// The parts of a mesh file: the groups and objects of an OBJ file, the meshes of the nodes of a
@@ -148,10 +149,10 @@ type Reader = fn(&Path, &[u8], &mut Files) -> Result<Vec<RawPart>, FormatError>;
 /// Returns the reader for a file extension; `None` if the format is not supported.
 fn reader(extension: &str) -> Option<Reader> {
     Some(match extension {
-        "obj" => |_, bytes, _| obj::read(bytes),
+        "obj" => |_, bytes, _| obj::read(without_mark(bytes)),
         "stl" => |_, bytes, _| stl::read(bytes),
-        "ply" => |_, bytes, _| ply::read(bytes),
-        "gltf" | "glb" => gltf::read,
+        "ply" => |_, bytes, _| ply::read(without_mark(bytes)),
+        "gltf" | "glb" => |path, bytes, files| gltf::read(path, without_mark(bytes), files),
         _ => return None,
     })
 }

@@ -2,6 +2,7 @@
 
 use super::RawPart;
 use super::raw::{FormatError, number, words};
+use crate::text::without_mark;
 
 /// The number of bytes before the triangles of a binary file.
 const HEADER: usize = 84;
@@ -14,11 +15,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<RawPart>, FormatError> {
     let count = count(bytes);
     let has_length =
         count.is_some_and(|count| HEADER as u64 + TRIANGLE as u64 * count == bytes.len() as u64);
-    // The header of a binary file may also begin with `solid`.
-    if has_length || !bytes.trim_ascii_start().starts_with(b"solid") {
+    let text = without_mark(bytes);
+    // The header of a binary file may also begin with `solid`, or with the bytes of a mark.
+    if has_length || !text.trim_ascii_start().starts_with(b"solid") {
         return Ok(vec![binary(bytes, count.unwrap_or(u64::MAX))?]);
     }
-    let text = core::str::from_utf8(bytes)
+    let text = core::str::from_utf8(text)
         .map_err(|_| FormatError::syntax(None, "neither a binary STL file nor text"))?;
     ascii(text)
 }

@@ -25,6 +25,7 @@ use self::pose::Motion;
 use crate::files::{Files, extension};
 use crate::format::{QueryTypeFile, ShapeRef};
 use crate::source::Source;
+use crate::text::without_mark;
 use crate::{
     Dimension, FileError, JointBeyondLimits, MeshFile, MeshesFile, Problem, ReadOptions, RobotFile,
     ScalarFile, SceneFile, UpAxis,
@@ -158,8 +159,7 @@ impl Scene {
     pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Self, FileError> {
         let mut files = Files::beside(path, options);
         let bytes = files.read_named(path)?;
-        let text = String::from_utf8_lossy(&bytes).into_owned();
-        Self::of_text(Source::new(path.to_owned(), text), files)
+        Self::of_bytes(path.to_owned(), &bytes, files)
     }
 
     /// Parses a document. Errors contain `path`. The files that the document names are relative to
@@ -184,10 +184,12 @@ impl Scene {
         let path = path.into();
         let mut files = Files::beside(&path, options);
         files.count_bytes(text.len()).map_err(|problem| FileError::whole(&path, problem))?;
-        Self::of_text(Source::new(path, text.to_owned()), files)
+        Self::of_bytes(path, text.as_bytes(), files)
     }
 
-    fn of_text(source: Source, files: Files) -> Result<Self, FileError> {
+    fn of_bytes(path: PathBuf, bytes: &[u8], files: Files) -> Result<Self, FileError> {
+        let text = String::from_utf8_lossy(without_mark(bytes)).into_owned();
+        let source = Source::new(path, text);
         let file = source.parse()?;
         let meshes = MeshTable::new(source.folder(), files);
         Self::resolve(source, file, meshes)

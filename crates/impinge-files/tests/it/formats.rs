@@ -8,7 +8,10 @@ use impinge::dim3::query::distance;
 use impinge::dim3::shape::{Ball, Cuboid, ShapeHandle, TriMesh};
 use impinge_files::{MeshFile, Scene, load};
 
-use crate::cube::{gltf_sparse, obj, obj_inside_out, samples};
+use crate::cube::{gltf_sparse, obj, obj_inside_out, samples, stl_binary};
+
+/// The byte order mark U+FEFF in UTF-8, which some editors write before a text.
+const MARK: &[u8] = b"\xef\xbb\xbf";
 
 #[test]
 fn each_format_gives_the_same_solid() {
@@ -23,6 +26,45 @@ fn each_format_gives_the_same_solid() {
         assert_eq!(report.volume, Some(8.0), "{name}: two to the third, outside in front");
         assert_eq!(report.components, 1, "{name}: one piece");
     }
+}
+
+#[test]
+fn a_byte_order_mark_before_a_text_is_ignored() {
+    for sample in samples().into_iter().filter(|sample| !sample.bytes.contains(&0)) {
+        let name = sample.name;
+        let marked = [MARK, sample.bytes.as_slice()].concat();
+        let file = MeshFile::parse(&sample.path(), &marked)
+            .unwrap_or_else(|error| panic!("{name}: {error}"));
+        let [part] = file.parts() else { panic!("{name}: one part, not {}", file.parts().len()) };
+        assert_eq!(part.report.volume, Some(8.0), "{name}: {}", part.report);
+        assert!(part.report.is_clean(), "{name}: {}", part.report);
+    }
+    // The first line of an OBJ file counts.
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
+    let marked = [MARK, square.as_bytes()].concat();
+    let file = MeshFile::parse("square.obj".as_ref(), &marked).expect("two triangles");
+    assert_eq!(file.parts()[0].triangles.len(), 2, "no vertex is lost");
+    assert!(file.parts()[0].vertices.contains(&[0.0; 3]), "{:?}", file.parts()[0].vertices);
+    // The header of a binary STL file has no encoding.
+    let header = [MARK, b"a header"].concat();
+    let file = MeshFile::parse("cube.stl".as_ref(), &stl_binary(&header)).expect("a cube");
+    assert_eq!(file.parts()[0].report.volume, Some(8.0), "all 84 bytes are skipped");
+}
+
+#[test]
+fn a_byte_order_mark_before_a_scene_is_ignored() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = "\u{feff}{\"dimension\": 2, \"objects\": []}";
+    assert_eq!(Scene::from_json("scene.json", text).expect("a scene").names().len(), 0);
+    let path = folder.path().join("scene.json");
+    fs::write(&path, text).expect("it is written");
+    assert_eq!(load(&path).expect("a scene").names().len(), 0);
+    let path = folder.path().join("arm.urdf");
+    let robot = include_str!("../../scenes/arm.urdf");
+    fs::write(&path, format!("\u{feff}{robot}")).expect("it is written");
+    assert!(load(&path).expect("a robot").names().len() > 0);
+    let error = Scene::from_json("scene.json", "\u{feff}{x").expect_err("no name");
+    assert_eq!((error.line, error.column), (Some(1), Some(2)), "{error}");
 }
 
 #[test]
