@@ -69,8 +69,8 @@ Examples:
   impinge validate balls.implog
   impinge validate balls.implog balls.implog --json
 
-Fields of --json: recordings with file, steps, same, and difference (step, byte, object, field) or null. Exit
-code 1 if one differs.")]
+Fields of --json: recordings with file, steps, same, and difference (step, byte, object, field) or null. The
+step is the first that differs, as `replay --step` counts. Exit code 1 if one differs.")]
 pub(crate) struct ValidateArgs {
     /// The recordings; `-` is standard input
     #[arg(required = true, value_hint = ValueHint::FilePath)]

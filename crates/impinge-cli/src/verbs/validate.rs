@@ -3,7 +3,6 @@
 
 use core::fmt;
 
-use impinge::world::CollisionWorld;
 use impinge_files::Printable;
 use impinge_record::{Difference, Divergence, ObjectField, Registry, Replay, validate};
 use serde::Serialize;
@@ -51,9 +50,9 @@ struct Validated {
 /// The first difference of a replay.
 #[derive(Debug, Serialize)]
 struct FirstDifference {
-    /// The number of updates before the first call whose results differ.
+    /// The first step that differs, counted like the steps of `replay`: from 1 to the last step.
     step: usize,
-    /// The offset of the record of this call in the recording.
+    /// The offset in the recording of the record of the first call whose results differ.
     byte: usize,
     /// The name of the object that differs; `None` if the difference is not in an object.
     object: Option<String>,
@@ -77,7 +76,7 @@ impl Task for CompareHashes<'_> {
         let difference = match found {
             Some(found) => {
                 replay.seek(found.step + 1).map_err(failed)?;
-                Some(described(found, replay.world()))
+                Some(described(found, &replay))
             }
             None => None,
         };
@@ -85,14 +84,16 @@ impl Task for CompareHashes<'_> {
     }
 }
 
-/// Describes a difference. The name of its object is read from `world`, the world after the step.
+/// Describes a difference. `replay` is at the step that differs; the name of the object is read from
+/// its world.
 fn described<N: Stage<D>, const D: usize>(
     found: Divergence,
-    world: &CollisionWorld<N, D, Label>,
+    replay: &Replay<N, D, Label>,
 ) -> FirstDifference {
     let (object, field) = match found.difference {
         Difference::Object { index, field } => {
-            let object = world.collision_objects().find(|object| object.handle().uid() == index);
+            let mut objects = replay.world().collision_objects();
+            let object = objects.find(|object| object.handle().uid() == index);
             let name = object.map_or_else(|| format!("#{index}"), name_of);
             (Some(name), field_name(field))
         }
@@ -101,7 +102,7 @@ fn described<N: Stage<D>, const D: usize>(
         Difference::Answer => (None, "answer of a query"),
         _ => (None, "unknown"),
     };
-    FirstDifference { step: found.step, byte: found.offset, object, field }
+    FirstDifference { step: replay.step(), byte: found.offset, object, field }
 }
 
 /// Returns the names of the fields of an object that a hash covers, as a text for the report.

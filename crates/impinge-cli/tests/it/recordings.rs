@@ -82,10 +82,10 @@ fn a_changed_number_is_found_with_its_step_and_object() {
     let report = desk.json("validate balls.implog changed.implog", 1);
     let difference = &report["recordings"][1]["difference"];
     assert_eq!(report["recordings"][0]["same"], true);
-    assert_eq!((&difference["object"], &difference["step"]), (&json!("right"), &json!(0)));
+    assert_eq!((&difference["object"], &difference["step"]), (&json!("right"), &json!(1)));
     assert_eq!(difference["field"], "position, groups or query type");
     let text = desk.run("validate changed.implog");
-    assert!(text.out.contains("differs first at step 0: object right"), "{text:?}");
+    assert!(text.out.contains("differs first at step 1: object right"), "{text:?}");
 }
 
 #[test]
