@@ -93,15 +93,16 @@ where
     }
 }
 
-/// Removes the object of a disabled entity from the world.
+/// Removes the object of a disabled entity from the world, and its problem from the entity.
 pub(crate) fn forget_disabled<const D: usize, W: WorldKey>(
     disabled: On<'_, '_, Add, Disabled>,
     collisions: Option<ResMut<'_, Collisions<D, W>>>,
+    mut commands: Commands<'_, '_>,
 ) where
     f32: Glam<D>,
 {
-    if let Some(mut collisions) = collisions {
-        collisions.forget(disabled.entity);
+    if collisions.is_some_and(|mut all| all.forget(disabled.entity)) {
+        commands.entity(disabled.entity).try_remove::<ColliderProblem<D, W>>();
     }
 }
 

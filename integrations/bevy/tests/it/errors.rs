@@ -1,6 +1,7 @@
 //! Tests that invalid input does not panic, loses no entity, and gives an error.
 
 use bevy_app::App;
+use bevy_ecs::entity_disabling::Disabled;
 use bevy_ecs::prelude::*;
 use bevy_impinge::{Collider, ColliderError, ColliderFailed, ColliderProblem, Glam};
 use bevy_math::Vec3;
@@ -118,6 +119,39 @@ fn a_collider_with_an_error_waits_for_a_better_one() {
     app.world_mut().entity_mut(entity).remove::<Collider<3>>();
     app.update();
     assert_eq!(problem::<3>(&app, entity), None, "without a collider there is no problem");
+}
+
+#[test]
+fn a_collider_that_is_mended_while_disabled_has_no_problem() {
+    let mut app = app::<3>();
+    let stretched = at(0.0).with_scale(Vec3::new(1.0, 2.0, 1.0));
+    let capsule = Collider::<3>::capsule(0.5, 1.0);
+    let entity = app.world_mut().spawn((capsule, stretched)).id();
+    app.update();
+    assert!(matches!(problem::<3>(&app, entity), Some(ColliderError::Scale(_))));
+    app.world_mut().entity_mut(entity).insert(Disabled);
+    assert_eq!(problem::<3>(&app, entity), None, "a disabled entity is not in the world");
+    place(&mut app, entity, at(0.0));
+    app.world_mut().entity_mut(entity).remove::<Disabled>();
+    app.update();
+    assert_eq!(problem::<3>(&app, entity), None);
+    assert!(collisions::<3>(&app).contains(entity));
+}
+
+#[test]
+fn a_collider_that_stays_broken_while_disabled_is_a_problem_again() {
+    let mut app = app::<3>();
+    let entity = app.world_mut().spawn((Collider::<3>::sphere(-1.0), at(0.0), Disabled)).id();
+    app.update();
+    assert_eq!(problem::<3>(&app, entity), None);
+    for _ in 0..2 {
+        app.world_mut().entity_mut(entity).remove::<Disabled>();
+        app.update();
+        assert!(matches!(problem::<3>(&app, entity), Some(ColliderError::Shape(_))));
+        assert_eq!(failures::<3>(&mut app), 1, "told each time it is enabled");
+        app.world_mut().entity_mut(entity).insert(Disabled);
+        app.update();
+    }
 }
 
 #[test]
