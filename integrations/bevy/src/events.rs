@@ -3,7 +3,9 @@
 use core::marker::PhantomData;
 use core::ops::Deref;
 
+use bevy_ecs::lifecycle::HookContext;
 use bevy_ecs::prelude::{Component, Entity, EntityEvent, Message};
+use bevy_ecs::world::DeferredWorld;
 
 use crate::{DefaultWorld, WorldKey};
 
@@ -45,16 +47,34 @@ pub struct CollisionEnded<const D: usize, W: WorldKey = DefaultWorld> {
 
 /// The entities that this one touches, as of the last step, sorted by index. Insert it where you want to read it:
 /// entities without it cost nothing.
-#[derive(Component, Clone, Debug, PartialEq)]
+#[derive(Component, Clone, Debug)]
+#[component(on_insert = refill::<D, W>)]
 pub struct CollidingEntities<const D: usize, W: WorldKey = DefaultWorld> {
     pub(crate) entities: Vec<Entity>,
+    /// Whether a step has filled the list since it was inserted. Change detection does not tell: a
+    /// list that replaces another one is changed, but not added.
+    pub(crate) is_filled: bool,
     pub(crate) world: PhantomData<W>,
+}
+
+/// When the component is inserted, makes the next step fill it, whatever list is inserted.
+fn refill<const D: usize, W: WorldKey>(mut world: DeferredWorld<'_>, context: HookContext) {
+    if let Some(mut list) = world.get_mut::<CollidingEntities<D, W>>(context.entity) {
+        list.is_filled = false;
+    }
 }
 
 /// An empty list, which the next step fills.
 impl<const D: usize> Default for CollidingEntities<D> {
     fn default() -> Self {
-        Self { entities: Vec::new(), world: PhantomData }
+        Self { entities: Vec::new(), is_filled: false, world: PhantomData }
+    }
+}
+
+/// Lists with equal entities are equal, whether or not a step has filled them.
+impl<const D: usize, W: WorldKey> PartialEq for CollidingEntities<D, W> {
+    fn eq(&self, other: &Self) -> bool {
+        self.entities == other.entities
     }
 }
 
@@ -68,7 +88,7 @@ impl<const D: usize, W: WorldKey> CollidingEntities<D, W> {
     /// Returns an empty list for the world of another key.
     #[must_use]
     pub fn in_world<V: WorldKey>(self) -> CollidingEntities<D, V> {
-        CollidingEntities { entities: Vec::new(), world: PhantomData }
+        CollidingEntities { entities: Vec::new(), is_filled: false, world: PhantomData }
     }
 
     /// Whether an entity is in the list. Costs O(log n).

@@ -2,7 +2,6 @@
 
 use core::marker::PhantomData;
 
-use bevy_ecs::change_detection::DetectChanges;
 use bevy_ecs::entity_disabling::Disabled;
 use bevy_ecs::event::Event;
 use bevy_ecs::prelude::{Entity, MessageWriter, Query, Res, ResMut, World};
@@ -117,7 +116,7 @@ pub(crate) fn report<const D: usize, W: WorldKey>(
     }
 }
 
-/// Fills [`CollidingEntities`] that were inserted since the last step.
+/// Fills [`CollidingEntities`] that were inserted or replaced since the last step.
 pub(crate) fn fill_colliding<const D: usize, W: WorldKey>(
     collisions: Res<'_, Collisions<D, W>>,
     mut touched: Query<'_, '_, (Entity, &mut CollidingEntities<D, W>)>,
@@ -125,7 +124,8 @@ pub(crate) fn fill_colliding<const D: usize, W: WorldKey>(
     f32: Glam<D>,
 {
     for (entity, mut list) in &mut touched {
-        if list.is_added() {
+        if !list.is_filled {
+            list.is_filled = true;
             list.entities = collisions.touching(entity);
             list.entities.sort_unstable_by_key(rank);
         }

@@ -80,6 +80,44 @@ fn lists_of_colliding_entities_are_complete() {
     lists_are_complete::<3>();
 }
 
+fn a_list_that_is_replaced_is_filled_again<const D: usize>()
+where
+    f32: Glam<D>,
+{
+    let mut app = app::<D>();
+    let [a, b, c] = [0.0, 1.0, 9.0].map(|x| spawn::<D>(&mut app, x));
+    app.world_mut().entity_mut(a).insert(CollidingEntities::<D>::default());
+    app.world_mut().entity_mut(c).insert(CollidingEntities::<D>::default());
+    app.update();
+    let list = |app: &bevy_app::App, entity| {
+        app.world().get::<CollidingEntities<D>>(entity).map(|list| list.to_vec())
+    };
+    app.world_mut().entity_mut(a).insert(CollidingEntities::<D>::default());
+    app.update();
+    assert_eq!(list(&app, a), Some(vec![b]), "another list in its place");
+    *app.world_mut().get_mut::<CollidingEntities<D>>(a).expect("it has one") = Default::default();
+    app.update();
+    assert_eq!(list(&app, a), Some(vec![b]), "a list assigned");
+    let full = app.world().get::<CollidingEntities<D>>(a).expect("it has one").clone();
+    app.world_mut().entity_mut(c).insert(full.clone());
+    app.update();
+    assert_eq!(list(&app, c), Some(vec![]), "the list of another entity");
+    place(&mut app, b, at(5.0));
+    app.update();
+    let mut other = app.world_mut().spawn(full);
+    let other = other.insert((ball::<D>(), at(5.5))).id();
+    app.update();
+    assert_eq!((list(&app, a), list(&app, other)), (Some(vec![]), Some(vec![b])));
+    let empty = CollidingEntities::<D>::default();
+    assert_eq!(app.world().get::<CollidingEntities<D>>(a), Some(&empty), "filled or not");
+}
+
+#[test]
+fn lists_of_colliding_entities_are_filled_again() {
+    a_list_that_is_replaced_is_filled_again::<2>();
+    a_list_that_is_replaced_is_filled_again::<3>();
+}
+
 #[test]
 fn an_entity_with_two_children_of_its_own_gets_one_event_for_each_pair() {
     let mut app = app::<3>();
