@@ -6,6 +6,7 @@ mod children_beside_meshes;
 mod flat_cones;
 mod flat_outlines;
 mod height_fields;
+mod leaning_cylinders;
 mod manifolds;
 mod overlooked_overlap;
 mod sweeps;

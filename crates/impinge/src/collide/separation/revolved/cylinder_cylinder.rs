@@ -252,10 +252,10 @@ impl<N: Real> CylinderView<N> {
         let normal = if away < N::ZERO { -across } else { across };
         let (away, sizes) = (away.abs(), self.own.radius + self.other.radius);
         let height = away - sizes;
-        // Points where the common perpendicular meets the axes.
-        let (cosine, along) = (self.axis.y, self.center.dot(&self.axis));
-        let at_own = (self.center.y - cosine * along) / squared;
-        let at_other = (cosine * self.center.y - along) / squared;
+        // Points where the common perpendicular meets the axes, from the parts across the own axis:
+        // the dot product of whole vectors would cancel for nearly parallel axes.
+        let at_other = -radial(&self.center).dot(&radial(&self.axis)) / squared;
+        let at_own = self.center.y + self.axis.y * at_other;
         let (margin1, margin2) = (self.own.half - at_own.abs(), self.other.half - at_other.abs());
         let is_between = margin1 >= -rounding_error::<N>() && margin2 >= -rounding_error::<N>();
         // The proof for an overlap: two balls around one point between the axes, one in each solid,
