@@ -25,6 +25,50 @@ pub(super) fn span<N: Real>(cone: &Cone<N>, ray: &Ray<N, 3>) -> Option<Span<N, 3
     clipped(side, caps.mapped(|(sign, feature)| cap(half_height, sign, feature, ray)))
 }
 
+/// The condition for the times at which a line is inside a double cone:
+/// `quadratic · t² + 2 · linear · t + constant ≤ 0`.
+pub(super) struct ConeTimes<N: Real> {
+    pub(super) quadratic: N,
+    pub(super) linear: N,
+    pub(super) constant: N,
+    /// The square root of `linear² − quadratic · constant`; zero if that difference is negative by
+    /// rounding.
+    pub(super) root: N,
+}
+
+impl<N: Real> ConeTimes<N> {
+    /// Returns the interval in the nappe that widens along the line if `widening` is positive.
+    /// `None` if the quadratic and the linear term vanish and the constant is positive.
+    ///
+    /// A line steeper than the side (`quadratic < 0`) passes through both nappes. Its part in one
+    /// nappe is unbounded in the direction in which that nappe widens.
+    pub(super) fn in_nappe(&self, widening: N) -> Option<(N, N)> {
+        let (never_in, never_out) = (-N::INFINITY, N::INFINITY);
+        let Self { quadratic, linear, constant, root } = *self;
+        // The numerator of a root, without cancellation.
+        let larger = if linear < N::ZERO { root - linear } else { -(linear + root) };
+        if quadratic == N::ZERO {
+            let t = constant / larger;
+            return match (larger < N::ZERO, larger > N::ZERO) {
+                (true, _) => Some((never_in, t)),
+                (_, true) => Some((t, never_out)),
+                _ => (constant <= N::ZERO).then_some((never_in, never_out)),
+            };
+        }
+        // A tangent has one root: `constant` and `larger` may be rounding errors there.
+        let first = larger / quadratic;
+        let second = if root == N::ZERO { first } else { constant / larger };
+        let (low, high) = (min(first, second), max(first, second));
+        Some(if quadratic > N::ZERO {
+            (low, high)
+        } else if widening > N::ZERO {
+            (high, never_out)
+        } else {
+            (never_in, low)
+        })
+    }
+}
+
 /// The infinite cone below the apex, and a line.
 ///
 /// `cosine` and `sine` are the cosine and the sine of half the opening angle. A point at the
@@ -77,37 +121,9 @@ impl<N: Real> Nappe<N> {
             return None;
         }
         let root = self.cosine * max(discriminant, N::ZERO).sqrt();
-        let larger = if linear < N::ZERO { root - linear } else { -(linear + root) };
-        let (enter, leave) = self.piece(quadratic, larger, constant)?;
+        let times = ConeTimes { quadratic, linear, constant, root };
+        let (enter, leave) = times.in_nappe(-self.climb)?;
         Some(Span { enter: self.crossing(enter), leave: self.crossing(leave), thin: false })
-    }
-
-    /// Returns the interval below the apex where `quadratic · t² + 2 · linear · t + constant ≤ 0`;
-    /// `larger = −linear ∓ root` is the numerator of the root without cancellation. `None` if the
-    /// quadratic and the linear term vanish and the constant is positive.
-    ///
-    /// A line steeper than the side (`quadratic < 0`) passes through both nappes. Its part below
-    /// the apex is unbounded in the direction in which the line descends.
-    fn piece(&self, quadratic: N, larger: N, constant: N) -> Option<(N, N)> {
-        let (never_in, never_out) = (-N::INFINITY, N::INFINITY);
-        if quadratic == N::ZERO {
-            let t = constant / larger;
-            return match (larger < N::ZERO, larger > N::ZERO) {
-                (true, _) => Some((never_in, t)),
-                (_, true) => Some((t, never_out)),
-                _ => (constant <= N::ZERO).then_some((never_in, never_out)),
-            };
-        }
-        let first = larger / quadratic;
-        let second = if larger == N::ZERO { first } else { constant / larger };
-        let (low, high) = (min(first, second), max(first, second));
-        Some(if quadratic > N::ZERO {
-            (low, high)
-        } else if self.climb < N::ZERO {
-            (high, never_out)
-        } else {
-            (never_in, low)
-        })
     }
 
     /// Returns the crossing with the side at the time `t`.

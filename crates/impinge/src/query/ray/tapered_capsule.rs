@@ -3,6 +3,7 @@
 
 use super::ball::around;
 use super::clip::in_order;
+use super::cone::ConeTimes;
 use super::segment::{RayFeatures, span as segment_span};
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;
@@ -78,7 +79,8 @@ impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
     /// Returns the span of the line in the frustum; `None` if the line misses the frustum.
     fn span(&self) -> Option<Span<N, D>> {
         let (low, high) = self.between_circles()?;
-        let (enter, leave) = self.in_cone()?;
+        let times = self.in_cone()?;
+        let (enter, leave) = times.in_nappe(self.widening)?;
         let (enter, leave) = (max(enter, low), min(leave, high));
         let [enter, leave] =
             [(enter, self.against), (leave, -self.against)].mapped(|(t, fallback)| {
@@ -102,13 +104,13 @@ impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
         Some((min(first, second), max(first, second)))
     }
 
-    /// Returns the interval, relative to `start`, in which the line is in the cone, on the nappe
-    /// where `radius1 − sine · y` is positive; `None` if the line misses the cone.
+    /// Returns the times, relative to `start`, at which the line is in the double cone; `None` if
+    /// it misses the cone. The nappe of the frustum is the one where `radius1 − sine · y` is
+    /// positive.
     ///
-    /// The interval ends at roots of `quadratic · t² + 2 · linear · t + constant`, whose
-    /// coefficients are differences of squares that are not expanded.
-    fn in_cone(&self) -> Option<(N, N)> {
-        let (cosine, always) = (self.taper.cosine, (-N::INFINITY, N::INFINITY));
+    /// The coefficients are differences of squares that are not expanded.
+    fn in_cone(&self) -> Option<ConeTimes<N>> {
+        let cosine = self.taper.cosine;
         let form = |a: N, b: N| (cosine * a - b) * (cosine * a + b);
         let quadratic = form(self.flat_dir.norm(), self.widening.abs());
         let constant = form(self.flat.norm(), self.surface_radius.abs());
@@ -120,23 +122,7 @@ impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
             return None;
         }
         let root = cosine * max(discriminant, N::ZERO).sqrt();
-        let larger = if linear < N::ZERO { root - linear } else { -(linear + root) };
-        if larger == N::ZERO {
-            return (constant <= N::ZERO).then_some(always);
-        }
-        if quadratic == N::ZERO {
-            let t = constant / larger;
-            return Some(if larger < N::ZERO { (-N::INFINITY, t) } else { (t, N::INFINITY) });
-        }
-        let (first, second) = (larger / quadratic, constant / larger);
-        let (low, high) = (min(first, second), max(first, second));
-        Some(if quadratic > N::ZERO {
-            (low, high)
-        } else if self.widening > N::ZERO {
-            (high, N::INFINITY)
-        } else {
-            (-N::INFINITY, low)
-        })
+        Some(ConeTimes { quadratic, linear, constant, root })
     }
 
     /// Returns the area of the parallelogram of the line's point and its direction, both across the

@@ -4,7 +4,8 @@ use impinge::math::na::{Complex, Translation2, UnitComplex};
 use impinge::math::{Isometry2, Isometry3, Point, Space, Unit, Vector};
 use impinge::query::{PointQuery, Ray, RayCast};
 use impinge::shape::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, FeatureId, Plane, Segment, Shape, ShapeHandle, Triangle,
+    Ball, Capsule, Cone, Cuboid, Cylinder, FeatureId, Plane, Segment, Shape, ShapeHandle,
+    TaperedCapsule, Triangle,
 };
 
 type P2 = Point<f64, 2>;
@@ -202,6 +203,55 @@ fn capsules() {
             from_outside([0.0, -3.0, 0.0], [0.0, 1.0, 0.0], 2.0),
         ],
     );
+}
+
+#[test]
+fn tapered_capsules() {
+    let even = TaperedCapsule::<f64, 3>::new(1.0, 0.5, 0.5);
+    let ends = [P3::origin(), P3::new(0.0, 5.0, 0.0)];
+    let club = TaperedCapsule::try_from_ends(ends[0], ends[1], [1.0, 4.0]).expect("finite");
+    // Tangent to the side, which the ray touches at the height 0 and 1.
+    let tangents = |touch: [f64; 2]| {
+        let [y, z] = touch;
+        let toward = from_outside([-10.0, y, z], [1.0, 0.0, 0.0], 10.0);
+        [toward, miss([10.0, y, z], [1.0, 0.0, 0.0])]
+    };
+    check::<3>(&even, &tangents([0.0, 0.5]));
+    check::<3>(&club, &tangents([1.0, 2.0]));
+    let ray = Ray::new(P3::new(-10.0, 0.0, 0.5), V3::x());
+    let hits = [true, false].map(|solid| even.cast_local_ray(&ray, solid).map(|hit| hit.normal));
+    assert_eq!(hits, [Some(V3::z()); 2], "out of the side");
+}
+
+/// Asserts that a ray tangent to a round side hits the side where it touches it, or misses it by
+/// rounding, and that it hits nothing if the side is behind it.
+#[test]
+fn tangents_of_round_sides() {
+    type Side = (ShapeHandle<f64, 3>, [f64; 2], [f64; 2]);
+    // Each solid has a point of its side and the normal there, across and along the axis.
+    let sides: [Side; 3] = [
+        (ShapeHandle::new(TaperedCapsule::<f64, 3>::new(1.0, 0.5, 0.5)), [0.5, 0.25], [1.0, 0.0]),
+        (ShapeHandle::new(TaperedCapsule::<f64, 3>::new(2.5, 1.0, 4.0)), [2.0, -1.5], [0.8, -0.6]),
+        (ShapeHandle::new(Cone::new(1.0, 1.0)), [0.5, 0.0], [0.8_f64.sqrt(), 0.2_f64.sqrt()]),
+    ];
+    for (solid, [x, y], [across, along]) in &sides {
+        let mut hits = 0;
+        for step in (0..200).map(f64::from) {
+            let (sine, cosine) = ((0.7 * step).sin(), (0.7 * step).cos());
+            let generator = V3::new(-along * cosine, *across, -along * sine);
+            let dir = V3::new(-sine, 0.0, cosine) * step.sin().cos() + generator * step.sin().sin();
+            let start = P3::new(x * cosine, *y, x * sine) - dir * 7.0;
+            let found = solid.cast_local_ray(&Ray::new(start, dir), true).map(|hit| hit.toi);
+            assert!(
+                found.is_none_or(|toi| (toi - 7.0).abs() < 1e-5),
+                "{solid:?} {step}: {found:?}"
+            );
+            hits += i32::from(found.is_some());
+            let away = solid.cast_local_ray(&Ray::new(start, -dir), true);
+            assert_eq!(away, None, "{solid:?} {step}: behind the ray");
+        }
+        assert!((60..200).contains(&hits), "{solid:?}: {hits} hits");
+    }
 }
 
 #[test]
