@@ -4,8 +4,8 @@ use super::Here;
 use crate::batch::{SolidGroup, update_group2, update_group3};
 use crate::bounding_volume::Ray;
 use crate::collide::mesh::{
-    Arena, CompositeContacts, CulledParts, PartContacts, Query, Scene, face_contacts, over2, over3,
-    update_chain, update_on_surface,
+    Arena, CompositeContacts, CulledParts, PartContacts, Query, Scene, ball_contacts,
+    chain_contacts, face_contacts, over2, over3,
 };
 use crate::collide::packet::{LANES, PartPacket};
 use crate::collide::parts::{
@@ -64,13 +64,15 @@ pub trait ByDimension<N: Real, const D: usize>:
     /// it, or undecided.
     fn part_pairs(pairs: &PartPairs<N, D>, limit: N) -> PairMasks;
 
-    /// Updates the contacts of a convex solid and a chain of segments (2D), or of a ball and a
-    /// surface (3D). Returns `false` if the pair needs the generic path.
-    fn update_quickly(
+    /// Appends the contacts of a convex solid and the segments of a chain (2D), or of a ball and
+    /// the triangles of a surface (3D). Returns the reference point and the centre of the solid;
+    /// `None` if the pair needs the generic path.
+    fn quick_contacts(
         contacts: &mut CompositeContacts<N, D>,
         between: &Between<'_, N, D>,
         request: &ManifoldRequest<N>,
-    ) -> bool;
+        out: (&mut PartContacts<N, D>, &mut Arena<N, D>),
+    ) -> Option<[Point<N, D>; 2]>;
 
     /// Computes the distance of two convex solids; `None` above `limit`. For solids that clearly
     /// overlap, returns an arbitrary number that is zero or negative.
@@ -219,12 +221,13 @@ impl<N: Real> ByDimension<N, 2> for Here {
         part_pairs2(pairs, limit)
     }
 
-    fn update_quickly(
+    fn quick_contacts(
         contacts: &mut CompositeContacts<N, 2>,
         between: &Between<'_, N, 2>,
         request: &ManifoldRequest<N>,
-    ) -> bool {
-        update_chain(contacts, between, request)
+        out: (&mut PartContacts<N, 2>, &mut Arena<N, 2>),
+    ) -> Option<[Point<N, 2>; 2]> {
+        chain_contacts(contacts, between, request, out)
     }
 
     fn distance(pair: &Pair<'_, N, 2>, limit: N) -> Option<N> {
@@ -365,12 +368,13 @@ impl<N: Real> ByDimension<N, 3> for Here {
         part_pairs3(pairs, limit)
     }
 
-    fn update_quickly(
+    fn quick_contacts(
         contacts: &mut CompositeContacts<N, 3>,
         between: &Between<'_, N, 3>,
         request: &ManifoldRequest<N>,
-    ) -> bool {
-        update_on_surface(contacts, between, request)
+        out: (&mut PartContacts<N, 3>, &mut Arena<N, 3>),
+    ) -> Option<[Point<N, 3>; 2]> {
+        ball_contacts(contacts, between, request, out)
     }
 
     fn distance(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {

@@ -32,28 +32,25 @@ const ROUNDING: f64 = 16.0;
 /// outside the ball's box costs only a box test.
 const MAX_ROOMY: usize = 5 * LANES;
 
-/// Updates the contacts of a ball and a surface. Returns `false`, with nothing changed but the part
-/// cache, if the pair needs the generic path: always for solids other than balls.
-pub(crate) fn update_on_surface<N: Real>(
+/// Appends the contacts of a ball and the triangles of a surface to `part_contacts`, and their
+/// points to `arena`. Returns the reference point and the centre of the ball, in the frame of the
+/// surface; `None` if the pair needs the generic path: always for solids other than balls. Of
+/// `contacts`, only the part cache changes.
+pub(crate) fn ball_contacts<N: Real>(
     contacts: &mut CompositeContacts<N, 3>,
     between: &Between<'_, N, 3>,
     request: &ManifoldRequest<N>,
-) -> bool {
-    let Some(mut rolling) = Rolling::new(between, request) else { return false };
-    let (mut part_contacts, mut arena) = (PartContacts::new(), Arena::default());
-    let Some(rounding) = rolling.find(contacts, &mut part_contacts, &mut arena) else {
-        return false;
-    };
-    arena.rounding = rounding;
-    let (reference, center) = (Some(rolling.from), Some(rolling.center));
-    if !is_resolved(&part_contacts) {
+    (part_contacts, arena): (&mut PartContacts<N, 3>, &mut Arena<N, 3>),
+) -> Option<[Point<N, 3>; 2]> {
+    let mut rolling = Rolling::new(between, request)?;
+    arena.rounding = rolling.find(contacts, part_contacts, arena)?;
+    if !is_resolved(part_contacts) {
         let around = &contacts.around;
-        let request = &rolling.request;
-        let query = Query { between, is_self: false, around, reference: &reference, request };
-        query.resolve_contacts(&Scene::new(between, around), &mut part_contacts, &mut arena);
+        let (reference, request) = (&Some(rolling.from), &rolling.request);
+        let query = Query { between, is_self: false, around, reference, request };
+        query.resolve_contacts(&Scene::new(between, around), part_contacts, arena);
     }
-    contacts.conclude(&between.pair, request, [reference, center], &part_contacts, &arena);
-    true
+    Some([rolling.from, rolling.center])
 }
 
 /// A ball and the surface that it may touch.

@@ -3,7 +3,6 @@
 //! the contact that a query returns, up to rounding.
 
 use super::CompositeContacts;
-use super::ball::update_on_surface;
 use super::chain_tests::{assert_one_contact, assert_same};
 use crate::collide::ManifoldRequest;
 use crate::collide::pair::{Ordered, Placed};
@@ -116,9 +115,8 @@ fn flat_of<N: Space<3>>(random: &mut Random) -> Solid<N> {
 }
 
 /// Moves one solid and asserts, at each step, that the contacts do not depend on whether
-/// [`update_on_surface`] is tried before the generic path, and that queries return the deepest
-/// contact. Returns the number of updates by [`update_on_surface`], and the number of contact
-/// points.
+/// `update_quickly` is tried before the generic path, and that queries return the deepest contact.
+/// Returns the number of updates by the specialised path, and the number of contact points.
 fn follow<N: Space<3>>(
     (solid, height): Solid<N>,
     random: &mut Random,
@@ -147,7 +145,7 @@ fn follow<N: Space<3>>(
         let placed1 = Placed::of_pose(&pose, solid.geometry());
         let placed2 = Placed::of_pose(&under, terrain.geometry());
         let between = Between::of_ordered(&Ordered::new(&placed1, &placed2));
-        let is_done = update_on_surface(&mut quick, &between, &request);
+        let is_done = quick.update_quickly(&between, &request);
         if !is_done {
             quick.update_in_general(&between, false, &request);
         }

@@ -34,31 +34,28 @@ const ROUNDING: f64 = 16.0;
 /// packets, the surface of the chain is called instead.
 const MAX_SEARCHED: usize = 8;
 
-/// Updates the contacts of a convex solid and a chain. Returns `false`, with nothing changed but
-/// the part cache, if the pair needs the generic path.
-pub(crate) fn update_chain<N: Real>(
+/// Appends the contacts of a convex solid and the segments of a chain to `part_contacts`, and their
+/// points to `arena`. Returns the reference point and the centre of the solid, in the frame of the
+/// chain; `None` if the pair needs the generic path. Of `contacts`, only the part cache changes.
+pub(crate) fn chain_contacts<N: Real>(
     contacts: &mut CompositeContacts<N, 2>,
     between: &Between<'_, N, 2>,
     request: &ManifoldRequest<N>,
-) -> bool {
-    let Some(mut chain) = Chain::new(between, request) else { return false };
-    let (mut part_contacts, mut arena) = (PartContacts::new(), Arena::default());
-    if chain.find(contacts, &mut part_contacts, &mut arena).is_none() {
-        return false;
-    }
-    let (reference, center) = (Some(chain.from), Some(chain.center));
+    (part_contacts, arena): (&mut PartContacts<N, 2>, &mut Arena<N, 2>),
+) -> Option<[Point<N, 2>; 2]> {
+    let mut chain = Chain::new(between, request)?;
+    chain.find(contacts, part_contacts, arena)?;
     let query = Query {
         between,
         is_self: false,
         around: &contacts.around,
-        reference: &reference,
+        reference: &Some(chain.from),
         request: &chain.request,
     };
-    if !is_resolved(&part_contacts) {
-        query.resolve_contacts(&Scene::new(between, query.around), &mut part_contacts, &mut arena);
+    if !is_resolved(part_contacts) {
+        query.resolve_contacts(&Scene::new(between, query.around), part_contacts, arena);
     }
-    contacts.conclude(&between.pair, request, [reference, center], &part_contacts, &arena);
-    true
+    Some([chain.from, chain.center])
 }
 
 /// A convex solid and the chain that it may touch.

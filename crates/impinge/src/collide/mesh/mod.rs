@@ -51,8 +51,8 @@ use core::cell::OnceCell;
 
 use smallvec::SmallVec;
 
-pub(crate) use self::ball::update_on_surface;
-pub(crate) use self::chain::update_chain;
+pub(crate) use self::ball::ball_contacts;
+pub(crate) use self::chain::chain_contacts;
 pub(crate) use self::faces::face_contacts;
 pub(crate) use self::gather::CulledParts;
 use self::hidden::are_alike;
@@ -64,7 +64,7 @@ use self::patch::{Merging, Piece, merge};
 pub(crate) use self::patch::{Patch, PatchPoint};
 pub(crate) use self::scene::Scene;
 use self::within::deepest_within;
-pub(crate) use self::within::each_contact_within;
+pub(crate) use self::within::{each_contact_within, own_distance};
 use super::parts::between::Between;
 use super::parts::bounds::aabb_of;
 use crate::bounding_volume::Ray;
@@ -72,7 +72,7 @@ use crate::collide::pair::{Ordered, Placed};
 use crate::collide::separation::{of_ordered, placed, touching_of_ordered};
 use crate::collide::{ManifoldRequest, Pair, PairIds};
 use crate::convex::Separation;
-use crate::math::{Point, Pose, Real, Space, Vector, max, min};
+use crate::math::{Mapped, Point, Pose, Real, Space, Vector, max, min};
 use crate::shape::{Geometry, Kind, PartSolid, SupportMap};
 
 /// Points kept for each pair of parts before merging; enough for two facets of common solids.
@@ -182,9 +182,24 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         // and a solid that touches only a ghost has its contact with the neighbouring shape that
         // the ghost represents.
         let has_rules = between.has_bodies() || between.has_ghosts();
-        if has_rules || !<N::Algorithms>::update_quickly(self, between, request) {
+        if has_rules || !self.update_quickly(between, request) {
             self.update_in_general(between, is_self, request);
         }
+    }
+
+    /// Computes the contacts by the specialised path of the pair. Returns `false`, with nothing
+    /// changed but the part cache, if the pair needs the generic path.
+    fn update_quickly(
+        &mut self,
+        between: &Between<'_, N, D>,
+        request: &ManifoldRequest<N>,
+    ) -> bool {
+        let (mut contacts, mut arena) = (PartContacts::new(), Arena::default());
+        let out = (&mut contacts, &mut arena);
+        let points = <N::Algorithms>::quick_contacts(self, between, request, out);
+        let Some(points) = points else { return false };
+        self.conclude(&between.pair, request, points.mapped(Some), &contacts, &arena);
+        true
     }
 
     /// Computes the contacts by the generic path.
@@ -492,19 +507,4 @@ fn rounding<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> N {
     };
     let sizes = size(between.pair.first) + size(between.pair.second);
     N::lit(64.0) * N::EPSILON * (sizes + between.pair.pose12.translation.norm())
-}
-
-/// Returns the least signed distance of two parts of one composite that are not adjacent; `None` if
-/// no such pair is within `limit`. `pair` is the pair of the composite with itself.
-pub(crate) fn own_distance<N: Space<D>, const D: usize>(
-    pair: &Pair<'_, N, D>,
-    limit: N,
-) -> Option<N> {
-    let between = Between::of_pair(pair);
-    let candidates = gather::candidates(&between, true, max(limit, N::ZERO));
-    let around = PartCache::for_once();
-    let scene = Scene::new(&between, &around);
-    let one = |&parts| <N::Algorithms>::separation(&scene.pair(parts).pair(), limit);
-    let distances = candidates.iter().filter_map(one).map(|found| found.distance);
-    distances.reduce(min)
 }

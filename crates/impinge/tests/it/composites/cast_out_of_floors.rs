@@ -5,10 +5,13 @@ use crate::support::samples::stride;
 use crate::support::{query_support, slides};
 
 use impinge::math::na::{Translation3, UnitQuaternion};
-use impinge::math::{Isometry2, Isometry3, Point, Real, Space, Vector};
+use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Point, Real, Space, Vector};
 use impinge::narrow_phase::GeometricQueryType;
 use impinge::query::{ImpactOptions, ImpactStatus, Moving, impact};
-use impinge::shape::{Ball, Cuboid, HeightField, Polyline, Shape, ShapeHandle};
+use impinge::shape::{
+    Ball, Capsule, ConvexPolygon, Cuboid, HeightField, Polyline, Segment, Shape, ShapeHandle,
+    TriMesh, Triangle,
+};
 use impinge::world::{CollisionGroups, CollisionWorld, QueryFilter};
 use query_support::random::Random;
 use slides::{PATTERNS, field, grid, lowest, solids3};
@@ -146,6 +149,89 @@ fn what_leaves_the_floor_meets_the_wall() {
     assert_eq!(cast(2.5, [-1.0, 0.25]), None, "away from both");
     let hit = cast(2.51, [0.0, 1.0]).expect("sunk into the wall it slides along");
     assert_eq!((hit.toi, hit.normal.x), (0.0, -1.0));
+}
+
+/// Slopes of ramps: steeper and gentler than 1/1024, the least difference of two normals at which
+/// contacts are in two manifolds.
+const SLOPES: [f64; 4] = [0.01, 0.002, 0.0005, -0.0005];
+
+/// Asserts that a solid that slides along x over a floor hits the `ramp` at the time `expected` if
+/// it rises. The floor ends and the ramp begins at x = 10.
+fn slides_to_ramp<N: Space<D>, R, const D: usize>(
+    ramp: (&Isometry<N, R, D>, &dyn Shape<N, D>),
+    solid: (&Isometry<N, R, D>, &dyn Shape<N, D>),
+    slope: f64,
+    expected: f64,
+) where
+    R: AbstractRotation<N, D>,
+{
+    let mut velocity = Vector::<N, D>::zeros();
+    velocity[0] = N::ONE;
+    let (still, moving) = (Moving::still(ramp.0, ramp.1), Moving::new(solid.0, &velocity, solid.1));
+    let found = impact(&still, &moving, &ImpactOptions::new());
+    let what = format!("{:?} on {:?}, slope {slope}: {found:?}", solid.1, ramp.1);
+    assert_eq!(found.is_some(), slope > 0.0, "{what}");
+    if let Some(hit) = found {
+        assert!((hit.toi.as_f64() - expected).abs() < 1e-3, "{what}");
+        assert!((hit.normal[0].as_f64() + slope).abs() < 0.01 * slope, "{what}");
+    }
+}
+
+/// A solid whose lowest point is at y = -0.5, the time at which this point reaches the ramp, and its
+/// radius there: a round solid touches the ramp a little earlier.
+type Slider<'a, N, const D: usize> = (&'a dyn Shape<N, D>, f64, f64);
+
+fn over_lines<N: Space<2, Isometry = Isometry2<N>>>((solid, time, radius): Slider<'_, N, 2>) {
+    let w = |x: f64, y: f64| Vector::<N, 2>::new(N::lit(x), N::lit(y));
+    let [here, middle, at] =
+        [(0.0, 0.0), (10.0, 0.0), (8.0, 0.5)].map(|(x, y)| Isometry2::new(w(x, y), N::ZERO));
+    for slope in SLOPES {
+        let points = [(0.0, 0.0), (10.0, 0.0), (20.0, 10.0 * slope)];
+        let line = Polyline::open(points.map(|(x, y)| Point::from(w(x, y))).to_vec());
+        let heights = points.map(|(_, y)| N::lit(y)).to_vec();
+        let field = HeightField::<N, 2>::new(heights, w(20.0, 1.0));
+        let expected = time - radius * (slope.atan() / 2.0).tan();
+        slides_to_ramp((&here, &line), (&at, solid), slope, expected);
+        slides_to_ramp((&middle, &field), (&at, solid), slope, expected);
+    }
+}
+
+fn over_triangles<N: Space<3, Isometry = Isometry3<N>>>((solid, time, radius): Slider<'_, N, 3>) {
+    let [here, at] =
+        [v(0.0, 0.0, 0.0), v(8.0, 0.5, 0.3)].map(|at| Isometry3::new(at, v(0.0, 0.0, 0.0)));
+    for slope in SLOPES {
+        let row = |(x, y): (f64, f64)| [-5.0, 5.0].map(|z| Point::from(v::<N>(x, y, z)));
+        let corners = [(0.0, 0.0), (10.0, 0.0), (20.0, 10.0 * slope)].map(row).concat();
+        let faces = vec![[0, 1, 2], [2, 1, 3], [2, 3, 4], [4, 3, 5]];
+        let mesh = TriMesh::<N, 3>::new(corners, faces);
+        let expected = time - radius * (slope.atan() / 2.0).tan();
+        slides_to_ramp((&here, &mesh), (&at, solid), slope, expected);
+    }
+}
+
+fn sharp_solids_meet_ramps<N>()
+where
+    N: Space<2, Isometry = Isometry2<N>> + Space<3, Isometry = Isometry3<N>>,
+{
+    let p = |x: f64, y: f64| Point::<N, 2>::new(N::lit(x), N::lit(y));
+    let [a, b, c, d] = [p(-0.5, -0.5), p(0.5, -0.5), p(0.5, 0.5), p(-0.5, 0.5)];
+    let square = ConvexPolygon::try_from_points(&[a, b, c, d]).expect("a square");
+    over_lines((&Cuboid::new(Vector::<N, 2>::repeat(N::HALF)), 1.5, 0.0));
+    over_lines((&Triangle::new(a, b, c), 1.5, 0.0));
+    over_lines((&Segment::new(b, d), 1.5, 0.0));
+    over_lines((&square, 1.5, 0.0));
+    over_triangles((&Cuboid::new(Vector::<N, 3>::repeat(N::HALF)), 1.5, 0.0));
+}
+
+/// Asserts that a solid that slides over a floor hits a ramp, however gentle it is. In `f32` rounding
+/// hides a ramp of slope 0.002 from a round solid that touches the end of the floor.
+#[test]
+fn what_slides_over_the_floor_meets_a_gentle_ramp() {
+    sharp_solids_meet_ramps::<f32>();
+    sharp_solids_meet_ramps::<f64>();
+    over_lines::<f64>((&Ball::new(0.5), 2.0, 0.5));
+    over_lines::<f64>((&Capsule::<f64, 2>::new(0.25, 0.25), 2.0, 0.25));
+    over_triangles::<f64>((&Ball::new(0.5), 2.0, 0.5));
 }
 
 /// Asserts that solids cast in a world leave the floor without a hit, and hit it at time zero if
