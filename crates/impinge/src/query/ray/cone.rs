@@ -67,6 +67,11 @@ impl<N: Real> ConeTimes<N> {
             (never_in, low)
         })
     }
+
+    /// Returns whether the line stays on the side.
+    pub(super) fn runs_along_side(&self) -> bool {
+        [self.quadratic, self.linear, self.constant, self.root] == [N::ZERO; 4]
+    }
 }
 
 /// The infinite cone below the apex, and a line.
@@ -123,7 +128,8 @@ impl<N: Real> Nappe<N> {
         let root = self.cosine * max(discriminant, N::ZERO).sqrt();
         let times = ConeTimes { quadratic, linear, constant, root };
         let (enter, leave) = times.in_nappe(-self.climb)?;
-        Some(Span { enter: self.crossing(enter), leave: self.crossing(leave), thin: false })
+        let thin = times.runs_along_side();
+        Some(Span { enter: self.crossing(enter), leave: self.crossing(leave), thin })
     }
 
     /// Returns the crossing with the side at the time `t`.

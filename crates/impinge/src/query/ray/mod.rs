@@ -64,7 +64,7 @@ pub struct RayIntersection<N: Real, const D: usize> {
     /// it points against the ray.
     ///
     /// The normal is zero if the ray of a solid query starts inside, or on the boundary and leads
-    /// out; if a ray starts in a thin set and runs along it; or if its direction is zero.
+    /// out; if a ray starts on a side or thin set and runs along it; or if its direction is zero.
     pub normal: Vector<N, D>,
     /// The feature that was hit. A hit on a vertex or an edge may have the id of one of the faces
     /// there. A ray that starts inside a solid has the nearer of the two features ahead and behind.

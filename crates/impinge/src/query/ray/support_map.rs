@@ -77,7 +77,20 @@ impl<N: Real, const D: usize> RaySolid<'_, N, D> {
             // steps. The line counts as touching the solid at one point.
             None => enter,
         };
-        Some(Span { enter, leave, thin: false })
+        // A chord of a convex solid stays on the boundary if its middle is there.
+        let middle = (enter.t + leave.t) * N::HALF;
+        let thin = self.is_on_boundary(&(first + ray.dir * (middle - around.enter)));
+        Some(Span { enter, leave, thin })
+    }
+
+    /// Returns whether a point of the solid is on its boundary, within the accuracy of distances.
+    fn is_on_boundary(&self, point: &Vector<N, D>) -> bool {
+        (self.distance)(point).is_some_and(|(distance, _)| distance >= -self.touching())
+    }
+
+    /// Returns the largest distance that is treated as touching.
+    fn touching(&self) -> N {
+        self.precision * self.radius
     }
 }
 
@@ -99,7 +112,7 @@ impl<N: Real, const D: usize> Advance<'_, N, D> {
     /// Application to Continuous Collision Detection" (2004), but are computed anew in each step.
     /// Each plane proves that the solid is not hit before it, so the time never overshoots.
     fn first_contact(&self) -> Option<Crossing<N, D>> {
-        let touching = self.solid.precision * self.solid.radius;
+        let touching = self.solid.touching();
         let mut t = N::ZERO;
         for _ in 0..ROUNDS {
             let (distance, normal) = (self.solid.distance)(&(self.from + self.dir * t))?;

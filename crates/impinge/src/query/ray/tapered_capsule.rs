@@ -88,7 +88,7 @@ impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
                 let normal = away * self.taper.cosine + self.taper.along * self.taper.sine;
                 Crossing::new(self.start + t, unit_or(&normal, fallback), FeatureId::Edge(0))
             });
-        let span = Span { enter, leave, thin: false };
+        let span = Span { enter, leave, thin: times.runs_along_side() };
         in_order(&span).then_some(span)
     }
 

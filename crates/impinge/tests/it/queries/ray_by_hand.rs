@@ -4,7 +4,7 @@ use impinge::math::na::{Complex, Translation2, UnitComplex};
 use impinge::math::{Isometry2, Isometry3, Point, Space, Unit, Vector};
 use impinge::query::{PointQuery, Ray, RayCast};
 use impinge::shape::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, FeatureId, Plane, Segment, Shape, ShapeHandle,
+    Ball, Capsule, Cone, Cuboid, Cylinder, FeatureId, Plane, Rounded, Segment, Shape, ShapeHandle,
     TaperedCapsule, Triangle,
 };
 
@@ -221,6 +221,11 @@ fn tapered_capsules() {
     let ray = Ray::new(P3::new(-10.0, 0.0, 0.5), V3::x());
     let hits = [true, false].map(|solid| even.cast_local_ray(&ray, solid).map(|hit| hit.normal));
     assert_eq!(hits, [Some(V3::z()); 2], "out of the side");
+    // Along the side, which the ends touch.
+    check::<3>(&even, &[from_inside([0.5, 0.0, 0.0], [0.0, 1.0, 0.0], 0.0)]);
+    let flat = TaperedCapsule::<f64, 2>::new(1.0, 0.5, 0.5);
+    check::<2>(&flat, &[from_inside([0.5, 0.0], [0.0, 1.0], 0.0)]);
+    check::<2>(&flat, &[from_inside([0.25, 0.0], [1.0, 0.0], 0.25)]);
 }
 
 /// Asserts that a ray tangent to a round side hits the side where it touches it, or misses it by
@@ -252,6 +257,21 @@ fn tangents_of_round_sides() {
         }
         assert!((60..200).contains(&hits), "{solid:?}: {hits} hits");
     }
+}
+
+#[test]
+fn rounded_boxes() {
+    let solid = Rounded::new(Cuboid::new(V3::new(1.0, 1.0, 1.0)), 0.5);
+    let cases = [
+        from_outside([-4.0, 0.0, 0.0], [1.0, 0.0, 0.0], 2.5),
+        from_inside([0.0, 0.0, 0.0], [1.0, 0.0, 0.0], 1.5),
+        // Along the side.
+        from_inside([0.0, 1.5, 0.0], [1.0, 0.0, 0.0], 0.0),
+        from_inside([0.5, 0.25, -1.5], [0.0, -2.0, 0.0], 0.0),
+    ];
+    check::<3>(&solid, &cases);
+    let flat = Rounded::new(Cuboid::new(V2::new(1.0, 2.0)), 0.5);
+    check::<2>(&flat, &[from_inside([1.5, 1.0], [0.0, 1.0], 0.0)]);
 }
 
 #[test]
@@ -363,6 +383,8 @@ fn cones() {
             from_outside([-0.5, 2.0, 0.0], [0.5, -1.0, 0.0], 1.0),
         ],
     );
+    // Along the side.
+    check::<3>(&Cone::new(0.5, 1.0), &[from_inside([0.5, 0.0, 0.0], [-1.0, 1.0, 0.0], 0.0)]);
     check::<3>(&Cone::new(0.0, 2.0), &[from_outside([1.0, 1.0, 0.0], [0.0, -1.0, 0.0], 1.0)]);
     check::<3>(&Cone::new(2.0, 0.0), &[from_outside([1.0, 1.0, 0.0], [-1.0, 0.0, 0.0], 1.0)]);
 }
