@@ -24,7 +24,8 @@ pub(crate) struct Journal<U, H = (), K = ()> {
     notes: Notes<U, K>,
     /// Memory of removed notes, for reuse.
     spare: Vec<Notes<U, K>>,
-    /// By index of an object: the period in which it was last noted, plus 1 if the whole of it was noted then.
+    /// By index of an object: the period in which it was last noted, plus 1 if the whole of it was
+    /// noted then.
     noted: Vec<u32>,
     /// The current period: even, and greater than 0 if there are marks. Each mark and each return
     /// to a mark begins a new period.
@@ -70,6 +71,12 @@ impl<U, H, K> Clone for Journal<U, H, K> {
 }
 
 impl<U, H, K> Journal<U, H, K> {
+    /// Returns the number of notes since the last mark.
+    #[cfg(test)]
+    pub(crate) const fn num_notes(&self) -> usize {
+        self.notes.list.len()
+    }
+
     /// Returns `true` if there is a mark. Changes must then be noted.
     #[inline]
     pub(crate) fn is_on(&self) -> bool {

@@ -59,9 +59,11 @@ pub(crate) struct Group<S: Parts, V = (), R = ()> {
     pub(super) journal: Journal<GroupNote<S>, (), KeptPair<S, R>>,
     /// Points of the pairs in [`GroupNote::Written`] notes.
     pub(super) point_journal: Journal<S::Point>,
-    /// By row, if there are marks: the period in which the pair was last noted or added.
+    /// By row, if there are marks: the period in which the pair was last noted, plus 1 if it was
+    /// then noted as a whole, or added.
     pub(super) noted: Vec<u8>,
-    /// The current period. Each mark begins a new period.
+    /// The current period: even, and greater than 0 if there are marks. Each mark begins a new
+    /// period.
     pub(super) period: u8,
 }
 
@@ -152,7 +154,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         let row = self.keys.len();
         if self.journal.is_on() {
             self.journal.note(GroupNote::Pushed);
-            self.noted.push(self.period);
+            self.noted.push(self.period + 1);
         }
         self.keys.push(key);
         self.dirty.push(true);

@@ -190,7 +190,9 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
 
     #[inline]
     fn note_once(&mut self, row: u32) {
-        if core::mem::replace(&mut self.noted[row as usize], self.period) != self.period {
+        let noted = &mut self.noted[row as usize];
+        if *noted < self.period {
+            *noted = self.period;
             self.note_one(row);
         }
     }
@@ -211,12 +213,12 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         self.point_journal.note_all(points);
     }
 
-    /// Records all data of the pair in a row before a change other than an update. Does nothing if
-    /// there are no marks.
+    /// Records all data of the pair in a row before a change other than an update, each pair only
+    /// once between two marks. Does nothing if there are no marks.
     pub(super) fn note_whole(&mut self, row: u32) {
-        if self.journal.is_on() {
+        let (is_on, whole) = (self.journal.is_on(), self.period + 1);
+        if is_on && core::mem::replace(&mut self.noted[row as usize], whole) != whole {
             self.journal.note_kept(GroupNote::Replaced(row), KeptPair::Row(self.row(row)));
-            self.noted[row as usize] = self.period;
         }
     }
 
@@ -251,10 +253,10 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
     }
 
     fn begin_period(&mut self) {
-        self.period = self.period.wrapping_add(1);
+        self.period = self.period.wrapping_add(2);
         if self.period == 0 {
             self.noted.fill(0);
-            self.period = 1;
+            self.period = 2;
         }
     }
 
@@ -461,5 +463,38 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             self.dirty_pairs.clone_from(dirty_pairs);
         }
         self.forget_order();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A pair that is changed again and again between two marks is noted once, and a rewind restores
+    /// it although it moved to another row.
+    #[test]
+    fn a_changed_pair_is_noted_once() {
+        let mut group = Group::<u32>::default();
+        let rows = [0, 1, 2].map(|n| group.push([n, n + 1], n, false));
+        assert_eq!(rows, [0, 1, 2], "in order");
+        group.mark(1);
+        for step in 0..100 {
+            *group.state_mut(2) = 100 + step;
+        }
+        group.swap_remove(0);
+        *group.state_mut(0) = 7;
+        assert_eq!(group.journal.num_notes(), 2, "a change and a removal");
+        group.push([8, 9], 8, false);
+        *group.state_mut(2) = 9;
+        assert_eq!(group.journal.num_notes(), 3, "an addition");
+        let _ = group.rewind(1);
+        let states = rows.map(|row| *group.state(row));
+        assert_eq!((states, group.keys.len()), (rows, 3), "as they were");
+        *group.state_mut(2) = 5;
+        assert_eq!(group.journal.num_notes(), 1, "noted again after the rewind");
+        group.mark(2);
+        *group.state_mut(2) = 6;
+        let _ = group.rewind(2);
+        assert_eq!(*group.state(2), 5, "as at the second mark");
     }
 }

@@ -269,10 +269,13 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
     }
 
     /// Stores copies of the solids if both are balls, segments, capsules or boxes; else drops the
-    /// copies.
+    /// copies. The kernels for such pairs store no pose, so that of the old solids is dropped.
     pub(super) fn set_solids(&mut self, shapes: [&dyn Shape<N, D>; 2]) {
         let [one, other] = shapes.mapped(Shape::geometry);
         self.solids = Solid::of(one).zip(Solid::of(other)).map(<[_; 2]>::from);
+        if self.solids.is_some() {
+            self.kept.contacts.pose12 = None;
+        }
     }
 
     /// Returns the copies of the solids, in the pair's own order; `None` if there are none.

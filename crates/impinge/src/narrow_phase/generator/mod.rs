@@ -277,7 +277,7 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
     fn replace_shapes(&mut self, given: [&dyn Shape<N, D>; 2], shapes: [Geometry<'_, N, D>; 2]) {
         let has_composite = shapes.iter().any(|shape| shape.as_composite().is_some());
         match &mut self.contacts {
-            PairContacts::Convex(_) if !has_composite => {}
+            PairContacts::Convex(state) if !has_composite => state.set_solids(given),
             PairContacts::Composite(state) if has_composite => state.forget_shapes(),
             _ => {
                 // The new state starts its ids anew, so the pair needs a new identifier.

@@ -3,21 +3,20 @@
 use crate::support::samples::samples;
 use crate::support::scene_stage;
 
-use core::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use std::collections::BTreeMap;
 
 use impinge::math::na::{Translation, UnitComplex, UnitQuaternion};
-use impinge::math::{Isometry2, Isometry3, Point, Real, Unit, Vector};
+use impinge::math::{Isometry2, Isometry3, Real, Unit, Vector};
 use impinge::narrow_phase::{CollisionObjectHandle, ContactEvent, GeometricQueryType};
 use impinge::query::{Contact, ContactId, ContactKinematic, TrackedContact};
-use impinge::shape::{Ball, Capsule, ConvexHull, Cuboid, Plane, ShapeHandle};
+use impinge::shape::{Ball, Capsule, Cuboid, Plane, ShapeHandle};
 use impinge::world::{CollisionGroups, CollisionWorld};
 use impinge_scenes::{Placement, SceneShape, mixed_shapes, pile, spawn_and_despawn};
 use scene_stage::{Play, Player, shape_of};
 
-type World<N, const D: usize> = CollisionWorld<N, D, ()>;
+pub(super) type World<N, const D: usize> = CollisionWorld<N, D, ()>;
 
-fn cuboid<N: Real, const D: usize>(half: [f64; D]) -> ShapeHandle<N, D> {
+pub(super) fn cuboid<N: Real, const D: usize>(half: [f64; D]) -> ShapeHandle<N, D> {
     ShapeHandle::new(Cuboid::new(Vector::<N, D>::from_fn(|axis, _| N::lit(half[axis]))))
 }
 
@@ -34,7 +33,7 @@ fn pose<N: Play<D>, const D: usize>(
 }
 
 const UP: [f64; 3] = [0.0, 1.0, 0.0];
-const ACROSS: [f64; 3] = [0.0, 0.0, 1.0];
+pub(super) const ACROSS: [f64; 3] = [0.0, 0.0, 1.0];
 
 /// A world after its first update, with a cube that rests on a floor; the floor is added first or
 /// last.
@@ -71,7 +70,7 @@ impl<N: Play<D>, const D: usize> Floor<N, D> {
     }
 }
 
-fn contacts_of<N: Play<D>, const D: usize>(
+pub(super) fn contacts_of<N: Play<D>, const D: usize>(
     world: &World<N, D>,
     handle1: CollisionObjectHandle,
     handle2: CollisionObjectHandle,
@@ -201,61 +200,6 @@ fn names_end_with_contacts<N: Play<D>, const D: usize>() {
     let names = scene.ids();
     assert_eq!(names.len(), 1 << (D - 1), "a face again");
     assert!(names.iter().all(|name| !seen.contains(name)), "new names after proximity");
-}
-
-/// Asserts that a crossing of two edges ends when its normal turns by more than 45°, though the
-/// features stay the same, and outlasts a turn of 40°.
-fn crossings_end_with_their_normal<N: Play<3>>() {
-    let capsule = ShapeHandle::new(Capsule::new(N::ONE, N::lit(0.5)));
-    let corners = [0, 1, 2, 3, 4, 5, 6, 7].map(|index: u32| {
-        let sign = |axis: usize| if index >> axis & 1 == 1 { N::ONE } else { -N::ONE };
-        Point::<N, 3>::new(sign(0), sign(1), sign(2))
-    });
-    let hull = ShapeHandle::new(ConvexHull::from_points(&corners));
-    // An edge of the first solid lies on the x axis; seen from there, the second solid lies in the
-    // direction (0, cos, sin) of an angle, and rotates with the angle about the x axis. A capsule,
-    // long in y, rotates by a quarter turn more; a cube stands on an edge.
-    let (corner, diagonal) = ([0.0, -1.0, -1.0], 2.0_f64.sqrt());
-    for (shape, origin, reach, [lying, roll, pitch]) in [
-        (capsule, [0.0; 3], 1.0, [FRAC_PI_2, 0.0, FRAC_PI_2]),
-        (cuboid::<N, 3>([1.0; 3]), corner, diagonal, [0.0, FRAC_PI_4, 0.0]),
-        (hull, corner, diagonal, [0.0, FRAC_PI_4, 0.0]),
-    ] {
-        let place = |degrees: f64| {
-            let angle = degrees.to_radians();
-            let [x, z] = [angle + pitch, roll].map(|angle| (angle / 2.0).tan());
-            let axis = [x, -x * z, z];
-            let tangent = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
-            let translation = [0.0, angle.cos(), angle.sin()].map(|x| x * (reach - 0.01));
-            let axis = axis.map(|x| x / tangent);
-            N::pose_of(&Placement { translation, axis, tangent }, 1.0)
-        };
-        let tangent = (lying / 2.0).tan();
-        let first_place = Placement { translation: origin, axis: ACROSS, tangent };
-        for (turn, outlasts) in [(40.0, true), (70.0, false)] {
-            let mut world = World::<N, 3>::new(N::lit(0.02));
-            let query = GeometricQueryType::Contacts(N::lit(0.05), N::ZERO);
-            let mut add = |at, shape: &ShapeHandle<N, 3>| {
-                world.add(at, shape.clone(), CollisionGroups::new(), query, ())
-            };
-            let first = add(N::pose_of(&first_place, 1.0), &shape);
-            let second = add(place(45.0 - turn / 2.0), &shape);
-            world.update();
-            let before = contacts_of(&world, first, second);
-            assert_eq!(before.len(), 1, "edges that cross");
-            world.set_position(second, place(45.0 + turn / 2.0));
-            world.update();
-            let after = contacts_of(&world, first, second);
-            assert_eq!(after.len(), 1, "edges that cross");
-            assert_eq!(before[0].id == after[0].id, outlasts, "turned by {turn}");
-        }
-    }
-}
-
-#[test]
-fn crossings_end_when_they_turn() {
-    crossings_end_with_their_normal::<f32>();
-    crossings_end_with_their_normal::<f64>();
 }
 
 #[test]

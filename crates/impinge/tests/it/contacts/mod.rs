@@ -5,6 +5,7 @@ mod contact_ids;
 pub(crate) mod contact_points;
 mod contact_reuse;
 mod contract;
+mod crossings;
 mod curved_depths;
 mod pair_batches;
 mod smooth_solids;
