@@ -3,7 +3,7 @@
 use super::hull2::convex_hull2;
 use super::lattice::area;
 use super::span::{Scaled, distance_from_segment, first_three};
-use crate::math::{Point, Real, Vector, cross2};
+use crate::math::{Point, Real, Vector};
 use crate::shape::{ConvexPolygon, ShapeError};
 
 type P2 = Point<f64, 2>;
@@ -28,9 +28,8 @@ impl Wedge {
     /// Returns whether all points added lie, within `tolerance`, on the segment from the tip to
     /// `end`, which is relative to the tip.
     fn leads_to(&self, end: &Vector<f64, 2>, tolerance: f64) -> bool {
-        let is_between = |[right, left]: [Vector<f64, 2>; 2]| {
-            cross2(&right, end) >= 0.0 && cross2(end, &left) >= 0.0
-        };
+        let is_between =
+            |[right, left]: [Vector<f64, 2>; 2]| right.perp(end) >= 0.0 && end.perp(&left) >= 0.0;
         self.sides.is_none_or(is_between) && end.norm() + tolerance >= self.reach
     }
 
@@ -46,7 +45,7 @@ impl Wedge {
         let across = Vector::<f64, 2>::new(-point.y, point.x) * aside;
         let [right, left] = [point * along - across, point * along + across];
         let [old_right, old_left] = self.sides.unwrap_or([right, left]);
-        let is_inside = [cross2(&old_right, &right) > 0.0, cross2(&left, &old_left) > 0.0];
+        let is_inside = [old_right.perp(&right) > 0.0, left.perp(&old_left) > 0.0];
         self.sides = Some([
             if is_inside[0] { right } else { old_right },
             if is_inside[1] { left } else { old_left },

@@ -98,7 +98,9 @@ pub(super) fn check_fronts(
     winding: impl Fn(u32) -> Option<i64>,
 ) -> Result<(), MeshError> {
     let is_cavity = |piece: u32| {
-        let mut own = (0..).zip(pieces).filter(|&(_, &first)| first == piece);
+        // A piece has the number of its first part.
+        let parts = (0..).zip(pieces).skip(piece as usize);
+        let mut own = parts.filter(|&(_, &other)| other == piece);
         own.find_map(|(part, _)| winding(part)).is_none_or(|winding| winding > 0)
     };
     let mut contents = vec![[0.0; 2]; pieces.len()];

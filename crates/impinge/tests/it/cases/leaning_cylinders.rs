@@ -2,7 +2,7 @@
 //! of the axes is far from well conditioned, and its feet must not be taken for points between the
 //! ends of both cylinders.
 
-use impinge::math::{Isometry3, Real, Space, Vector};
+use impinge::math::{Isometry3, Space, Vector};
 use impinge::query::{Proximity, contact, distance, proximity};
 use impinge::shape::Cylinder;
 
