@@ -15,6 +15,10 @@ const MAX_DEPTH: usize = 32;
 /// attributes.
 const MAX_ATTRIBUTES: usize = 256;
 
+/// The texts after `<` and the ends of comments, character data and processing instructions, which
+/// have no attributes. A `<` in their content begins no element.
+const OPAQUE: [(&str, &str); 3] = [("!--", "-->"), ("![CDATA[", "]]>"), ("?", "?>")];
+
 /// The text of an XML file that is well-formed, with bounded depth and bounded numbers of
 /// attributes.
 #[derive(Debug)]
@@ -117,26 +121,40 @@ impl XmlFile {
     }
 }
 
-/// Returns an upper bound of the number of attributes of any element: the maximum number of `=`
-/// between angle brackets and outside of quotes.
+/// Returns an upper bound of the number of attributes of any element: the maximum number of `=` in
+/// a tag and outside of quotes. O(n) in the bytes of the text.
 fn attributes(text: &str) -> usize {
-    let (mut most, mut count) = (0, 0);
-    let (mut is_tag, mut quote) = (false, None);
-    for byte in text.bytes() {
+    let (mut rest, mut most) = (text, 0);
+    // Ends, since each pass goes beyond a `<`.
+    while let Some((_, markup)) = rest.split_once('<') {
+        let opaque =
+            OPAQUE.iter().find_map(|(start, end)| Some((markup.strip_prefix(start)?, end)));
+        rest = match opaque {
+            Some((content, end)) => content.split_once(end).map_or("", |(_, after)| after),
+            None => {
+                most = most.max(equals_signs(markup));
+                markup
+            }
+        };
+    }
+    most
+}
+
+/// Returns the number of `=` outside of quotes in a tag, which ends at a `>` outside of quotes. In
+/// well-formed text no tag contains a `<`, so the tag ends there as well.
+fn equals_signs(tag: &str) -> usize {
+    let (mut count, mut quote) = (0, None);
+    for byte in tag.bytes().take_while(|byte| *byte != b'<') {
         match (byte, quote) {
-            (b'<', _) => (count, is_tag, quote) = (0, true, None),
             (_, Some(open)) if byte == open => quote = None,
             (_, Some(_)) => {}
-            (b'>', None) => is_tag = false,
-            (b'"' | b'\'', None) if is_tag => quote = Some(byte),
-            (b'=', None) if is_tag => {
-                count += 1;
-                most = most.max(count);
-            }
+            (b'>', None) => break,
+            (b'"' | b'\'', None) => quote = Some(byte),
+            (b'=', None) => count += 1,
             _ => {}
         }
     }
-    most
+    count
 }
 
 #[cfg(test)]
@@ -147,5 +165,9 @@ mod tests {
     fn attributes_by_hand() {
         assert_eq!(attributes("<a b='=\">=' c = \"1\"/> d=e=f=g <h i='1'>"), 2);
         assert_eq!(attributes("it's = <a b='1' c='2' d='3'"), 3, "it may end anywhere");
+        assert_eq!(attributes("<!-- === --><a b='1'/>"), 1, "a comment has none");
+        assert_eq!(attributes("<a><![CDATA[<===]]></a>"), 0, "character data have none");
+        assert_eq!(attributes("<?x <!-- === ?><a b='1' c='2'/>"), 2, "no comment begins in it");
+        assert_eq!(attributes("<a b='1'/><!-- === ->"), 1, "a comment without an end");
     }
 }

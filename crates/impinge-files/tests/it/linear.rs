@@ -191,3 +191,25 @@ fn elements_with_very_many_attributes() {
         "{error}"
     );
 }
+
+#[test]
+fn equals_signs_outside_of_tags_are_no_attributes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let line = "=".repeat(300);
+    let comment = format!("<!-- {line} -->");
+    let section = format!("<gazebo><![CDATA[{line}]]></gazebo>");
+    let instruction = format!("<?tool {line}?>");
+    for banner in [comment, section, instruction] {
+        let urdf = format!("<robot name=\"r\">{banner}<link name=\"a\"/></robot>");
+        let found = load(&write(folder.path(), &urdf));
+        assert!(found.is_ok(), "{banner}: {found:?}");
+    }
+    // Each of these ends before the element, whatever begins within it.
+    let attributes: String = (0..300).map(|index| format!(" a{index}='1'")).collect();
+    for before in ["<?tool <!-- ?>", "<!-- <![CDATA[ -->", "<!-- <?tool -->"] {
+        let urdf = format!("{before}<robot name=\"r\"{attributes}><link name=\"a\"/></robot>");
+        let error = load(&write(folder.path(), &urdf)).expect_err("too many");
+        let is_counted = matches!(*error.problem, Problem::TooMany { given: 301, .. });
+        assert!(is_counted, "{before}: {error:?}");
+    }
+}
