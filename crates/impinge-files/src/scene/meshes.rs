@@ -206,10 +206,11 @@ impl Triangles<'_> {
         Ok(ShapeHandle::new(Compound::try_new(hulls.collect::<Result<_, Fault>>()?)?))
     }
 
-    /// Returns an error unless each part is the boundary of a volume.
+    /// Returns an error unless each part that has triangles is the boundary of a volume. The faces
+    /// of the other parts were dropped, so they add nothing to the mesh.
     fn check_solid(&self) -> Result<(), Problem> {
         let reports = self.parts.iter().map(|part| &part.report);
-        match reports.into_iter().find(|report| !report.is_solid()) {
+        match reports.into_iter().find(|report| report.triangles > 0 && !report.is_solid()) {
             None => Ok(()),
             Some(report) => Err(Problem::NotSolid {
                 boundary_edges: report.boundary_edges.count,

@@ -1,6 +1,8 @@
 //! Tests invalid scenes: the line, the column, the path and the value of each error.
 
+use impinge::dim3::shape::{MeshError, TriMesh};
 use impinge_files::{Problem, Scene};
+use impinge_record::LibraryError;
 
 /// Returns the error of reading a scene, or of creating its world.
 fn error(text: &str) -> impinge_files::FileError {
@@ -231,4 +233,26 @@ fn a_surface_with_a_hole_is_not_solid() {
     let error = scene.collision_world::<f64, 3>().map(|_| ()).expect_err("it is open");
     assert_eq!(error.path, "objects[0].shape.mesh_file.as", "{error}");
     assert!(matches!(*error.problem, Problem::NotSolid { boundary_edges: 4, .. }), "{error}");
+}
+
+#[test]
+fn a_part_whose_faces_were_dropped_opens_no_solid() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // The second part has one face, without area: vertices 1 and 1 coincide.
+    let text = format!("{}g sliver\nf 1 1 2\n", crate::cube::obj());
+    std::fs::write(folder.path().join("cube.obj"), text).expect("it is written");
+    let shape = |part: &str| {
+        let text = format!(
+            r#"{{"dimension": 3, "shapes": {{"a": {{"mesh_file": {{"path": "cube.obj", "as": "solid"{part}}}}}}}}}"#
+        );
+        let scene = Scene::from_json(folder.path().join("scene.json"), &text).expect("a scene");
+        scene.shape::<f64, 3>("a")
+    };
+    let solid = shape("").expect("the cube is closed");
+    assert!(solid.as_shape::<TriMesh<f64>>().expect("a mesh").is_solid());
+    let error = shape(r#", "part": "sliver""#).map(|_| ()).expect_err("it has no triangle");
+    assert!(
+        matches!(*error.problem, Problem::Library(LibraryError::Mesh(MeshError::Empty))),
+        "{error:?}"
+    );
 }
