@@ -57,8 +57,8 @@ class StageGestures implements Gestures {
   }
 
   /**
-   * Grabs the object under the pointer, and selects it. Stops time, since a running world would move the object back.
-   * Returns whether there is an object.
+   * Grabs the object under the pointer, and selects it. Stops time, since a running world, or a live recording that is
+   * followed, would move the object back. Returns whether there is an object.
    */
   grab(at: At): boolean {
     const { camera } = this.viewer.view;

@@ -60,9 +60,11 @@ export class Player {
     this.changed(this.status);
   }
 
-  /** Stops time. */
+  /** Stops time at the shown step. A live recording that grows is no longer followed, and a chosen step is dropped. */
   pause(): void {
     this.playing = false;
+    this.following = false;
+    this.wanted = null;
     this.changed(this.status);
   }
 

@@ -1,11 +1,13 @@
 // Tests of the drawing and the operation of the page, with the engine of `fake.ts` instead of the real one.
 
 import assert from "node:assert/strict";
+import { createServer, type ServerResponse } from "node:http";
+import type { AddressInfo } from "node:net";
 import { after, before, test } from "node:test";
 import type { Browser, Page } from "puppeteer-core";
 import type { Vec3 } from "../src/protocol";
 import { corners, projection2, projection3, silhouette } from "./project";
-import { findBrowser, golden, launch, settle, textOf, until, visit, write } from "./support";
+import { fill, findBrowser, golden, launch, settle, textOf, until, visit, write } from "./support";
 
 const path = findBrowser();
 if (!path) console.log("no browser: the tests of the page's drawing are skipped");
@@ -169,9 +171,8 @@ test("two clicks give the distance of two boxes", options, async () => {
   await page.close();
 });
 
-test("an object follows the pointer", options, async () => {
-  const { page } = await visit(browser, `${samples}#sample=boxes2:60`, { fake: true });
-  await until(page, /60 objects/);
+/** Drags box 0 of a 2D stage to (-3.5, 4.5). */
+async function dragFirst(page: Page): Promise<void> {
   const project = await projection2(page, BOUNDS2);
   const [from, to] = [project([0.2, 0.6, 0]), project([-3.3, 4.6, 0])];
   await page.keyboard.press("m");
@@ -181,13 +182,66 @@ test("an object follows the pointer", options, async () => {
   await page.mouse.move(to.x, to.y, { steps: 3 });
   await page.mouse.up();
   await settle(page);
+}
+
+/** Asserts that box 0 is selected, and is at the position to which `dragFirst` moves it. */
+async function assertDragged(page: Page): Promise<void> {
   const text = await textOf(page, ".selection");
   const [x, y] = /position\s+(\S+), (\S+)/
     .exec(text)!
     .slice(1)
     .map((part) => Number(part.replace("\u2212", "-")));
   assert.ok(Math.abs(x! + 3.5) < 0.05 && Math.abs(y! - 4.5) < 0.05, text);
+}
+
+test("an object follows the pointer", options, async () => {
+  const { page } = await visit(browser, `${samples}#sample=boxes2:60`, { fake: true });
+  await until(page, /60 objects/);
+  await dragFirst(page);
+  await assertDragged(page);
   await page.close();
+});
+
+/** Serves the page of a live recording until `act` ends. `push` sends a piece of the recording to the page. */
+async function live(act: (address: string, push: () => Promise<void>) => Promise<void>): Promise<void> {
+  let connect: (log: ServerResponse) => void;
+  const connection = new Promise<ServerResponse>((found) => (connect = found));
+  const server = createServer(({ url }, response) => {
+    if (url === "/log") return connect(response);
+    response.setHeader("content-type", "text/html; charset=utf-8");
+    response.end(fill({ scene: { open: "live", title: "Live" } }));
+  });
+  const push = async (): Promise<void> => {
+    (await connection).write("piece");
+  };
+  await new Promise<void>((ready) => server.listen(0, "127.0.0.1", ready));
+  const { port } = server.address() as AddressInfo;
+  try {
+    await act(`http://127.0.0.1:${port}/`, push);
+  } finally {
+    server.closeAllConnections();
+    server.close();
+  }
+}
+
+test("an object that is dragged in a live recording stays when the recording grows", options, async () => {
+  await live(async (address, push) => {
+    const { page, errors } = await visit(browser, address, { fake: true });
+    await push();
+    await until(page, /^step 0 of 10: 60 objects/);
+    await push();
+    await until(page, /^step 20 of 20: 60 objects/);
+    await dragFirst(page);
+    await push();
+    await page.waitForFunction(() => document.querySelector(".counter")?.textContent?.endsWith("/ 30"));
+    await settle(page);
+    await assertDragged(page);
+    assert.equal(await textOf(page, ".counter"), "20 / 30", "the page no longer follows");
+    await page.click(".live");
+    await until(page, /^step 30 of 30/);
+    assert.deepEqual(errors, []);
+    await page.close();
+  });
 });
 
 test("keys step, scrub, play and show the list of keys", options, async () => {

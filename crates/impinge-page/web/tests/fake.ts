@@ -1,6 +1,6 @@
 // A small engine of boxes without rotation, with the exports of the real engine. With it the page's drawing can be
 // tested and measured without the cost of collision detection. Rays and searches of nearest objects find nothing. The
-// stage `texts2:60` is `boxes2:60` with a text at each box.
+// stage `texts2:60` is `boxes2:60` with a text at each box. A stream has ten more steps after each piece of bytes.
 
 import type { Exports } from "../src/engine";
 import type { Control, FrameText, Label, Section, Vec3 } from "../src/protocol";
@@ -45,6 +45,7 @@ function gaps(a: Box, b: Box): Vec3 {
 }
 
 class FakeEngine {
+  private kind = "recording";
   private stage = makeStage("boxes3:60", 240);
   private step = 0;
   private moved = new Map<number, Vec3>();
@@ -55,6 +56,9 @@ class FakeEngine {
         return { text: { samples: [2, 3].map((dimension) => entry(dimension)) } };
       case "open":
         return { text: this.open(message) };
+      case "push":
+        this.stage.steps! += 10;
+        return { text: this.info() };
       case "seek":
       case "advance":
         return { text: this.go(message) };
@@ -87,10 +91,19 @@ class FakeEngine {
   }
 
   private open(message: Record<string, unknown>): object {
-    const isSample = message.kind === "sample";
-    this.stage = makeStage(isSample ? String(message.name) : "boxes3:60", isSample ? null : 240);
+    this.kind = String(message.kind);
+    const stages: Record<string, Stage> = {
+      recording: makeStage("boxes3:60", 240),
+      stream: makeStage("boxes2:60", 0),
+      sample: makeStage(String(message.name), null),
+    };
+    this.stage = stages[this.kind]!;
     this.step = 0;
     this.moved.clear();
+    return this.info();
+  }
+
+  private info(): object {
     const marks = Array.from({ length: 40 }, (_, index) => ({
       step: index * 6,
       started: index % 4,
@@ -102,12 +115,12 @@ class FakeEngine {
       queries: index % 7 === 0 ? 1 : 0,
     }));
     const { dimension, steps } = this.stage;
-    const ats = this.boxes.map(({ at }) => at);
+    const ats = this.stage.boxes(0).map(({ at }) => at);
     const bound = (most: (...parts: number[]) => number, by: number): number[] =>
       [0, 1, 2].map((axis) => most(...ats.map((at) => at[axis]!)) + (dimension === 2 && axis === 2 ? 0 : by));
     return {
-      kind: isSample ? "sample" : "recording",
-      step: 0,
+      kind: this.kind,
+      step: this.step,
       notes: [],
       dimension,
       scalar: "f32",
@@ -120,7 +133,7 @@ class FakeEngine {
       bounds: [bound(Math.min, -0.5), bound(Math.max, 0.5)],
       up: [0, 1, 0],
       marks: steps === null ? [] : marks,
-      controls: isSample ? controls() : [],
+      controls: this.kind === "sample" ? controls() : [],
     };
   }
 
