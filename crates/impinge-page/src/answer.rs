@@ -94,6 +94,9 @@ pub struct Status {
     /// The difference of a replay from its recording, as a text to be shown on the page; `None` if
     /// they agree.
     pub diverged: Option<String>,
+    /// All notes of a recording (see [`Info::notes`]), if there are more than the page has; else
+    /// empty.
+    pub notes: Vec<String>,
     /// The events of the last update, up to a limit.
     pub events: Vec<StatusEvent>,
     /// The number of all events of the last update.

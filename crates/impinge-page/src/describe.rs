@@ -124,6 +124,7 @@ pub(crate) fn status<N: Space<D>, const D: usize, T>(
         pairs: world.contact_pairs().count() + world.proximity_pairs().count(),
         contacts: world.contact_views().map(|(_, _, view)| view.len()).sum(),
         diverged: None,
+        notes: Vec::new(),
         events: contacts.chain(proximities).take(MAX_EVENTS).collect(),
         event_count: world.contact_events().len() + world.proximity_events().len(),
         controls: Vec::new(),

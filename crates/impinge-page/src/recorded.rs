@@ -21,7 +21,8 @@ use crate::{EngineError, Viewed};
 /// Pair filters and shapes that the registry lacks get stand-ins: filters that accept all pairs,
 /// and balls. A stand-in can make the replay differ from the recording. If the end of the recording
 /// is missing or damaged, the records before that part are replayed. [`Info::notes`] lists the
-/// stand-ins and the lost part.
+/// stand-ins and the lost part. A step that needs another stand-in adds it; [`Status::notes`]
+/// lists them again then.
 #[derive(Debug)]
 pub struct Recorded<N: Viewed<D>, const D: usize> {
     replay: Replay<N, D, Vec<u8>>,
@@ -30,6 +31,8 @@ pub struct Recorded<N: Viewed<D>, const D: usize> {
     /// The part of the recording that could not be read when it was opened. The replay keeps only
     /// the bytes before it, so it does not report the loss again.
     loss: Option<Loss>,
+    /// The number of notes that the page has. Notes are never removed.
+    known_notes: usize,
 }
 
 impl<N: Viewed<D>, const D: usize> Recorded<N, D> {
@@ -46,6 +49,7 @@ impl<N: Viewed<D>, const D: usize> Recorded<N, D> {
         recorded.read(bytes)?;
         recorded.loss = recorded.replay.loss().cloned();
         recorded.seek(1)?;
+        recorded.known_notes = recorded.notes().len();
         Ok(recorded)
     }
 
@@ -54,7 +58,7 @@ impl<N: Viewed<D>, const D: usize> Recorded<N, D> {
     pub fn growing(registry: Registry<N, D, Vec<u8>>) -> Self {
         let stand_ins = StandIns::of(registry);
         let replay = Replay::growing(&stand_ins.registry);
-        Self { replay, stand_ins, is_stream: true, loss: None }
+        Self { replay, stand_ins, is_stream: true, loss: None, known_notes: 0 }
     }
 
     /// Reads the bytes of a recording from its beginning, and once more for each missing name that
@@ -128,7 +132,13 @@ impl<N: Viewed<D>, const D: usize> Source<N, D> for Recorded<N, D> {
 
     fn status(&mut self) -> Status {
         let diverged = self.replay.divergence().map(|found| divergence_text(&found));
-        Status { diverged, ..status(self.world(), self.replay.step()) }
+        let mut notes = self.notes();
+        if notes.len() == self.known_notes {
+            notes.clear();
+        } else {
+            self.known_notes = notes.len();
+        }
+        Status { diverged, notes, ..status(self.world(), self.replay.step()) }
     }
 
     fn push(&mut self, bytes: &[u8]) -> Result<(), EngineError> {
@@ -144,6 +154,8 @@ impl<N: Viewed<D>, const D: usize> Source<N, D> for Recorded<N, D> {
         if step == 0 {
             self.go(1)?;
         }
+        // The response to a push is the description of the stage, which has all notes.
+        self.known_notes = self.notes().len();
         Ok(())
     }
 

@@ -31,7 +31,8 @@ pub trait Stage {
     fn info(&self) -> Info;
 
     /// Returns the state at the current step. It lists the controls of a sample only if one of them
-    /// has a value that the page neither received nor set.
+    /// has a value that the page neither received nor set, and the notes of a recording only if the
+    /// page has not received all of them.
     fn status(&mut self) -> Status;
 
     /// Appends bytes to a growing recording; an error for other stages.

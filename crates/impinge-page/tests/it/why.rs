@@ -1,14 +1,16 @@
-//! Tests each of the four conditions for two objects to touch.
+//! Tests each of the four conditions for two objects to touch, and the notes about stand-ins.
 
+use impinge::bounding_volume::Aabb;
 use impinge::dim2;
 use impinge::dim3;
-use impinge::shape::{Ball, Cuboid};
+use impinge::narrow_phase::GeometricQueryType;
+use impinge::shape::{Ball, Cuboid, Shape, ShapeHandle};
 use impinge::world::CollisionGroups;
 use impinge_page::{Engine, Recorded, Shown, Viewed};
 use impinge_record::{Recordable, Registry};
-use serde_json::Value;
+use serde_json::{Value, json};
 
-use crate::support::{Asker, Scene, all};
+use crate::support::{Asker, Scene, all, place};
 
 /// The explanation of a pair: the conditions, whether they are satisfied, and their texts.
 struct Reasons(Value);
@@ -137,5 +139,76 @@ fn what_lacks_in_a_page_is_stood_in_for() {
         let open = r#"{"do": "open", "kind": "recording"}"#;
         let (info, _) = asker.ask_with(open, &bytes[..length]);
         assert_eq!(info["notes"].as_array().map(Vec::len), Some(notes), "{info}");
+    }
+}
+
+/// Records five updates, registers the filter `teams`, and records two more updates.
+fn late_filter() -> Vec<u8> {
+    let mut scene = Scene::<f64, 2>::new(registry2());
+    scene.add([0.0; 3], Ball::new(1.0));
+    (0..5).for_each(|_| scene.0.update());
+    scene.0.register_broad_phase_pair_filter("teams").expect("the registry has it");
+    scene.0.update();
+    scene.finish()
+}
+
+#[test]
+fn a_stand_in_that_is_needed_after_the_opening_is_told_once() {
+    let note = json!([
+        "The pair filter teams is code of the program that was recorded; here it lets all pairs through."
+    ]);
+    let none = json!([]);
+    let bytes = late_filter();
+    let open = |kind: &str| format!(r#"{{"do": "open", "kind": "{kind}"}}"#);
+    let mut recording = Asker::default();
+    let (info, _) = recording.ask_with(&open("recording"), &bytes);
+    assert_eq!(info["notes"], none, "step 1 needs no filter");
+    let mut stream = Asker::default();
+    stream.ask(&open("stream"));
+    let (info, _) = stream.ask_with(r#"{"do": "push"}"#, &bytes);
+    assert_eq!(info["notes"], none, "a stream stops at step 1, too");
+    for mut asker in [recording, stream] {
+        let mut go = |step: u32| asker.ask(&format!(r#"{{"do": "seek", "step": {step}}}"#));
+        let found = [5, 6, 7, 1].map(|step| go(step)["notes"].clone());
+        assert_eq!(found, [none.clone(), note.clone(), none.clone(), none.clone()]);
+    }
+}
+
+/// A shape of a user-defined type.
+#[derive(Debug)]
+struct Coin(Ball<f64>);
+
+impl Shape<f64, 2> for Coin {
+    fn geometry(&self) -> dim2::shape::Geometry<'_, f64> {
+        Shape::<f64, 2>::geometry(&self.0)
+    }
+
+    fn local_aabb(&self) -> Aabb<f64, 2> {
+        self.0.local_aabb()
+    }
+}
+
+#[test]
+fn a_note_that_came_with_a_push_is_not_told_again() {
+    let coin = ShapeHandle::new(Coin(Ball::new(1.0)));
+    let registry = Registry::new().with_shape("coin", coin.clone());
+    let mut scene = Scene::<f64, 2>::new(registry);
+    scene.add([0.0; 3], Ball::new(1.0));
+    scene.0.update();
+    let start = scene.0.take_bytes();
+    let (groups, query) = (CollisionGroups::new(), GeometricQueryType::Contacts(0.0, 0.0));
+    let at = place::<f64, 2>([5.0, 0.0, 0.0]);
+    scene.0.add(at, coin, groups, query, Vec::new()).expect("it has a name");
+    let rest = scene.finish();
+
+    let note =
+        "The shape coin is code of the program that was recorded; here it is a ball of radius 0.5.";
+    let mut stream = Asker::default();
+    stream.ask(r#"{"do": "open", "kind": "stream"}"#);
+    for (bytes, notes) in [(start, json!([])), (rest, json!([note]))] {
+        let (info, _) = stream.ask_with(r#"{"do": "push"}"#, &bytes);
+        assert_eq!(info["notes"], notes);
+        let status = stream.ask(r#"{"do": "seek", "step": 2}"#);
+        assert_eq!(status["notes"], json!([]), "the page has {notes}");
     }
 }

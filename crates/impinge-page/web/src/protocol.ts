@@ -80,6 +80,8 @@ export interface Status {
   contacts: number;
   /** The difference of a replay from its recording, in words; null if there is none. */
   diverged: string | null;
+  /** All notes of a recording, if there are more than the page has; else empty. */
+  notes: string[];
   /** The events of the step, up to a limit; `event_count` is the number of all of them. */
   events: PairEvent[];
   event_count: number;

@@ -34,6 +34,8 @@ export class Viewer {
   readonly layers: Layers;
   private readonly transport: Transport;
   private readonly form: ControlForm;
+  /** A paragraph for each note, about a stand-in or a lost part of the recording. */
+  private readonly notes = make("div");
   private readonly counts = make("p", { class: "counts" });
   private readonly readouts = make("div", { class: "readouts" });
   private readonly events = make("div", { class: "events" });
@@ -113,6 +115,7 @@ export class Viewer {
   grow(info: Info): void {
     this.player.grow(info);
     this.transport.grow();
+    this.note(info.notes);
     this.view.frame(info.bounds);
   }
 
@@ -141,7 +144,13 @@ export class Viewer {
     this.stale = { ...ALL };
     this.form.update(status.controls);
     this.transport.update();
+    this.note(status.notes);
     if (status.diverged) this.complain(`The replay differs from its recording (${status.diverged}).`);
+  }
+
+  /** Shows the notes if there are more than before. They are never fewer, and a status without new notes lists none. */
+  private note(notes: string[]): void {
+    if (notes.length > this.notes.childElementCount) this.notes.replaceChildren(...notes.map(aboutText));
   }
 
   /**
@@ -210,11 +219,10 @@ export class Viewer {
 
   /** Arranges the panels. The selection is on top, where it is visible on a narrow screen too. */
   private panels(selection: HTMLElement): void {
-    const about = [this.info.about, ...this.info.notes]
-      .filter(Boolean)
-      .map((text) => make("p", { class: "about" }, text));
-    const world = make("section", { class: "world", "aria-label": "World" }, ...about, this.counts, this.form.element);
-    world.append(this.readouts, this.events);
+    const world = make("section", { class: "world", "aria-label": "World" });
+    if (this.info.about) world.append(aboutText(this.info.about));
+    world.append(this.notes, this.counts, this.form.element, this.readouts, this.events);
+    this.note(this.info.notes);
     const layers = make("details", { open: innerWidth > 720 }, make("summary", {}, "Layers"), this.layers.element);
     byId("panels").replaceChildren(selection, world, layers);
   }
@@ -232,6 +240,11 @@ export class Viewer {
     this.transport.timeline.draw();
     this.stale.picture = true;
   }
+}
+
+/** Returns a paragraph about the stage. */
+function aboutText(text: string): HTMLElement {
+  return make("p", { class: "about" }, text);
 }
 
 /** Returns the numbers of objects, pairs and contacts in words. */

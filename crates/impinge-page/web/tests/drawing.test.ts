@@ -244,6 +244,32 @@ test("an object that is dragged in a live recording stays when the recording gro
   });
 });
 
+test("a note that comes after the stage was opened is shown, and stays", options, async () => {
+  const note = /^The pair filter teams lets all pairs through\.$/;
+  const { page } = await visit(browser, recording, { fake: true });
+  await until(page, /^step 0 /);
+  assert.equal(await page.$(".about"), null);
+  for (const [key, summary] of [
+    ["PageDown", /^step 10 /],
+    ["ArrowRight", /^step 11 /],
+  ] as const) {
+    await page.keyboard.press(key);
+    await until(page, summary);
+    assert.match(await textOf(page, ".about"), note);
+  }
+  await page.close();
+  await live(async (address, push) => {
+    const { page } = await visit(browser, address, { fake: true });
+    await push();
+    await until(page, /^step 0 of 10/);
+    assert.equal(await page.$(".about"), null);
+    await push();
+    await until(page, /^step 20 of 20/);
+    assert.match(await textOf(page, ".about"), note);
+    await page.close();
+  });
+});
+
 test("keys step, scrub, play and show the list of keys", options, async () => {
   const { page } = await visit(browser, recording, { fake: true });
   await until(page, /^step 0 /);

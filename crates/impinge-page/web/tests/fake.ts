@@ -1,6 +1,7 @@
 // A small engine of boxes without rotation, with the exports of the real engine. With it the page's drawing can be
 // tested and measured without the cost of collision detection. Rays and searches of nearest objects find nothing. The
-// stage `texts2:60` is `boxes2:60` with a text at each box. A stream has ten more steps after each piece of bytes.
+// stage `texts2:60` is `boxes2:60` with a text at each box. A stream has ten more steps after each piece of bytes. A
+// recording gets a note at step 10, a stream with its second piece.
 
 import type { Exports } from "../src/engine";
 import type { Control, FrameText, Label, Section, Vec3 } from "../src/protocol";
@@ -43,6 +44,9 @@ function makeStage(name: string, steps: number | null): Stage {
 function gaps(a: Box, b: Box): Vec3 {
   return a.at.map((part, axis) => Math.abs(part - b.at[axis]!) - a.half[axis]! - b.half[axis]!) as Vec3;
 }
+
+/** The note of recordings and streams. */
+const NOTE = "The pair filter teams lets all pairs through.";
 
 class FakeEngine {
   private kind = "recording";
@@ -121,7 +125,7 @@ class FakeEngine {
     return {
       kind: this.kind,
       step: this.step,
-      notes: [],
+      notes: this.kind === "stream" && steps! > 10 ? [NOTE] : [],
       dimension,
       scalar: "f32",
       title: "",
@@ -156,6 +160,7 @@ class FakeEngine {
       pairs: 1,
       contacts: 2,
       diverged: null,
+      notes: this.kind === "recording" && this.step === 10 ? [NOTE] : [],
       events,
       event_count: 1,
       controls: [],
