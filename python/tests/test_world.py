@@ -34,6 +34,31 @@ def test_events_come_and_go(dim, dtype):
     assert world.contact_events()["kind"].tolist() == [0] and len(world) == 1
 
 
+@pytest.mark.parametrize("is_recorded", [False, True])
+def test_events_name_removed_objects_whose_index_is_used_again(is_recorded):
+    world, ball = impinge.World(), impinge.Ball(1)
+    recording = world.record() if is_recorded else None
+    (sensor,) = world.add(ball, lifted([2]), margin=0)
+    kept, old = world.add(ball, lifted([0, 1]))
+    world.update()
+    for _ in range(2):
+        started, near = [(1, kept, old)], [(impinge.Proximity.INTERSECTING, sensor, old)]
+        assert world.contact_events().tolist() == started and world.proximity_events().tolist()[-1:] == near
+        world.remove([old])
+        (new,) = world.add(ball, lifted([50]))
+        assert new != old and new & 0xFFFFFFFF == old & 0xFFFFFFFF, "the index is used again"
+        assert world.contact_events().tolist() == started and world.proximity_events().tolist()[-1:] == near
+        world.update()
+        assert world.contact_events().tolist() == [(0, kept, old)]
+        assert world.proximity_events().tolist() == [(impinge.Proximity.DISJOINT, sensor, old)]
+        world.set_poses([new], lifted([1]))
+        world.update()
+        old = new
+    if recording is not None:
+        recording.stop()
+        assert world.contact_events().tolist() == [(1, kept, old)]
+
+
 def test_poses_come_back():
     world = impinge.World()
     rng = np.random.default_rng(1)

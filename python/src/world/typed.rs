@@ -35,11 +35,15 @@ pub(crate) struct TypedWorld<N: Numeric<D>, const D: usize> {
     pub(super) slots: Vec<(u32, CollisionObjectHandle)>,
     /// The objects that are surfaces or polylines, or have such children.
     pub(super) surfaces: BTreeMap<CollisionObjectHandle, Standing>,
+    /// The handles in Python of the removed objects that events name. [`Self::slots`] has the
+    /// handle of a later object if their index is used again.
+    removed: BTreeMap<CollisionObjectHandle, u64>,
 }
 
 impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
     pub(crate) const fn new(world: KeptWorld<N, D>, margin: N) -> Self {
-        Self { world, margin, slots: Vec::new(), surfaces: BTreeMap::new() }
+        let slots = Vec::new();
+        Self { world, margin, slots, surfaces: BTreeMap::new(), removed: BTreeMap::new() }
     }
 
     /// Converts handles of Python to handles of the library. `ValueError` names the row of a handle
@@ -100,8 +104,14 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         debug_assert!(removed.is_ok(), "they were just added");
     }
 
+    /// Returns the handle in Python of an object of the world.
     pub(crate) fn of(&self, handle: CollisionObjectHandle) -> u64 {
         u64::from(self.slots[handle.uid()].0) << 32 | handle.uid() as u64
+    }
+
+    /// Returns the handle in Python of an object that an event names; the object may be removed.
+    fn of_event(&self, handle: CollisionObjectHandle) -> u64 {
+        self.removed.get(&handle).copied().unwrap_or_else(|| self.of(handle))
     }
 
     /// Sets the shape of each handle. If one is rejected, the earlier objects get their previous
@@ -189,8 +199,11 @@ impl<N: Numeric<D>, const D: usize> AnyWorld for TypedWorld<N, D> {
     fn remove(&mut self, handles: &[u64]) -> PyResult<()> {
         let fresh = self.fresh(handles, "handles")?;
         self.world.remove(&fresh).map_err(|refused| error::of_call(&refused))?;
-        for handle in &fresh {
+        for (handle, name) in fresh.iter().zip(handles) {
             self.surfaces.remove(handle);
+            if self.world.removed_object(*handle).is_some() {
+                self.removed.insert(*handle, *name);
+            }
         }
         Ok(())
     }
@@ -253,6 +266,7 @@ impl<N: Numeric<D>, const D: usize> AnyWorld for TypedWorld<N, D> {
     fn update(&mut self, py: Python<'_>) -> PyResult<()> {
         let crew = Crew::of(py, None)?;
         py.detach(|| crew.run(|| self.world.update()));
+        self.removed.retain(|handle, _| self.world.removed_object(*handle).is_some());
         Ok(())
     }
 
@@ -299,14 +313,16 @@ impl<N: Numeric<D>, const D: usize> AnyWorld for TypedWorld<N, D> {
     fn contact_events<'py>(&self, py: Python<'py>) -> Arrays<'py> {
         let row = |event: &ContactEvent| {
             let (first, second) = event.handles();
-            (u8::from(matches!(event, ContactEvent::Started(..))), self.of(first), self.of(second))
+            let kind = u8::from(matches!(event, ContactEvent::Started(..)));
+            (kind, self.of_event(first), self.of_event(second))
         };
         columns(py, self.world.contact_events().iter().map(row))
     }
 
     fn proximity_events<'py>(&self, py: Python<'py>) -> Arrays<'py> {
         let rows = self.world.proximity_events().iter().map(|event| {
-            (proximity_code(event.new_status), self.of(event.collider1), self.of(event.collider2))
+            let handles = [event.collider1, event.collider2].map(|handle| self.of_event(handle));
+            (proximity_code(event.new_status), handles[0], handles[1])
         });
         columns(py, rows)
     }
