@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from impinge._native import NativeChecker
 from impinge._poses import DTypeName, matrices
 from impinge._results import Floats, Indices
+from impinge._world_arguments import limit as not_nan
 
 if TYPE_CHECKING:
     from impinge._native import PosesLike, Progress, Shape
@@ -86,7 +88,7 @@ class Checker:
         self.dim = bodies[0].dim if bodies else 3
         self.dtype: DTypeName = bodies[0].dtype if bodies else "float64"
         self.columns = columns
-        frame_of = [int(frame) for frame in on]
+        frame_of = [_index(frame, f"on[{row}]") for row, frame in enumerate(on)]
         if len(frame_of) != len(bodies):
             raise ValueError(f"on has {len(frame_of)} elements, where {len(bodies)} are needed")
         self._counts = (len(frames), len(bodies))
@@ -128,7 +130,7 @@ class Checker:
         progress: Progress | None = None,
     ) -> NDArray[np.bool_]:
         """Whether all pairs are farther apart than `clearance`; with clearance 0, whether no pair touches: (n,)."""
-        free: NDArray[np.bool_] = self._ask("free", configurations, clearance, threads, progress)[0]
+        free: NDArray[np.bool_] = self._ask("free", configurations, not_nan(clearance, "clearance"), threads, progress)[0]
         return free
 
     def first_pair(
@@ -140,8 +142,8 @@ class Checker:
         progress: Progress | None = None,
     ) -> Indices:
         """The first pair whose distance is at most `clearance`: (n, 2); `NO_BODY` twice for a free configuration."""
-        pair: Indices = self._ask("pair", configurations, clearance, threads, progress)[1].reshape(-1, 2)
-        return pair
+        pair: Indices = self._ask("pair", configurations, not_nan(clearance, "clearance"), threads, progress)[1]
+        return pair.reshape(-1, 2)
 
     def nearest(
         self,
@@ -152,7 +154,7 @@ class Checker:
         progress: Progress | None = None,
     ) -> NearestPairs:
         """The nearest pair and its distance, up to `limit`; 0 if the pair touches: `NearestPairs(distance, pair)`."""
-        _, pair, distance = self._ask("nearest", configurations, limit, threads, progress)
+        _, pair, distance = self._ask("nearest", configurations, not_nan(limit, "limit"), threads, progress)
         return NearestPairs(distance, pair.reshape(-1, 2))
 
     def _ask(
@@ -206,11 +208,24 @@ def _pairs(pairs: ArrayLike, name: str) -> Indices:
     array = np.asarray(pairs)
     if array.size == 0:
         return np.zeros((0, 2), dtype=np.uint32)
-    if array.ndim != 2 or array.shape[1] != 2:
-        raise ValueError(f"{name} has the shape {array.shape}, where (m, 2) is needed")
-    if array.min() < 0:
-        raise ValueError(f"{name} has the negative number {array.min()}")
+    if array.ndim != 2 or array.shape[1] != 2 or not np.issubdtype(array.dtype, np.integer):
+        raise ValueError(f"{name} is {array.dtype} of the shape {array.shape}, where (m, 2) integers are needed")
+    wrong = ((array < 0) | (array >= NO_BODY)).any(axis=1)
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        raise ValueError(f"{name}[{row}] is {array[row].tolist()}, where indices from 0 to {NO_BODY - 1} are needed")
     return np.ascontiguousarray(array, dtype=np.uint32)
+
+
+def _index(value: SupportsIndex, name: str) -> int:
+    """Converts an index to `int`. TypeError names a value that is not an integer, ValueError a negative one."""
+    try:
+        index = operator.index(value)
+    except TypeError as error:
+        raise TypeError(f"{name} is {value!r}, where an integer is needed") from error
+    if index < 0:
+        raise ValueError(f"{name} is {index}: it is not negative")
+    return index
 
 
 def _columns(frames: Sequence[Frame], dim: int, dtype: str) -> tuple[Any, ...]:
@@ -220,12 +235,8 @@ def _columns(frames: Sequence[Frame], dim: int, dtype: str) -> tuple[Any, ...]:
     generators, axes, factors = np.zeros((count, dim * dim)), np.zeros((count, dim)), np.zeros((count, 2))
     parents, columns = [], []
     for number, frame in enumerate(frames):
-        parents.append(-1 if frame.parent is None else int(frame.parent))
-        if frame.parent is not None and frame.parent < 0:
-            raise ValueError(f"frames[{number}] has the parent {frame.parent}")
-        columns.append(-1 if frame.joint == "fixed" else int(frame.column))
-        if frame.joint != "fixed" and frame.column < 0:
-            raise ValueError(f"frames[{number}] has the column {frame.column}")
+        parents.append(-1 if frame.parent is None else _index(frame.parent, f"frames[{number}].parent"))
+        columns.append(-1 if frame.joint == "fixed" else _index(frame.column, f"frames[{number}].column"))
         if frame.origin is not None:
             origins[number] = np.asarray(matrices(frame.origin, dim, dtype, f"frames[{number}].origin")).reshape(size, size)
         factors[number] = frame.factor, frame.offset

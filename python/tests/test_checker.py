@@ -113,8 +113,41 @@ def test_without_columns_and_bodies():
         (lambda: Checker([Frame()], 0, [impinge.Ball(1)] * 2, [0, 0], None, [(0, 2)]), r"`pairs\[0\]` is 0 and 2"),
         (lambda: Checker([Frame()], 0, [impinge.Ball(1)], [0]).set_obstacles([], None, [(0, 0)]), r"`ignored\[0\]`"),
         (lambda: Checker([Frame()], 2).is_free([0.0]), r"configurations has the shape \(1,\)"),
+        (lambda: with_pairs([[0, 1], [2**32, 1]]), r"pairs\[1\] is \[4294967296, 1\]"),
+        (lambda: with_pairs([[0, -1]]), r"pairs\[0\] is \[0, -1\]"),
+        (lambda: with_pairs([[0.7, 1]]), r"pairs is float64 of the shape \(1, 2\)"),
+        (lambda: with_pairs([[np.nan, 1]]), "pairs is float64"),
+        (lambda: with_pairs([0, 1]), r"pairs is int64 of the shape \(2,\)"),
+        (lambda: with_pairs([]).set_obstacles([impinge.Ball(1)], None, [[2**32, 0]]), r"ignored\[0\] is \[4294967296"),
+        (lambda: Checker([Frame()], 0, [impinge.Ball(1)], [-1]), r"on\[0\] is -1"),
+        (lambda: Checker([Frame(-1)], 0), r"frames\[0\].parent is -1"),
+        (lambda: Checker([Frame(None, None, "revolute", [0, 0, 1], -1)], 1), r"frames\[0\].column is -1"),
+        (lambda: with_pairs([]).is_free([[]], np.nan), "clearance is nan"),
+        (lambda: with_pairs([]).first_pair([[]], np.nan), "clearance is nan"),
+        (lambda: with_pairs([]).nearest([[]], np.nan), "limit is nan"),
     ],
 )
 def test_what_is_refused(call, message):
     with pytest.raises(ValueError, match=message):
         call()
+
+
+def with_pairs(pairs):
+    """A checker of two bodies on a fixed frame."""
+    return Checker([Frame()], 0, [impinge.Ball(1)] * 2, [0, 0], None, pairs)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: Checker([Frame(), Frame()], 0, [impinge.Ball(1)], [1.9]), r"on\[0\] is 1.9"),
+        (lambda: Checker([Frame(0.9), Frame()], 0), r"frames\[0\].parent is 0.9"),
+        (lambda: Checker([Frame(None, None, "revolute", [0, 0, 1], 0.9)], 1), r"frames\[0\].column is 0.9"),
+    ],
+)
+def test_indices_are_integers(call, message):
+    with pytest.raises(TypeError, match=message):
+        call()
+    indices = np.array([1, 0], dtype=np.uint8)
+    balls = [impinge.Ball(1)] * 2
+    assert not Checker([Frame(), Frame()], 0, balls, indices, None, indices[None]).is_free([[]]).any(), "any integers"
