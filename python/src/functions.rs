@@ -228,7 +228,8 @@ fn nearest<'py>(
 
 /// The time at which two moving solids first come within `target_distance`.
 ///
-/// Arguments and errors as in `distance`; the velocities are (D,) or (n, D), in the world frame per unit of time.
+/// Arguments and errors as in `distance`; the velocities are (D,) or (n, D), in the world frame per unit of time. A
+/// single velocity is used for all elements, and a single pair for all velocities.
 /// `angular_velocity1`, `angular_velocity2`: in 2D a number or (n,) in radians, counter-clockwise; in 3D (3,) or (n,
 /// 3), the axis in the world frame times radians; zero by default. The solids rotate about the origins of their local
 /// frames. Returns `Impact(time, normal, point1, point2, is_reached)`, points and normal at that time; without an

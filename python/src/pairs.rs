@@ -16,7 +16,7 @@ use crate::answer::{
 };
 use crate::error::{self, not_nan};
 use crate::shapes::kind_of;
-use crate::side::SideArgument;
+use crate::side::{SideArgument, common};
 use crate::space::{Kind, Numeric, Task, run_in};
 use crate::supervise::{Call, Threads, supervise};
 use crate::turning::AskTurning;
@@ -415,10 +415,23 @@ impl<'py> Task for AskImpacts<'_, 'py> {
         let velocity2 = Vectors::<N, D>::of(velocity2, "velocity2")?;
         let (given1, given2) = (side1.read::<N, D>(self.kind)?, side2.read::<N, D>(self.kind)?);
         let (poses1, poses2) = (given1.poses()?, given2.poses()?);
-        let batch = PairBatch::try_new(given1.side(&*poses1)?, given2.side(&*poses2)?);
+        let (side1, mut side2) = (given1.side(&*poses1)?, given2.side(&*poses2)?);
+        let velocities = [velocity1.rows()?, velocity2.rows()?];
+        let len = common(&[
+            ("poses1", side1.len()),
+            ("poses2", side2.len()),
+            ("velocity1", velocities[0].len()),
+            ("velocity2", velocities[1].len()),
+        ])?;
+        // A batch takes its length from the sides alone: a single pair is repeated for each velocity.
+        let repeated: Vec<_>;
+        if len != 1 && [side1.len(), side2.len()] == [1, 1] {
+            repeated = vec![poses2.pose(0); len];
+            side2 = given2.side(&repeated)?;
+        }
+        let batch = PairBatch::try_new(side1, side2);
         let batch = batch.map_err(|error| error::of_batch(&error, "poses2"))?;
-        let options = self.impacts.options();
-        let impacts = Impacts { velocities: [velocity1.rows()?, velocity2.rows()?], options };
+        let impacts = Impacts { velocities, options: self.impacts.options() };
         let is_lone =
             given1.is_lone() && given2.is_lone() && velocity1.is_lone() && velocity2.is_lone();
         let is_quick = given1.is_quick() && given2.is_quick();

@@ -187,6 +187,40 @@ def test_impacts():
     assert impinge.impact(ball, None, [0, 0, 0], ball, shifted([6])[0], [-2, 0, 0], 1.0).time == np.inf
 
 
+@pytest.mark.parametrize("turn", [{}, {"angular_velocity1": [0, 0, 0]}])
+def test_velocities_of_impacts_are_one_or_as_many_as_poses(turn):
+    ball, still, slow = impinge.Ball(1), [0, 0, 0], [[-1, 0, 0], [-2, 0, 0]]
+    here, three, none = shifted([6])[0], shifted([6] * 3), np.zeros((0, 3))
+    found = impinge.impact(ball, None, still, ball, here, slow, **turn)
+    np.testing.assert_allclose(found.time, [4, 2], rtol=0, atol=1e-9)
+    assert found.point2.shape == (2, 3) and found.is_reached.all()
+    for row in range(2):
+        assert_row_is(found, row, impinge.impact(ball, None, still, ball, here, slow[row], **turn))
+    first = impinge.impact([ball], here, slow, ball, None, still, **turn)
+    np.testing.assert_allclose(first.time, [4, 2], rtol=0, atol=1e-9)
+    assert impinge.impact(ball, None, still, ball, here, slow[1:], **turn).time.shape == (1,)
+    for empty in (
+        impinge.impact(ball, None, none, ball, here, [-2, 0, 0], **turn),
+        impinge.impact(ball, None, none, ball, three[:0], none, **turn),
+        impinge.impact(ball, None, still, ball, three[:0], [-2, 0, 0], **turn),
+    ):
+        assert empty.time.shape == (0,) and empty.normal.shape == (0, 3)
+
+
+@pytest.mark.parametrize(
+    ("velocity1", "velocity2", "message"),
+    [
+        (np.zeros((0, 3)), [-2, 0, 0], "velocity1 has 0 elements where 3 are needed"),
+        ([0, 0, 0], np.zeros((0, 3)), "velocity2 has 0 elements where 3 are needed"),
+        (np.zeros((2, 3)), [-2, 0, 0], "velocity1 has 2 elements where 3 are needed"),
+        ([0, 0, 0], np.zeros((4, 3)), "velocity2 has 4 elements where 3 are needed"),
+    ],
+)
+def test_velocities_of_another_length_are_refused(velocity1, velocity2, message):
+    with pytest.raises(ValueError, match=message):
+        impinge.impact(impinge.Ball(1), None, velocity1, impinge.Ball(1), shifted([6] * 3), velocity2)
+
+
 def test_pairs_within_are_all_pairs_by_brute_force():
     rng = np.random.default_rng(5)
     poses = np.tile(np.eye(4), (120, 1, 1))
