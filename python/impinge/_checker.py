@@ -96,7 +96,10 @@ class Checker:
         read = _columns(frames, self.dim, self.dtype)
         self._native = NativeChecker(self.dim, self.dtype, read, columns, (bodies, frame_of, placed), apart)
         # A copy, for pickles: the caller may change its arrays later.
-        own = [frame._replace(origin=origin.copy()) for frame, origin in zip(frames, read[1], strict=True)]
+        own = [
+            frame._replace(origin=origin.copy(), axis=None if frame.axis is None else np.array(frame.axis))
+            for frame, origin in zip(frames, read[1], strict=True)
+        ]
         self._made_of = (own, columns, bodies, frame_of, placed.copy(), apart.copy())
         self._obstacles: tuple[Any, ...] | None = None
 

@@ -1,5 +1,6 @@
 """Shapes, worlds and checkers as values: equality, pickles, reading back, and all types of arguments."""
 
+import copy
 import pickle
 
 import impinge
@@ -193,6 +194,16 @@ def test_a_pickled_checker():
         assert (copied.frames(configurations) == checker.frames(configurations)).all()
         checker.set_obstacles([impinge.Cuboid([0.5, 4, 4])], impinge.Poses([[2.5, 0, 0]]), ignored=[[0, 0]])
     assert 0 < copied.is_free(configurations).mean() < 1
+
+
+def test_a_pickled_checker_keeps_its_axes():
+    axis = np.array([1.0, 0, 0])
+    checker = impinge.Checker([impinge.Frame(joint="prismatic", axis=axis)], 1, [impinge.Ball(1)], [0])
+    before = checker.frames([2.0])
+    assert before[0, :3, 3].tolist() == [2, 0, 0]
+    axis[:] = 0, 1, 0
+    for copied in (copy.copy(checker), copy.deepcopy(checker), pickle.loads(pickle.dumps(checker))):
+        assert (copied.frames([2.0]) == before).all()
 
 
 @pytest.mark.parametrize("digits", [3, 5, 8])
