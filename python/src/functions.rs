@@ -271,7 +271,8 @@ fn impact<'py>(
 
 /// The pairs of elements that are at most `distance` apart, as an ascending array (m, 2) of uint32.
 ///
-/// With one side, the pairs are [i, j] with i < j. With two sides, i is of the first and j of the second side.
+/// With one side, the pairs are [i, j] with i < j. With two sides, i is of the first and j of the second side. With
+/// `poses2` and no `shape2`, the shapes of both sides are `shape1`.
 /// Arguments and errors as in `distance`; `ValueError` also if `distance` is negative or NaN.
 ///
 /// >>> import impinge, numpy as np
@@ -294,7 +295,8 @@ fn pairs_within<'py>(
     let call = |shape2| {
         PairCall::new([shape1, poses1, shape2, poses2.unwrap_or(&none)], threads, progress)
     };
-    call(shape2.unwrap_or(shape1)).ask_within(shape2.is_some(), distance)
+    let is_two_sided = shape2.is_some() || poses2.is_some();
+    call(shape2.unwrap_or(shape1)).ask_within(is_two_sided, distance)
 }
 
 /// The points of shapes nearest to points in the world frame.

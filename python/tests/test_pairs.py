@@ -237,6 +237,14 @@ def test_pairs_within_are_all_pairs_by_brute_force():
     assert touching.tolist() == [[0, 1], [1, 2]], "the distance itself counts"
 
 
+def test_pairs_within_of_one_shape_at_two_sides():
+    ball, here = impinge.Ball(1), shifted([0, 9])
+    assert impinge.pairs_within(ball, here[:1], poses2=here[:1]).tolist() == [[0, 0]]
+    assert impinge.pairs_within(ball, here, poses2=shifted([9, 1, 0.5])).tolist() == [[0, 1], [0, 2], [1, 0]]
+    assert impinge.pairs_within(ball, here, None, None).tolist() == impinge.pairs_within(ball, here).tolist() == []
+    assert impinge.pairs_within(ball, here, ball).tolist() == [[0, 0]], "the second ball is at the identity"
+
+
 @settings(max_examples=60, deadline=None)
 @given(
     st.lists(st.tuples(*[st.floats(-1e6, 1e6)] * 3), min_size=1, max_size=20),
