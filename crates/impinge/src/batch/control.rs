@@ -21,7 +21,8 @@ const CHUNKS_PER_WAVE: usize = 1024;
 /// shorter. It receives the number of elements finished so far, which grows with each call; in the
 /// last call this is the number of all elements. If the callback returns `Break`, the batch ends
 /// with [`BatchError::Cancelled`] and the callback is not called again. With the feature `parallel`
-/// the calls come from the threads of the pool, one at a time.
+/// the calls come from the threads of the pool, one at a time; the callback must not run work on
+/// the pool itself, such as another batch, because it could wait for itself.
 ///
 /// ```
 /// use core::ops::ControlFlow;
@@ -105,10 +106,12 @@ impl<'a> Progress<'a> {
         let mut start = 0;
         while start < count {
             let end = count.min(start + CHUNKS_PER_WAVE * CHUNK);
-            self.each(start..end, PerChunk(&mut lists), &|range, PerChunk(lists)| {
+            // One list for each chunk: the last chunk would fill all lists that are left.
+            let lists = &mut lists[..(end - start).div_ceil(CHUNK)];
+            self.each(start..end, PerChunk(lists), &|range, PerChunk(lists)| {
                 lists.iter_mut().for_each(|list| work(range.clone(), list));
             })?;
-            lists.iter_mut().take((end - start).div_ceil(CHUNK)).for_each(&mut take);
+            lists.iter_mut().for_each(&mut take);
             start = end;
         }
         Ok(())
@@ -148,5 +151,27 @@ impl<'a> Progress<'a> {
         let flow = report(*done);
         self.is_cancelled.store(flow.is_break(), Ordering::Relaxed);
         flow
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::sync::atomic::AtomicUsize;
+
+    /// The lists of the last wave are fewer than those of the first, and each chunk is computed
+    /// once.
+    #[test]
+    fn each_chunk_is_computed_once() {
+        let (calls, chunks) = (AtomicUsize::new(0), CHUNKS_PER_WAVE + 2);
+        let work = |range: Range<usize>, list: &mut Vec<usize>| {
+            calls.fetch_add(1, Ordering::Relaxed);
+            list.push(range.start);
+        };
+        let mut starts = Vec::new();
+        let progress = Progress::new(&Control::new());
+        let done = progress.collect(chunks * CHUNK, work, |list| starts.append(list));
+        assert_eq!((done, calls.into_inner()), (Ok(()), chunks), "none twice");
+        assert!(starts.iter().copied().eq((0..chunks).map(|chunk| chunk * CHUNK)), "in order");
     }
 }

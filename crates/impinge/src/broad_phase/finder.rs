@@ -271,7 +271,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// Applies the waiting boxes, in the order in which they were set.
+    /// Applies the waiting boxes, in the order of their list.
     pub(super) fn apply_waiting(&mut self) {
         let mut waiting = core::mem::take(&mut self.waiting);
         let mut outside = core::mem::take(&mut self.outside);

@@ -53,8 +53,7 @@ impl Wedge {
     }
 }
 
-/// Removes points of a ring that lie, within `tolerance`, on a side of what is left. A point near
-/// the first one may be twice that far from the side.
+/// Removes points of a ring that lie, within twice `tolerance`, on a side of what is left.
 pub(super) fn thinned(points: &[P2], ring: Vec<usize>, tolerance: f64) -> Vec<usize> {
     let mut kept = vec![ring[0]];
     let (mut from, mut last, mut wedge) = (ring[0], None, Wedge::default());
@@ -68,13 +67,26 @@ pub(super) fn thinned(points: &[P2], ring: Vec<usize>, tolerance: f64) -> Vec<us
         wedge.add(&(points[index] - points[from]), tolerance);
         last = Some(index);
     }
-    let adds_nothing = |before: usize, at: usize, after: usize| {
-        distance_from_segment(&points[at], &points[before], &points[after]) <= tolerance
-    };
-    if let [first, second, _, .., last] = kept[..]
-        && adds_nothing(last, first, second)
-    {
-        kept.remove(0);
+    without_flat_corners(points, &kept, tolerance)
+}
+
+/// Removes corners of a ring that lie, within `tolerance`, on the segment between their neighbours;
+/// of two neighbours at most one, and never more than leave three. [`thinned`] may keep such a
+/// corner, where another point would be too far from the segment.
+fn without_flat_corners(points: &[P2], ring: &[usize], tolerance: f64) -> Vec<usize> {
+    let mut kept: Vec<usize> = Vec::with_capacity(ring.len());
+    let (mut removable, mut was_removed) = (ring.len().saturating_sub(3), false);
+    for (at, &index) in ring.iter().enumerate() {
+        let [before, after] = [at + ring.len() - 1, at + 1].map(|other| ring[other % ring.len()]);
+        let height = distance_from_segment(&points[index], &points[before], &points[after]);
+        // The last corner is a neighbour of the first.
+        let is_beside_first = at + 1 == ring.len() && kept.first() != ring.first();
+        was_removed = removable > 0 && !was_removed && !is_beside_first && height <= tolerance;
+        if was_removed {
+            removable -= 1;
+        } else {
+            kept.push(index);
+        }
     }
     kept
 }

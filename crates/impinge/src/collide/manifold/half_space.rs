@@ -6,6 +6,7 @@
 //! solids the candidates are the corners of the supporting feature, on the rounded surface.
 
 use super::frame::{Candidate, Candidates, ContactFrame, MIN_COSINE, Which, lifted};
+use super::raised::Nearer;
 use super::supporting::contact_feature;
 use super::{Pair, RawManifold, choose_in_frame};
 use crate::math::lanes::{dot, load, spread, with_lanes};
@@ -31,7 +32,21 @@ pub(super) fn build<N: Real, const D: usize>(
     if candidates.is_empty() {
         candidates.push(Candidate::alone(&frame.witness, [alone, BOUNDARY]));
     }
+    if candidates.len() > limit {
+        drop_raised(frame, &mut candidates);
+    }
     choose_in_frame(pair, frame, &mut candidates, limit, out);
+}
+
+/// Drops the corners that lie steeply above nearer ones ([`Nearer`]), such as those of the upper
+/// side of a plate. Corners whose distance exceeds the smallest by rounding errors stay.
+fn drop_raised<N: Real, const D: usize>(
+    frame: &ContactFrame<N, D>,
+    candidates: &mut Candidates<N, D>,
+) {
+    let places = candidates.iter().map(|one| (one.flat, one.distance));
+    let nearer = Nearer::new(places, frame.witness.distance + frame.tolerance, frame.sine);
+    candidates.retain(|one| !nearer.is_below(&one.flat, one.distance));
 }
 
 /// A solid above a half-space, in the contact frame. The methods add the corners of the solid as

@@ -28,6 +28,7 @@ mod half_space;
 pub(in crate::collide) mod ids;
 mod interval;
 pub(in crate::collide) mod matching;
+pub(in crate::collide) mod raised;
 pub(in crate::collide) mod reduce;
 mod ring;
 mod supporting;
@@ -311,7 +312,7 @@ fn chosen<N: Real, const D: usize>(
         return (0..candidates.len()).collect();
     }
     let flattened = candidates.iter().map(|c| (c.flat, c.distance, c.is_old()));
-    reduce::chosen(&mut reduce::projected(flattened, levels, limit), limit, tolerance)
+    reduce::chosen(&mut reduce::projected(flattened, levels), limit, tolerance)
 }
 
 /// Adds the nearest points, which lie on `features`, as a candidate. If exactly one candidate has

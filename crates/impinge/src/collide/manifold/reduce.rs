@@ -38,10 +38,6 @@ const ENOUGH: f64 = 0.9;
 /// length instead of area, because small offsets change their area much.
 const THIN: f64 = 1.0 / 4096.0;
 
-/// Slope above which the line from one candidate to a farther one is steep. It is several times the
-/// slope at which an angular prediction of 0.1 admits the raised corners of a tilted face.
-const STEEP: f64 = 1.0 / 4.0;
-
 /// A candidate projected along the normal.
 #[derive(Clone, Copy)]
 pub(in crate::collide) struct Projected<N: Real> {
@@ -63,41 +59,20 @@ pub(in crate::collide) type Indices = SmallVec<[usize; 8]>;
 /// Projects the `candidates`, each given as (tangent coordinates, distance, whether it is old). A
 /// candidate is deepest if its distance is at most `level` or is the smallest. If no old candidate
 /// is deepest in this sense, old candidates with a distance up to `slack` are deepest, too.
-///
-/// If there are more than `limit` candidates, those beyond `slack` that lie steeply above a nearer
-/// one are left out ([`STEEP`]): a wider upper face must not replace the face on which a solid
-/// rests.
-///
-/// ```text
-///     c───────────────c       the upper corners c span more than the feet n,
-///      \_n─────────n_/        but only the feet touch
-///     ─────────────────────
-/// ```
 #[inline]
 pub(in crate::collide) fn projected<N: Real>(
     candidates: impl Iterator<Item = (Vector<N, 2>, N, bool)> + Clone,
     [level, slack]: [N; 2],
-    limit: usize,
 ) -> Projections<N> {
     let lowest = candidates.clone().fold(N::INFINITY, |low, (_, distance, _)| min(distance, low));
     let level = max(level, lowest);
-    let resting = if candidates.clone().count() > limit { max(level, slack) } else { N::INFINITY };
-    let is_raised = |at: Vector<N, 2>, distance: N| {
-        let is_below = |(other, lower, _): (Vector<N, 2>, N, bool)| {
-            let reach = (distance - lower) / N::lit(STEEP);
-            reach > N::ZERO && (at - other).norm_squared() < reach * reach
-        };
-        distance > resting && candidates.clone().any(is_below)
-    };
     // If an old point is deepest, no other old point has to stand for it.
     let has_old = candidates.clone().any(|(_, distance, is_kept)| is_kept && distance <= level);
     let slack = if has_old { level } else { slack };
     let mut points = Projections::new();
-    for (index, (at, distance, is_kept)) in candidates.clone().enumerate() {
-        if !is_raised(at, distance) {
-            let is_deepest = distance <= level || is_kept && distance <= slack;
-            points.push(Projected { at, index, is_deepest, is_kept });
-        }
+    for (index, (at, distance, is_kept)) in candidates.enumerate() {
+        let is_deepest = distance <= level || is_kept && distance <= slack;
+        points.push(Projected { at, index, is_deepest, is_kept });
     }
     points
 }

@@ -39,6 +39,7 @@ mod part_contact;
 mod patch;
 mod patch_groups;
 mod patch_points;
+mod request;
 mod resolve;
 #[cfg(feature = "serde")]
 pub(crate) mod saved;
@@ -62,6 +63,7 @@ pub(crate) use self::part_contact::Arena;
 use self::part_contact::{PartContact, PartStatus, Reference};
 use self::patch::{Merging, Piece, merge};
 pub(crate) use self::patch::{Patch, PatchPoint};
+use self::request::of_parts;
 pub(crate) use self::scene::Scene;
 use self::within::deepest_within;
 pub(crate) use self::within::{each_contact_within, own_distance};
@@ -209,7 +211,11 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         is_self: bool,
         request: &ManifoldRequest<N>,
     ) {
-        let of_parts = of_parts(between, request);
+        let mut of_parts = of_parts(between, request);
+        if is_self {
+            // The parts of one shape do not rotate against each other.
+            of_parts.prediction = request.prediction;
+        }
         let around = &mut self.around;
         let culled = gather::culled(between, is_self, of_parts.prediction, around);
         let center = middle_of_first(between);
@@ -377,30 +383,6 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
                 part_contact::nearest_points(scene, contact.parts(), self.request, arena);
             contact.set_piece(piece, lowest);
         }
-    }
-}
-
-/// Returns the request for each pair of parts, without a rotation: the shape rotates about its
-/// nearest point, which may lie on another part. The prediction is larger by the distance by which
-/// the rotation of `request` can bring points nearer. [`merge`] later drops the points that the
-/// rotation does not bring within the prediction of `request`.
-fn of_parts<N: Space<D>, const D: usize>(
-    between: &Between<'_, N, D>,
-    request: &ManifoldRequest<N>,
-) -> ManifoldRequest<N> {
-    let ManifoldRequest { prediction, sine, .. } = *request;
-    let Pair { first, second, .. } = between.pair;
-    // Two half-spaces have no parts, so one of the diameters is finite if a margin is needed.
-    let margin = if sine > N::ZERO { sine * min(diameter(first), diameter(second)) } else { sine };
-    ManifoldRequest { prediction: prediction + margin, sine: N::ZERO, max_points: PART_POINTS }
-}
-
-/// Returns a length that no distance between two points of a shape exceeds; infinite for a
-/// half-space.
-fn diameter<N: Space<D>, const D: usize>(kind: Kind<'_, N, D>) -> N {
-    match Geometry(kind).as_support_map() {
-        Some(map) => N::TWO * size(map),
-        None => N::TWO * aabb_of(kind, &Pose::identity()).half_extents().norm(),
     }
 }
 

@@ -18,6 +18,7 @@ use super::super::{PairIds, RawPoint};
 use super::patch::{KeptIds, Merging, PatchPoint};
 use super::patch_groups::Lead;
 use crate::collide::manifold::ids::in_order;
+use crate::collide::manifold::raised::Nearer;
 use crate::collide::manifold::reduce::{self, Projections, a_deepest, ordering, projected};
 use crate::collide::manifold::{deepest_of, slack_level};
 use crate::math::order::sort_few;
@@ -82,11 +83,14 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
     /// the line. At least one of them is a deepest member: its distance is at most `level`, or at
     /// most [`slack_level`] for a member that continues an old point.
     fn choose(&self, members: &mut Members<N>, level: N, limit: usize, is_line: bool) {
+        if members.len() > limit {
+            self.drop_raised(members, level);
+        }
         let flattened =
             members.iter().map(|member| (member.flat, self.distance(member), self.is_old(member)));
         let tolerance = self.merging.tolerance;
         let slack = slack_level(level - tolerance, self.merging.size(), tolerance);
-        let mut points = projected(flattened, [level, slack], limit);
+        let mut points = projected(flattened, [level, slack]);
         let indices = if is_line {
             keep_ends(&mut points);
             reduce::chosen(&mut points, limit, tolerance)
@@ -98,6 +102,14 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
             members[at] = members[*index];
         }
         members.truncate(indices.len());
+    }
+
+    /// Drops the members beyond `level` that lie steeply above nearer ones ([`Nearer`]), such as the
+    /// corners of a table's top above its feet.
+    fn drop_raised(&self, members: &mut Members<N>, level: N) {
+        let places = members.iter().map(|member| (member.flat, self.distance(member)));
+        let nearer = Nearer::new(places, level, self.merging.request.sine);
+        members.retain(|member| !nearer.is_below(&member.flat, self.distance(member)));
     }
 
     /// Appends the chosen points, sorted by id. The deepest old point (one that the last update
@@ -223,11 +235,10 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
 /// Keeps the two ends of a line of sorted points, the points that continue old points and, if
 /// neither end is marked as deepest, one deepest point.
 fn keep_ends<N: Real>(points: &mut Projections<N>) {
-    let (last, deepest) = (points.len() - 1, points[a_deepest(points)].index);
+    let (last, deepest) = (points.len() - 1, a_deepest(points));
     let is_inner = !(points[0].is_deepest || points[last].is_deepest);
-    let ends = [points[0].index, points[last].index];
     points.retain(|point| {
-        let is_end = ends.contains(&point.index);
+        let is_end = point.index == 0 || point.index == last;
         is_end || point.is_kept || is_inner && point.index == deepest
     });
 }

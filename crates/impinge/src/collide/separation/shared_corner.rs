@@ -23,7 +23,7 @@ const ROUNDING: f64 = 64.0;
 /// between two of them. For two boxes it returns `found` unchanged, because their distance is a
 /// difference of their dimensions.
 #[inline]
-pub(super) fn with_shared_corner<N: Real, const D: usize>(
+pub(in crate::collide::separation) fn with_shared_corner<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     found: Separation<N, D>,
 ) -> Separation<N, D> {

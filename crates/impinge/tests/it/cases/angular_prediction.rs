@@ -250,7 +250,7 @@ fn tables_stand_on_their_legs<N: Space<3, Isometry = Isometry3<N>>>() {
     };
     let block = |half: [f64; 3]| ShapeHandle::new(Cuboid::new(Vector::from(half.map(N::lit))));
     let feet = [(-0.8, -0.8), (-0.8, 0.8), (0.8, -0.8), (0.8, 0.8)];
-    let mut parts = vec![(at(0.0, 0.15, 0.0), block([1.0, 0.05, 1.0]))];
+    let mut parts = vec![(at(0.0, 0.15, 0.0), block([0.9, 0.05, 0.9]))];
     parts.extend(feet.map(|(x, z)| (at(x, 0.05, z), block([0.05; 3]))));
     let table = ShapeHandle::new(Compound::new(parts));
     let corners = [[-8.0, -8.0], [-8.0, 8.0], [8.0, -8.0], [8.0, 8.0]];

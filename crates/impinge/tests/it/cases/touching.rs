@@ -171,3 +171,31 @@ fn queries_and_manifolds_agree_on_touching_in_the_plane() {
     in_the_plane::<f32>();
     in_the_plane::<f64>();
 }
+
+/// Boxes and triangles that stand exactly on the first vertex of a falling line touch it, in
+/// queries and manifolds, with a prediction of zero.
+fn on_vertices<N: Space<2, Isometry = Isometry2<N>>>() {
+    for (half, dx, dy) in (1..=3).flat_map(|half| {
+        (1..=9).flat_map(move |dx| {
+            (1..=9).map(move |dy| (f64::from(half), f64::from(dx), f64::from(dy)))
+        })
+    }) {
+        let ends = [[-half, -half], [dx - half, -half - dy]].map(point);
+        let line = Polyline::<N, 2>::open(ends.to_vec());
+        let corners = [[-half, -half], [half, -half], [half, half]].map(point);
+        let solids: [Box<dyn Shape<N, 2>>; 2] = [
+            Box::new(Cuboid::new(Vector::<N, 2>::repeat(N::lit(half)))),
+            Box::new(ConvexPolygon::try_new(&corners).expect("a triangle")),
+        ];
+        for solid in solids {
+            let said = touch(&Isometry2::identity(), &line, &*solid, 0.0);
+            assert_eq!(said, [true; 4], "half {half}, falling by {dy} in {dx}: {solid:?}");
+        }
+    }
+}
+
+#[test]
+fn solids_stand_exactly_on_vertices() {
+    on_vertices::<f32>();
+    on_vertices::<f64>();
+}

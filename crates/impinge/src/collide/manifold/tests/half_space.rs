@@ -203,8 +203,20 @@ fn plates_lie_on_their_lower_side<N: Scene<3> + Space<3>>() {
     }
 }
 
+/// Asserts that a tilted plate also has the corners of its raised edge if its rotation may bring
+/// them near, however large that is.
+fn raised_edges_count<N: Scene<3> + Space<3>>() {
+    for (tilt, sine) in [(0.1, 0.12), (0.28, 0.3), (0.6, 0.65)] {
+        let found = contacts_of_plate::<N>((1, -1.0), tilt, 0.0, [0.002, sine]);
+        assert_eq!(found.len(), 4, "{tilt}: {found:?}");
+        assert!(found.iter().all(|&(_, is_low)| is_low), "{tilt}: {found:?}");
+    }
+}
+
 #[test]
 fn plates_lie_on_the_corners_of_their_lower_side() {
     plates_lie_on_their_lower_side::<f32>();
     plates_lie_on_their_lower_side::<f64>();
+    raised_edges_count::<f32>();
+    raised_edges_count::<f64>();
 }

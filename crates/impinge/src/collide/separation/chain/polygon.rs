@@ -3,12 +3,14 @@
 
 use super::super::polygons::outline::{PolygonOutline, Row};
 use super::super::polygons::polygon_polygon::{Axis, of_axis};
+use super::super::shared_corner::with_shared_corner;
 use super::{ChainQuestion, EightSegments, Links};
+use crate::collide::Pair;
 use crate::collide::packet::LANES;
 use crate::math::lanes::{bits, dot, either, negated, over, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Real, Vector, Wide, min};
-use crate::shape::Segment;
+use crate::shape::{Kind, Segment};
 
 /// Adds the separations of the segments within the limit from the solid to `links`. `None` unless
 /// the solid is a polygon of at most 8 vertices, with or without a radius, and if some lane has no
@@ -48,6 +50,9 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
             let outlines = [&own, &solid.outline];
             let found =
                 of_axis::<S, N, V>(simd, outlines, &axes.axis(lane), axes.rounding_error[lane])?;
+            let (first, second) = (Kind::Segment(&segment), question.solid);
+            let pair = Pair { first, second, pose12: question.pose12 };
+            let found = with_shared_corner(&pair, found);
             if found.distance <= question.limit {
                 links.found.push((block * LANES + lane, found));
             }

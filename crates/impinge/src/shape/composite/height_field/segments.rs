@@ -289,8 +289,8 @@ impl<N: Real> Shape<N, 2> for HeightField<N, 2> {
         Geometry::composite(self)
     }
 
-    /// Returns the box around all parts that are neither holes nor ghosts; the origin if there are
-    /// no such parts.
+    /// Returns the box of the field: in x around all cells, in y around the parts that are neither
+    /// holes nor ghosts; the origin if there are no such parts.
     fn local_aabb(&self) -> Aabb<N, 2> {
         match whole(self) {
             Some(GridExtent { low, high }) => {

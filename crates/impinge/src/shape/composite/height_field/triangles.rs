@@ -476,8 +476,8 @@ impl<N: Real> Shape<N, 3> for HeightField<N, 3> {
         Geometry::composite(self)
     }
 
-    /// Returns the box around all parts that are neither holes nor ghosts; the origin if there are
-    /// no such parts.
+    /// Returns the box of the field: in x and z around all cells, in y around the parts that are
+    /// neither holes nor ghosts; the origin if there are no such parts.
     fn local_aabb(&self) -> Aabb<N, 3> {
         match whole(self) {
             Some(extent) => Aabb::new(Point::from(extent.low), Point::from(extent.high)),

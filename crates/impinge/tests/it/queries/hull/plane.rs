@@ -153,3 +153,13 @@ fn dense_circles_keep_their_size() {
     dense_circles::<f32>(100_000);
     dense_circles::<f64>(3_000);
 }
+
+/// A corner that rounding makes reflex, which must stay for the sake of another point until its
+/// neighbours are known, is left out in the end: the outline is a triangle.
+#[test]
+fn noise_on_a_side_is_no_dent() {
+    let u = f64::from(f32::EPSILON);
+    let outline = [[0.0, 0.0], [0.5, -3.75 * u], [0.75, 0.0], [0.78125, u], [1.0, -u], [0.5, 1.0]];
+    let polygon = ConvexPolygon::try_new(&points::<f32>(&outline)).expect("a triangle");
+    assert_eq!(polygon.vertices().len(), 3, "{polygon:?}");
+}
