@@ -12,19 +12,19 @@ type P2 = Point<f64, 2>;
 /// A. P. M. Witkam's strip, narrowed by each point as by H. Imai and M. Iri, 1986).
 ///
 /// ```text
-///          · · high          each point narrows the wedge to the
+///          · · high          each point narrows the sides to the
 ///   from ·──────(p)──── ·    tangents of the circle around it
 ///          · · low
 /// ```
 #[derive(Default)]
-struct Wedge {
+struct Corridor {
     /// Unit vectors along the right and the left side; `None` if every direction is allowed.
     sides: Option<[Vector<f64, 2>; 2]>,
     /// Distance of the farthest point.
     reach: f64,
 }
 
-impl Wedge {
+impl Corridor {
     /// Returns whether all points added lie, within `tolerance`, on the segment from the tip to
     /// `end`, which is relative to the tip.
     fn leads_to(&self, end: &Vector<f64, 2>, tolerance: f64) -> bool {
@@ -33,7 +33,7 @@ impl Wedge {
         self.sides.is_none_or(is_between) && end.norm() + tolerance >= self.reach
     }
 
-    /// Narrows the wedge to the directions that lead past `point`, which is relative to the tip.
+    /// Narrows the corridor to the directions that lead past `point`, which is relative to the tip.
     fn add(&mut self, point: &Vector<f64, 2>, tolerance: f64) {
         let length = point.norm();
         self.reach = self.reach.max(length);
@@ -56,15 +56,15 @@ impl Wedge {
 /// Removes points of a ring that lie, within twice `tolerance`, on a side of what is left.
 pub(super) fn thinned(points: &[P2], ring: Vec<usize>, tolerance: f64) -> Vec<usize> {
     let mut kept = vec![ring[0]];
-    let (mut from, mut last, mut wedge) = (ring[0], None, Wedge::default());
+    let (mut from, mut last, mut corridor) = (ring[0], None, Corridor::default());
     for index in ring[1..].iter().copied().chain([ring[0]]) {
         if let Some(corner) = last
-            && !wedge.leads_to(&(points[index] - points[from]), tolerance)
+            && !corridor.leads_to(&(points[index] - points[from]), tolerance)
         {
             kept.push(corner);
-            (from, wedge) = (corner, Wedge::default());
+            (from, corridor) = (corner, Corridor::default());
         }
-        wedge.add(&(points[index] - points[from]), tolerance);
+        corridor.add(&(points[index] - points[from]), tolerance);
         last = Some(index);
     }
     without_flat_corners(points, &kept, tolerance)

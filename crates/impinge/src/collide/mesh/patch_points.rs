@@ -107,6 +107,9 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
     /// Drops the members beyond `level` that lie steeply above nearer ones ([`Nearer`]), such as the
     /// corners of a table's top above its feet.
     fn drop_raised(&self, members: &mut Members<N>, level: N) {
+        if members.iter().all(|member| self.distance(member) <= level) {
+            return;
+        }
         let places = members.iter().map(|member| (member.flat, self.distance(member)));
         let nearer = Nearer::new(places, level, self.merging.request.sine);
         members.retain(|member| !nearer.is_below(&member.flat, self.distance(member)));
