@@ -22,7 +22,8 @@ use crate::collide::manifold::raised::Nearer;
 use crate::collide::manifold::reduce::{self, Projections, a_deepest, ordering, projected};
 use crate::collide::manifold::{deepest_of, slack_level};
 use crate::math::order::sort_few;
-use crate::math::{Real, Space, Vector};
+use crate::math::{Mapped, Real, Space, Vector};
+use crate::shape::Geometry;
 
 /// Number of points that fit into the lists without an allocation.
 const FEW: usize = 16;
@@ -83,7 +84,7 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
     /// the line. At least one of them is a deepest member: its distance is at most `level`, or at
     /// most [`slack_level`] for a member that continues an old point.
     fn choose(&self, members: &mut Members<N>, level: N, limit: usize, is_line: bool) {
-        if members.len() > limit {
+        if members.len() > limit && self.may_have_feet() {
             self.drop_raised(members, level);
         }
         let flattened =
@@ -104,12 +105,17 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         members.truncate(indices.len());
     }
 
+    /// Returns whether points may lie steeply above nearer ones. A convex solid on a surface has its
+    /// points on one face or edge.
+    fn may_have_feet(&self) -> bool {
+        let [first, second] = [self.merging.pair.first, self.merging.pair.second].mapped(Geometry);
+        let surface = second.as_composite().and_then(|composite| composite.surface());
+        first.as_support_map().is_none() || surface.is_none()
+    }
+
     /// Drops the members beyond `level` that lie steeply above nearer ones ([`Nearer`]), such as the
     /// corners of a table's top above its feet.
     fn drop_raised(&self, members: &mut Members<N>, level: N) {
-        if members.iter().all(|member| self.distance(member) <= level) {
-            return;
-        }
         let places = members.iter().map(|member| (member.flat, self.distance(member)));
         let nearer = Nearer::new(places, level, self.merging.request.sine);
         members.retain(|member| !nearer.is_below(&member.flat, self.distance(member)));
