@@ -18,10 +18,9 @@ pub(super) fn of_parts<N: Space<D>, const D: usize>(
 ) -> ManifoldRequest<N> {
     let ManifoldRequest { prediction, sine, .. } = *request;
     let Pair { first, second, .. } = between.pair;
-    let margin =
-        if sine > N::ZERO { sine * min(diameter(first), diameter(second)) } else { N::ZERO };
-    // Of two unbounded shapes, the margin is unknown.
-    let margin = if margin.is_finite_number() { margin } else { N::ZERO };
+    let margin = (sine > N::ZERO).then(|| sine * min(diameter(first), diameter(second)));
+    // The margin is unknown if both shapes are unbounded.
+    let margin = margin.filter(|margin| margin.is_finite_number()).unwrap_or(N::ZERO);
     ManifoldRequest { prediction: prediction + margin, sine: N::ZERO, max_points: PART_POINTS }
 }
 

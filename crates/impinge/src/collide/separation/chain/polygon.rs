@@ -7,10 +7,9 @@ use super::super::shared_corner::with_shared_corner;
 use super::{ChainQuestion, EightSegments, Links};
 use crate::collide::Pair;
 use crate::collide::packet::LANES;
-use crate::convex::Separation;
 use crate::math::lanes::{bits, dot, either, negated, over, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
-use crate::math::{Point, Real, Vector, Wide, max_component, min};
+use crate::math::{Real, Vector, Wide, min};
 use crate::shape::{Kind, Segment};
 
 /// Adds the separations of the segments within the limit from the solid to `links`. `None` unless
@@ -51,7 +50,9 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
             let outlines = [&own, &solid.outline];
             let found =
                 of_axis::<S, N, V>(simd, outlines, &axes.axis(lane), axes.rounding_error[lane])?;
-            let found = solid.at_shared_corner(question, &segment, found);
+            let (first, second) = (Kind::Segment(&segment), question.solid);
+            let pair = Pair { first, second, pose12: question.pose12 };
+            let found = with_shared_corner(&pair, found);
             if found.distance <= question.limit {
                 links.found.push((block * LANES + lane, found));
             }
@@ -77,26 +78,6 @@ struct PolygonExtents<N: Real> {
 }
 
 impl<N: Real> PolygonExtents<N> {
-    /// Returns [`with_shared_corner`] of the segment and the solid, after a cheap test with a larger
-    /// bound of the rounding error: most distances are far above it.
-    #[inline(always)]
-    fn at_shared_corner(
-        &self,
-        question: &ChainQuestion<'_, N>,
-        segment: &Segment<N, 2>,
-        found: Separation<N, 2>,
-    ) -> Separation<N, 2> {
-        let pose12 = question.pose12;
-        let far = |end: &Point<N, 2>| max_component(&end.coords);
-        let sizes = far(segment.a()) + far(segment.b()) + self.size;
-        let most = N::lit(256.0) * N::EPSILON * (sizes + max_component(&pose12.translation));
-        if found.distance <= N::ZERO || found.distance > most {
-            return found;
-        }
-        let (first, second) = (Kind::Segment(segment), question.solid);
-        with_shared_corner(&Pair { first, second, pose12 }, found)
-    }
-
     /// Computes the extents of a polygon along the normals of its sides and its tips.
     #[inline(always)]
     fn new<S: Simd, V: Wide<S, Scalar = N>>(simd: S, outline: PolygonOutline<N>) -> Self {
