@@ -16,8 +16,8 @@ use super::scene::{PlacedPair, Scene};
 use crate::collide::manifold::{Along, build_along, build_between, build_on_face};
 use crate::collide::{ManifoldRequest, Pair, RawManifold, RawPoint, RawPoints};
 use crate::convex::Separation;
-use crate::math::{Point, Real, Space, Vector, min};
-use crate::shape::{FeatureId, Kind, SurfaceAccess};
+use crate::math::{Mapped, Point, Real, Space, Vector, min};
+use crate::shape::{FeatureId, Geometry, Kind, SurfaceAccess};
 
 /// Whether a contact of two parts is a contact of the shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -233,6 +233,37 @@ impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
     }
 }
 
+impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
+    /// Returns the front normal, of those of the two parts, along which the parts overlap less;
+    /// `face` unless both have one. Both are from the first shape to the second, in the frame of
+    /// the first.
+    ///
+    /// Two solid meshes that are stacked exactly above each other have sides in one plane. The side
+    /// of one meets the top of the other along an edge; the top gives the depth of the stack, the
+    /// front of the side the width of the mesh.
+    fn shallower_front(&self, scene: &Scene<'_, N, D>, face: &Vector<N, D>) -> Vector<N, D> {
+        let [[own1, other2], [other1, own2]] = self.centers;
+        let [Some(surface1), Some(surface2)] = scene.surfaces else { return *face };
+        let front1 = surface1.snapped(self.parts[0], &(other1 - own1));
+        let front2 = surface2.snapped(self.parts[1], &(other2 - own2));
+        let (Some(front1), Some(front2)) = (front1, front2) else { return *face };
+        let front2 = -self.placed.in_first_frame(&front2);
+        let (pair, placed) = (self.placed.pair(), self.placed);
+        let depth = |front| overlap_along(&pair, &placed.inward(front));
+        if depth(&front1) < depth(&front2) { front1 } else { front2 }
+    }
+}
+
+/// Returns the length by which two solids overlap along `normal`, a unit vector from the first to
+/// the second in the frame of the first; infinite for half-spaces.
+fn overlap_along<N: Real, const D: usize>(pair: &Pair<'_, N, D>, normal: &Vector<N, D>) -> N {
+    let maps = [pair.first, pair.second].mapped(|kind| Geometry(kind).as_support_map());
+    let [Some(first), Some(second)] = maps else { return N::INFINITY };
+    let toward = -pair.pose12.inverse_vector(normal);
+    let near = pair.pose12.point(&second.support_point(&toward));
+    normal.dot(&(first.support_point(normal) - near))
+}
+
 /// Returns whether `over` is a side or corner of a triangle: then the ball's centre does not
 /// project into the face. False if the feature is unknown.
 pub(super) fn is_beside(over: Option<FeatureId>) -> bool {
@@ -276,10 +307,11 @@ fn of_surfaces<N: Space<D>, const D: usize>(
         CombinedNormal::Forced(face, status) => {
             // If the parts are apart or overlap by no more than rounding, no point gets a smaller
             // distance than the parts, unless the solid comes from inside a body.
-            let is_below = || {
-                distance <= N::ZERO && normal.dot(&face) < N::lit(BEHIND) && scene.are_bodies(parts)
-            };
-            let touches = distance > -tolerance && !is_below();
+            let is_below = distance <= N::ZERO
+                && normal.dot(&face) < N::lit(BEHIND)
+                && scene.are_bodies(parts);
+            let face = if is_below { configuration.shallower_front(scene, &face) } else { face };
+            let touches = distance > -tolerance && !is_below;
             let least = if touches { distance } else { -N::INFINITY };
             let along = Along { normal: placed.inward(&face), least, tolerance };
             build_along(&pair, &along, request, raw);

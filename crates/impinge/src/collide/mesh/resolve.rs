@@ -104,12 +104,14 @@ fn shallowest_first<N: Real, const D: usize>(
 impl<N: Real, const D: usize> Escapes<N, D> {
     /// Adds the escape of a contact that is at least as deep as all contacts added before. The new
     /// escape replaces the escape with about the same normal or, if there are [`MAX_ESCAPES`], the
-    /// shallowest. Contacts that are apart add nothing.
+    /// shallowest. A contact that only touches has an escape without length: the sides of a box
+    /// flush with the wall of a block are explained by the contact with the top of the block.
     fn add(&mut self, contact: &PartContact<N, D>) {
         let (normal, depth) = (contact.piece.normal, depth(contact));
-        if depth <= N::ZERO {
+        if depth < -contact.tolerance {
             return;
         }
+        let depth = max(depth, N::ZERO);
         let is_alike = |escape: &Escape<N, D>| escape.normal.dot(&normal) >= N::lit(ALIKE);
         if let Some(old) = self.0.iter().position(is_alike) {
             self.0.remove(old);

@@ -1,5 +1,6 @@
 //! Tests of compounds, meshes, polylines and height fields.
 
+mod boxes_on_a_grid;
 mod cast_out_of_floors;
 mod closed_meshes;
 mod composite_contacts;

@@ -2,6 +2,7 @@
 
 mod contacts;
 mod convex_twins;
+mod flush;
 mod making;
 mod pieces;
 mod plane;
