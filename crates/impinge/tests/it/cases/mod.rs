@@ -9,5 +9,6 @@ mod height_fields;
 mod leaning_cylinders;
 mod manifolds;
 mod overlooked_overlap;
+mod strips_far_from_origin;
 mod sweeps;
 mod touching;
