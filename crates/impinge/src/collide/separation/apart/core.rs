@@ -78,11 +78,12 @@ impl<N: Real, V> LaneCore<'_, N, V> {
                     let rise = direction[axis].abs() * half[axis] * two;
                     // A box without extent along an axis has each corner twice there, and the
                     // copies do not count.
-                    let is_tied = rise.simd_le(tolerance) & (half[axis] * two).simd_gt(tolerance);
-                    count = is_tied.select(count + count, count);
+                    let has_extent = (half[axis] * two).simd_gt(tolerance);
+                    count = (rise.simd_le(tolerance) & has_extent).select(count + count, count);
+                    let is_least = rise.simd_lt(least) & has_extent;
                     let unit = Vector::<N, 3>::ith(axis, N::ONE);
-                    along = either(rise.simd_lt(least), &spread(simd, &unit), &along);
-                    least = rise.smaller(least);
+                    along = either(is_least, &spread(simd, &unit), &along);
+                    least = is_least.select(rise, least);
                 }
                 LaneTies { count, along }
             }

@@ -133,3 +133,25 @@ fn a_corner_beside_a_corner() {
     assert!(is_unproved(pair(0.0, 0.0, 0.0)), "no direction to begin with");
     assert!(matches!(result(&pair(3.0, 4.0, 4.0), 2.5, false), GapResult::Beyond), "the limit");
 }
+
+/// An edge along y of a box without thickness and an edge of another box face each other. There are
+/// many nearest pairs of points, so the search proves nothing, and the result is in the middle.
+#[test]
+fn edges_of_flat_boxes_may_be_parallel() {
+    let beam = Cuboid::new(Vector::<f64, 3>::new(1.0, 2.0, 1.0));
+    let eighth = 0.5_f64.sqrt();
+    let turn = crate::math::Matrix::<f64, 3>::from_columns(&[
+        Vector::<f64, 3>::new(eighth, 0.0, -eighth),
+        Vector::<f64, 3>::y(),
+        Vector::<f64, 3>::new(eighth, 0.0, eighth),
+    ]);
+    for thickness in [0.0, 1e-3] {
+        let pane = Cuboid::new(Vector::<f64, 3>::new(thickness, 1.0, 1.0));
+        let pose12 = Pose { rotation: turn, translation: Vector::<f64, 3>::new(0.0, 0.5, 4.0) };
+        let pair = Pair { first: pane.geometry().0, second: beam.geometry().0, pose12 };
+        let found = result(&pair, f64::INFINITY, false);
+        assert!(matches!(found, GapResult::Unproved), "{thickness} thick");
+        let found = separation(&pair, f64::INFINITY).expect("finite");
+        assert!(found.point1.y.abs() < 1e-12, "{} with the thickness {thickness}", found.point1);
+    }
+}
