@@ -160,11 +160,16 @@ impl<N: Real> Rate<N> {
 
 impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     /// Returns a time, counted from this moment, during which the bodies certainly do not approach
-    /// by more than `gap`. A result of `remaining` or more means that they do not in the remaining
+    /// by more than `gap`, and two points of the bodies do not approach or separate by more than
+    /// `opening`, if given. A result of `remaining` or more means that they do not in the remaining
     /// time. `apart` is the distance between the bounding spheres minus the target distance; if
     /// negative, the spheres give no bound.
-    pub(super) fn safe_time(&self, gap: N, apart: N, remaining: N) -> N {
-        let safe = |span: N| self.safe_within(gap, apart, self.time + span);
+    pub(super) fn safe_time(&self, [gap, apart]: [N; 2], opening: Option<N>, remaining: N) -> N {
+        let safe = |span: N| {
+            let to = self.time + span;
+            let opened = opening.map_or(N::INFINITY, |opening| self.time_to_open(opening, to));
+            min(self.safe_within(gap, apart, to), opened)
+        };
         let all = safe(remaining);
         if all >= remaining || self.bodies.iter().all(|body| body.constant().is_some()) {
             return all;
@@ -219,10 +224,24 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     /// Returns an upper bound of the speed at which a point of one part and a point of the other
     /// approach, for all points and directions, up to the time `to`.
     pub(super) fn rate_of(&self, parts: &ImpactParts<'_, N, D>, to: N) -> Rate<N> {
+        self.rate_between(parts.bodies.each_ref(), to)
+    }
+
+    /// Implements [`Self::rate_of`] for the points of two bodies with the motions of `self.bodies`.
+    fn rate_between(&self, bodies: [&MovingBody<'_, N, D>; 2], to: N) -> Rate<N> {
         let swings = [0, 1].mapped(|index| {
-            product(self.bodies[index].turn_bound(self.time, to), parts.bodies[index].arm)
+            product(self.bodies[index].turn_bound(self.time, to), bodies[index].arm)
         });
         Rate { speed: self.drift(None, to) + swings[0] + swings[1], bend: N::ZERO }
+    }
+
+    /// Returns a time in which no two points of the bodies approach or separate by more than
+    /// `opening`, valid up to the time `to`; infinite if a body is unbounded.
+    fn time_to_open(&self, opening: N, to: N) -> N {
+        if self.bodies.iter().any(|body| !body.arm.is_finite_number()) {
+            return N::INFINITY;
+        }
+        self.rate_between(self.bodies, to).time_for(opening)
     }
 
     /// Returns a bound of the motion of the points of body `which` during `span`, in the frame of

@@ -29,6 +29,9 @@ const MAX_NEAR_STEPS: usize = 256;
 /// sum of the bodies' sizes and distance.
 const NEAR: [f64; 2] = [1.0 / 1_048_576.0, 64.0];
 
+/// A start is deep if the bodies overlap by more than this fraction of the sum of their sizes.
+const DEEP: f64 = 1.0 / 64.0;
+
 /// Parts of composites are advanced one by one if the gap is less than this fraction of the sum of
 /// the bodies' sizes.
 const PARTS_WITHIN: f64 = 1.0 / 128.0;
@@ -59,7 +62,9 @@ const PARTS_WAY: f64 = 1.0 / 32.0;
 /// rotating body may come back, so a start that is not an impact is not final. The bodies hit if
 /// they touch again after a gap of more than 1024 epsilon times the sum of their sizes and
 /// distance, or if they get deeper than at the start by half of that. For composites the deepest
-/// pair of parts decides.
+/// pair of parts decides. A gap of less than 1/64 of the sum of the sizes, or after a start that is
+/// less deep than that, may open and close within one step; then the impact is found when the
+/// bodies are as deep as at the start.
 ///
 /// # Cost
 ///
@@ -271,10 +276,15 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
         let [radius1, radius2] = self.bodies.each_ref().mapped(MovingBody::radius);
         let (excess, apart) =
             (configuration.excess(mode), between - radius1 - radius2 - self.target);
-        let whole = moment.safe_time(excess, apart, self.end - moment.time);
-        let whole = Step { time: whole, near_steps: 0 };
         let size = self.bodies[0].size() + self.bodies[1].size();
-        if excess >= N::lit(PARTS_WITHIN) * size || !moment.has_parts_on_known_paths() {
+        let opening = configuration.opening(mode, N::lit(DEEP) * size);
+        let whole = moment.safe_time([excess, apart], opening, self.end - moment.time);
+        let whole = Step { time: whole, near_steps: 0 };
+        // The depth of a piece inside a body is not a distance of two parts.
+        let may_be_inside =
+            matches!(mode, Mode::Contact(_)) && configuration.poses.between.has_bodies();
+        let is_far = excess >= N::lit(PARTS_WITHIN) * size;
+        if is_far || may_be_inside || !moment.has_parts_on_known_paths() {
             return whole;
         }
         let rate = moment.first_order(self.end);
@@ -405,6 +415,16 @@ impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
         match mode {
             Mode::Apart => self.gap,
             Mode::Contact(start) => self.gap - start + self.slack(),
+        }
+    }
+
+    /// Returns the distance by which two points may approach or separate in one step; `None` for no
+    /// limit. After a start deeper than `deep` a gap of more than `deep` must not open and close
+    /// within one step. Bodies that only touch roll and slide for long, so they have no limit.
+    fn opening(&self, mode: Mode<N>, deep: N) -> Option<N> {
+        match mode {
+            Mode::Contact(start) if start < -deep => Some(max(-self.gap, N::ZERO) + deep),
+            _ => None,
         }
     }
 

@@ -6,6 +6,7 @@ mod extremes;
 mod hull;
 mod impact;
 mod impact_laws;
+mod impact_starts;
 mod impact_turning;
 mod mass;
 mod nested;

@@ -210,3 +210,18 @@ fn a_box_inside_has_its_face_as_manifold() {
     assert_eq!((found.depth, found.normal.y), (1.25, 1.0));
     assert_eq!((found.world1.y, found.world2.y), (4.0, 2.75));
 }
+
+#[test]
+fn a_solid_that_starts_inside_hits_when_it_gets_deeper() {
+    let (block, ball) = (solid(cuboid::<f64>([10.0; 3], [0.0; 3])), Ball::new(1.0));
+    let still = ConstantVelocities::<f64, 3>::still(Isometry3::identity());
+    // The depth is 3 - a sin t: first the ball rises, after half a turn it is as deep as at first.
+    for (arm, end) in [(0.05, 7.0), (0.05, f64::INFINITY), (0.5, 4.0)] {
+        let circles = ConstantVelocities::<f64, 3>::new(at([8.0, 0.0, 0.0]), V3::zeros(), V3::z())
+            .with_local_center(P3::new(0.0, arm, 0.0));
+        let options = ImpactOptions::new().with_max_time(end);
+        let hit = nonlinear_time_of_impact(&circles, &ball, &still, &block, &options);
+        let toi = hit.expect("deeper than at the start").toi;
+        assert!((toi - std::f64::consts::PI).abs() < 1e-6, "{toi} with the arm {arm}");
+    }
+}
