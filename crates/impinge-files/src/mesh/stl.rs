@@ -125,8 +125,8 @@ fn vertex(text: &str, line: usize) -> Result<[f64; 3], FormatError> {
     for coordinate in &mut position {
         *coordinate = f64::from(number::<f32>(words.next(), line)?);
     }
-    if words.next().is_some() || !position.iter().all(|x| x.is_finite()) {
-        return Err(FormatError::syntax(Some(line), "a vertex has three finite coordinates"));
+    if words.next().is_some() {
+        return Err(FormatError::syntax(Some(line), "a vertex has three coordinates"));
     }
     Ok(position)
 }

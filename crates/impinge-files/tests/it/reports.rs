@@ -92,3 +92,22 @@ fn an_error_of_a_parser_has_the_line() {
         assert!(matches!(*error.problem, Problem::Syntax(_)), "{error:?}");
     }
 }
+
+#[test]
+fn both_forms_of_stl_drop_facets_that_are_not_finite() {
+    let facet = "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1e39 0 0\nvertex nan 1 0\nendloop\nendfacet\n";
+    let text = crate::cube::stl_text().replace("endsolid", &format!("{facet}endsolid"));
+    let mut binary = crate::cube::stl_binary(b"x");
+    binary[80] += 1;
+    binary.extend([0; 12]);
+    let corners = [0.0, 0.0, 0.0, f32::INFINITY, 0.0, 0.0, f32::NAN, 1.0, 0.0];
+    binary.extend(corners.iter().flat_map(|x| x.to_le_bytes()));
+    binary.extend([0; 2]);
+    let whole = report("cube.stl", &crate::cube::stl_text());
+    for bytes in [text.as_bytes(), &binary] {
+        let file = MeshFile::parse("broken.stl".as_ref(), bytes).expect("one bad facet");
+        let report = &file.parts()[0].report;
+        assert_eq!(report.non_finite_vertices.count, 2, "{report}");
+        assert_eq!((report.triangles, report.volume), (whole.triangles, whole.volume), "{report}");
+    }
+}
