@@ -287,13 +287,17 @@ impl<N: Space<D>, const D: usize> WholeQuestion<'_, '_, N, D> {
         let mut deepest: Option<PartArrival<N, D>> = None;
         each_contact_within(&self.between, path.target + tolerance, &mut |found| {
             let (parts, separation) = (found.parts, found.separation);
-            let tolerance = rounding(&self.between.parts(parts));
-            let gap = separation.distance - path.target;
+            let placed = self.between.parts(parts);
+            let (gap, tolerance) = (separation.distance - path.target, rounding(&placed));
             if gap > tolerance {
                 return;
             }
             let path = Path { mirrored: path.mirrored && parts[0] == parts[1], ..*path };
-            if !path.counts_at_start(&separation.normal, gap, tolerance) {
+            let counts_soon = || {
+                let own = path_in_first_part(&placed, &path);
+                own.counts_soon(&placed.pair(), gap, tolerance)
+            };
+            if !(path.counts_at_start(&separation.normal, gap, tolerance) && counts_soon()) {
                 is_free = true;
                 return;
             }

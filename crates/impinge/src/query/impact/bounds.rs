@@ -237,7 +237,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
 
     /// Returns a time in which no two points of the bodies approach or separate by more than
     /// `opening`, valid up to the time `to`; infinite if a body is unbounded.
-    fn time_to_open(&self, opening: N, to: N) -> N {
+    pub(super) fn time_to_open(&self, opening: N, to: N) -> N {
         if self.bodies.iter().any(|body| !body.arm.is_finite_number()) {
             return N::INFINITY;
         }

@@ -16,6 +16,9 @@ use crate::tables::ByDimension;
 /// The maximum number of steps of conservative advancement.
 const MAX_STEPS: usize = 128;
 
+/// A contact at the start is tested again after a motion of this length, in epsilon times [`size`].
+pub(super) const SOON: f64 = 512.0;
+
 /// The motion of the second solid of a pair in the frame of the first.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Path<N: Real, const D: usize> {
@@ -83,6 +86,30 @@ impl<N: Real, const D: usize> Path<N, D> {
     pub(crate) fn counts_at_start(&self, normal: &Vector<N, D>, gap: N, tolerance: N) -> bool {
         self.contact_at_start
             || is_hit_at_start(gap, self.closing(normal), tolerance, self.rounding_error())
+    }
+}
+
+impl<N: Space<D>, const D: usize> Path<N, D> {
+    /// Returns whether a contact of convex solids that counts at the start still counts after a tiny
+    /// motion, if the solids only touch; an overlap counts in any case. Where a corner meets a corner, every normal between two faces is one of the contact,
+    /// and the separation returns any of them:
+    ///
+    /// ```text
+    ///         ┌───┐  -> slides on the floor, and does not hit the tile on its right:
+    ///         │   │     at the start the normals of its side and of its bottom tie,
+    ///     ┌───┼───┤     later that of its bottom has the larger gap
+    ///     │   │   │
+    /// ```
+    ///
+    /// The signed distance is a convex function of time, so the solids get nearer at the start if
+    /// they still do a little later.
+    pub(crate) fn counts_soon(&self, start: &Pair<'_, N, D>, gap: N, tolerance: N) -> bool {
+        let soon = N::lit(SOON) * N::EPSILON * size(start) / max_component(&self.velocity);
+        if self.contact_at_start || gap < -tolerance || !soon.is_finite_number() {
+            return true;
+        }
+        let found = separation(&self.moved(start, soon), N::INFINITY);
+        found.is_none_or(|found| self.counts_at_start(&found.normal, gap, tolerance))
     }
 }
 
@@ -166,7 +193,8 @@ pub(crate) fn begin<N: Space<D>, const D: usize>(
     let gap = found.distance - path.target;
     if !is_apart && gap <= tolerance {
         let arrival = Arrival::in_contact(N::ZERO, found, gap, tolerance);
-        let counts = path.counts_at_start(&found.normal, gap, tolerance);
+        let counts = path.counts_at_start(&found.normal, gap, tolerance)
+            && path.counts_soon(start, gap, tolerance);
         return Beginning::InContact { arrival, counts };
     }
     if gap > tolerance

@@ -299,7 +299,8 @@ impl<N: Real, const D: usize> Impact<N, D> {
 /// Convex solids that do not approach each other never will, so `None` is final for them. A box
 /// that slides along the floor under it does not hit the floor; a box that has sunk into the floor
 /// does, until it is moved out. A closing speed below 8 epsilon times the relative speed is treated
-/// as zero. Half-spaces that overlap without bound never separate: the impact is at zero, and its
+/// as zero. Where a corner touches a corner, the solids approach if all normals between the two faces
+/// say so: a box leaves and slides along the edge of another. Half-spaces that overlap without bound never separate: the impact is at zero, and its
 /// points are their origins.
 ///
 /// # Cost

@@ -1,6 +1,7 @@
 //! The time of impact of two bodies that move and rotate.
 
 use super::bounds::{Moment, MovingBody, Rate, length};
+use super::linear::SOON;
 use super::{Impact, ImpactOptions, ImpactStatus, RigidMotion, is_hit_at_start};
 use crate::tables::ByDimension;
 use crate::tables::entries;
@@ -232,7 +233,8 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
         }
         let mut mode = Mode::Apart;
         if configuration.gap <= configuration.tolerance {
-            if self.counts_at_start(&configuration) {
+            let counts = self.counts_at_start(&configuration, configuration.gap);
+            if counts && self.counts_soon(&configuration) {
                 let status = ImpactStatus::at_start(configuration.gap, configuration.tolerance);
                 return Some(self.impact(&configuration, status));
             }
@@ -352,14 +354,28 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
         })
     }
 
-    /// Returns whether a contact at the start is an impact: always with `contact_at_start`, else by
-    /// the rule of [`impact`](super::impact).
-    fn counts_at_start(&self, configuration: &Configuration<'_, '_, N, D>) -> bool {
+    /// Returns whether a contact with the `gap` at the start is an impact: always with
+    /// `contact_at_start`, else by the rule of [`impact`](super::impact) for the motion of
+    /// `configuration`.
+    fn counts_at_start(&self, configuration: &Configuration<'_, '_, N, D>, gap: N) -> bool {
         let (closing, rounding_error) =
             configuration.poses.moment.closing(&configuration.points, configuration.size);
         let closing = if self.mirrored { -closing.abs() } else { closing };
         self.contact_at_start
-            || is_hit_at_start(configuration.gap, closing, configuration.tolerance, rounding_error)
+            || is_hit_at_start(gap, closing, configuration.tolerance, rounding_error)
+    }
+
+    /// Returns whether a contact that counts at the start still counts after a tiny motion, as in
+    /// [`Path::counts_soon`](super::linear::Path::counts_soon).
+    fn counts_soon(&self, start: &Configuration<'_, 'a, N, D>) -> bool {
+        let moment = &start.poses.moment;
+        let soon = moment.time_to_open(N::lit(SOON) * N::EPSILON * start.size, self.end);
+        let is_deep = start.gap < -start.tolerance;
+        if self.contact_at_start || is_deep || !(soon > N::ZERO && soon.is_finite_number()) {
+            return true;
+        }
+        let later = self.look(soon, Some(start));
+        later.is_none_or(|later| self.counts_at_start(&later, start.gap))
     }
 
     /// Converts the configuration to an impact in the world frame.

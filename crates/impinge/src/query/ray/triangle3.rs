@@ -131,7 +131,7 @@ enum Through<N: Real> {
 
 /// Classifies the ray by the signs of the three areas around it. Swapping the ends of a side
 /// negates its area exactly, so triangles that share a side leave no gap; an area of zero belongs
-/// to both triangles.
+/// to both triangles. A ray outside by no more than rounding hits, too.
 #[inline(always)]
 fn through<N: Real>(corners: &[Sheared<N>; 3]) -> Through<N> {
     let [a, b, c] = corners;
@@ -141,13 +141,20 @@ fn through<N: Real>(corners: &[Sheared<N>; 3]) -> Through<N> {
     let all = |is: [bool; 3]| is[0] & is[1] & is[2];
     let all_left = all(filled(|side| areas[side] >= N::ZERO));
     let all_right = all(filled(|side| areas[side] <= N::ZERO));
-    if (all_left | all_right) & (total != N::ZERO) {
+    let hit = || {
         let [wa, wb, wc] = areas.mapped(|area| area / total);
-        return Through::Hit(a.t * wa + b.t * wb + c.t * wc);
+        Through::Hit(a.t * wa + b.t * wb + c.t * wc)
+    };
+    if (all_left | all_right) & (total != N::ZERO) {
+        return hit();
     }
     let spread = |p: &Sheared<N>, q: &Sheared<N>| p.size * q.flat.amax() + q.size * p.flat.amax();
     let rounding = N::lit(8.0) * N::EPSILON * (spread(a, b) + spread(b, c) + spread(c, a));
-    if total.abs() <= rounding { Through::EdgeOn } else { Through::Miss }
+    if total.abs() <= rounding {
+        return Through::EdgeOn;
+    }
+    let side = if total > N::ZERO { N::ONE } else { -N::ONE };
+    if all(filled(|index| areas[index] * side >= -rounding)) { hit() } else { Through::Miss }
 }
 
 /// Returns the crossing at `t`. Its normal points against the ray, and its face is the face on that
