@@ -244,7 +244,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         partners.sort_unstable();
         for (_, index) in partners {
             let key = PairKey::from(self.pairs.pairs()[index]);
-            if !self.adjust(table, key, index) {
+            if !self.adjust(table, key, index, object) {
                 let carried = self.remove_from_group(index);
                 let (location, change) = self.add_to_group(table, key, carried);
                 self.locations[index] = location;
@@ -277,7 +277,13 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// kind of query and, for contacts, either both serve convex solids or both serve composites.
     /// Then updates the request, and moves the state to the group of the new shape kinds. Otherwise
     /// changes nothing and returns `false`.
-    fn adjust(&mut self, table: &ObjectTable<N, D>, key: PairKey, index: usize) -> bool {
+    fn adjust(
+        &mut self,
+        table: &ObjectTable<N, D>,
+        key: PairKey,
+        index: usize,
+        object: u32,
+    ) -> bool {
         let Some((new_group, max_points)) = self.built_in_group(table, key) else { return false };
         let Location { group, row } = self.locations[index];
         let query = table.query(key[0]).pair(table.query(key[1]));
@@ -299,7 +305,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             }
             (GroupId::Composites, GroupId::Composites, PairQuery::Contacts { linear, angular }) => {
                 let entry = self.groups.composites.state_mut(row);
-                entry.state.forget_shapes();
+                let is_composite = table.shape(object).as_ref().geometry().as_composite().is_some();
+                entry.state.forget_shapes(is_composite);
                 let linear = table.beyond_skins(key, linear);
                 entry.request = ManifoldRequest::new(linear, angular, max_points);
             }

@@ -346,9 +346,10 @@ impl<N: Real, const D: usize> CompositeState<N, D> {
         if self.swapped { second } else { first }
     }
 
-    /// Drops the cached data of the shapes, because a shape may have been replaced.
-    pub(crate) fn forget_shapes(&mut self) {
-        self.contacts.forget_shapes();
+    /// Drops the cached data of the shapes, because a shape may have been replaced: a composite if
+    /// `has_composite_changed`.
+    pub(crate) fn forget_shapes(&mut self, has_composite_changed: bool) {
+        self.contacts.forget_shapes(has_composite_changed);
     }
 }
 

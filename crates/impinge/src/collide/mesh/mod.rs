@@ -118,9 +118,12 @@ impl<N: Real, const D: usize> Default for CompositeContacts<N, D> {
 }
 
 impl<N: Real, const D: usize> CompositeContacts<N, D> {
-    /// Clears the cached parts, after a shape has changed. The contacts and their ids stay.
-    pub(crate) fn forget_shapes(&mut self) {
+    /// Clears the cached parts, after a shape has changed. The contacts and their ids stay. If a
+    /// composite has changed, also clears the reference point: it may be on the other side of the
+    /// new surface.
+    pub(crate) fn forget_shapes(&mut self, has_composite_changed: bool) {
         self.around = PartCache::default();
+        self.reference = self.reference.filter(|_| !has_composite_changed);
     }
 
     /// Reads the cache lines that the next update needs first, so that they are loaded early; the
@@ -156,8 +159,7 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
     /// Exchanges the two shapes; points and normals are then in the frame of the new first shape.
     /// Clears the reference point and the cache of parts.
     pub(crate) fn flip(&mut self) {
-        self.reference = None;
-        self.forget_shapes();
+        self.forget_shapes(true);
         let pose21 = self.pose12.inverse();
         for Patch { normal, points } in &mut self.patches {
             for PatchPoint { raw, parts } in points {

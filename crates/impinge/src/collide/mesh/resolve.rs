@@ -6,6 +6,7 @@ use super::part_contact::{Arena, PartContact, PartStatus};
 use super::scene::Scene;
 use crate::math::order::{order_of, sort_keyed};
 use crate::math::{Real, Space, Vector, max};
+use crate::tables::ByDimension;
 
 /// Smallest cosine of the angle between two normals that count as one direction.
 const ALIKE: f64 = 0.99;
@@ -173,7 +174,7 @@ fn is_explained<N: Space<D>, const D: usize>(
 
 /// Restores the contact of the nearest two parts if all contacts that hold are farther. If the
 /// nearest contact that holds is farther only by rounding, the distances of its points are
-/// corrected instead. Changes nothing beside a ghost: there, the neighbouring shape that the ghost
+/// corrected instead. Changes nothing if a ghost is nearer: the neighbouring shape that the ghost
 /// represents has the contact.
 fn keep_one<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
@@ -195,7 +196,7 @@ fn keep_one<N: Space<D>, const D: usize>(
             }
             contacts[index].lowest = least;
         }
-        _ if scene.are_beside_ghost(contacts[nearest].parts()) => {}
+        _ if is_of_neighbour(scene, &contacts[nearest]) => {}
         _ => {
             // The points of this contact, if it has any, are along the normal of a face and
             // farther. So they are computed again.
@@ -203,6 +204,25 @@ fn keep_one<N: Space<D>, const D: usize>(
             contacts[nearest].piece.points = 0..0;
         }
     }
+}
+
+/// Returns whether a ghost beside the parts of a contact is nearer than these. At equal distances a
+/// touching contact is left to the neighbouring shape, since its normal would be that of an inner
+/// edge. Of equal overlaps the part with the lower index has the contact: a ghost that comes after
+/// the part in one tile comes before it in the neighbouring tile, which has the same overlap.
+fn is_of_neighbour<N: Space<D>, const D: usize>(
+    scene: &Scene<'_, N, D>,
+    contact: &PartContact<N, D>,
+) -> bool {
+    let (distance, tolerance, mut is_nearer) = (contact.distance, contact.tolerance, false);
+    scene.each_ghost_beside(contact.parts(), &mut |ghosts| {
+        let pair = scene.pair(ghosts);
+        let found = <N::Algorithms>::separation(&pair.pair(), distance + tolerance);
+        let is_clear = |found: N| found < distance - tolerance;
+        let is_before = || distance > -tolerance || ghosts < contact.parts();
+        is_nearer |= found.is_some_and(|found| is_clear(found.distance) || is_before());
+    });
+    is_nearer
 }
 
 /// Returns the index of the contact with the smallest value, the first in a tie. Contacts without a

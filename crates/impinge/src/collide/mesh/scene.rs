@@ -1,6 +1,5 @@
 //! Parts of two shapes, placed for the pair algorithms.
 
-use crate::tables::ByDimension;
 use core::cell::OnceCell;
 
 use super::part_cache::PartCache;
@@ -12,6 +11,7 @@ use crate::collide::parts::{PairMasks, PartPairs};
 use crate::collide::{Pair, RawManifold, RawPoints};
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector, min};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Plane, SurfaceAccess};
+use crate::tables::ByDimension;
 
 /// Two shapes, at least one of them a composite, whose parts can be placed in pairs.
 pub(crate) struct Scene<'a, N: Real, const D: usize> {
@@ -144,11 +144,14 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         self.between.composites()[0].is_none()
     }
 
-    /// Returns whether a ghost (a part that stands for a part of a neighbouring shape) is adjacent
-    /// to one of two parts.
-    pub(super) fn are_beside_ghost(&self, parts: [u32; 2]) -> bool {
-        let mut both = self.surfaces.iter().zip(parts);
-        both.any(|(surface, part)| surface.is_some_and(|surface| surface.is_beside_ghost(part)))
+    /// Calls `visit` with each ghost that is adjacent to one of two parts, and the other part.
+    pub(super) fn each_ghost_beside(&self, parts: [u32; 2], visit: &mut dyn FnMut([u32; 2])) {
+        if let Some(surface) = self.surfaces[0] {
+            surface.each_ghost_beside(parts[0], &mut |ghost| visit([ghost, parts[1]]));
+        }
+        if let Some(surface) = self.surfaces[1] {
+            surface.each_ghost_beside(parts[1], &mut |ghost| visit([parts[0], ghost]));
+        }
     }
 
     /// Returns whether one of two parts belongs to a surface that encloses a solid region.

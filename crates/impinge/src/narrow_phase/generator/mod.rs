@@ -278,7 +278,13 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         let has_composite = shapes.iter().any(|shape| shape.as_composite().is_some());
         match &mut self.contacts {
             PairContacts::Convex(state) if !has_composite => state.set_solids(given),
-            PairContacts::Composite(state) if has_composite => state.forget_shapes(),
+            PairContacts::Composite(state) if has_composite => {
+                let mut both = self.shapes.iter().zip(&shapes);
+                state.forget_shapes(both.any(|(kept, shape)| {
+                    let is_kept = kept.as_ref().is_some_and(|kept| kept.is(*shape));
+                    shape.as_composite().is_some() && !is_kept
+                }));
+            }
             _ => {
                 // The new state starts its ids anew, so the pair needs a new identifier.
                 self.number = None;

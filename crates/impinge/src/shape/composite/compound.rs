@@ -426,9 +426,10 @@ impl<N: Space<D>, const D: usize> OwnSurface<N, D> for Compound<N, D> {
             && self.surface_at(part).is_some_and(|(surface, _, own)| surface.is_body(own))
     }
 
-    fn is_beside_ghost(&self, part: u32) -> bool {
-        let at = self.surface_at(part).filter(|_| self.has_ghosts);
-        at.is_some_and(|(surface, _, own)| surface.is_beside_ghost(own))
+    fn each_ghost_beside(&self, part: u32, visit: &mut dyn FnMut(u32)) {
+        if let Some((surface, _, own)) = self.surface_at(part).filter(|_| self.has_ghosts) {
+            surface.each_ghost_beside(own, &mut |ghost| visit(part - own + ghost));
+        }
     }
 }
 

@@ -7,7 +7,7 @@ use core::fmt;
 use crate::math::{Point, Real, Vector};
 use crate::shape::{FaceSeams, FeatureId, Sidedness, Surface};
 
-/// A surface of this library. Only [`Self::is_body`] and [`Self::is_beside_ghost`] change which
+/// A surface of this library. Only [`Self::is_body`] and [`Self::each_ghost_beside`] change which
 /// contacts are found; the other methods change only the cost.
 pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
     /// Calls [`Surface::admits`] for two normals, for the second only if the first is rejected
@@ -56,11 +56,11 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
         false
     }
 
-    /// Returns whether a ghost is adjacent to the part. If a solid overlaps the part only near the
-    /// ghost, its contact belongs to the neighbouring surface that the ghost represents.
-    fn is_beside_ghost(&self, part: u32) -> bool {
-        let _ = part;
-        false
+    /// Calls `visit` with each ghost that is adjacent to the part, some of them more than once. A
+    /// solid that is nearer to such a ghost than to the part has its contact with the neighbouring
+    /// surface that the ghost represents.
+    fn each_ghost_beside(&self, part: u32, visit: &mut dyn FnMut(u32)) {
+        let _ = (part, visit);
     }
 
     /// Returns whether a surface in 3D has two properties: parts are adjacent exactly where they
@@ -157,9 +157,11 @@ impl<'a, N: Real, const D: usize> SurfaceAccess<'a, N, D> {
         self.own.is_some_and(|own| own.is_body(part))
     }
 
-    /// Returns the result of [`OwnSurface::is_beside_ghost`]; false for a user's surface.
-    pub(crate) fn is_beside_ghost(&self, part: u32) -> bool {
-        self.own.is_some_and(|own| own.is_beside_ghost(part))
+    /// Runs [`OwnSurface::each_ghost_beside`]; a user's surface has no ghosts.
+    pub(crate) fn each_ghost_beside(&self, part: u32, visit: &mut dyn FnMut(u32)) {
+        if let Some(own) = self.own {
+            own.each_ghost_beside(part, visit);
+        }
     }
 
     /// Returns the result of [`OwnSurface::sidedness`]; `None` for a user's surface.

@@ -77,15 +77,21 @@ impl<N: Real> OwnSurface<N, 3> for HeightField<N, 3> {
         !self.keeps_internal_edges && self.grid.has_extent()
     }
 
-    /// Returns whether the cell of the part, or one of the eight cells around it, is a ghost.
-    fn is_beside_ghost(&self, part: u32) -> bool {
+    /// Visits the triangles of the ghosts among the eight cells around the cell of the part.
+    fn each_ghost_beside(&self, part: u32, visit: &mut dyn FnMut(u32)) {
+        if !self.marks.has_ghosts() {
+            return;
+        }
         let ([row, column], ..) = self.locate(part);
         let [rows, columns] = self.pyramid.cells();
         let ends = |at: usize, count: usize| at.saturating_sub(1)..count.min(at + 2);
-        self.marks.has_ghosts()
-            && ends(row, rows).any(|row| {
-                ends(column, columns).any(|column| self.marks.is_ghost(row * columns + column))
-            })
+        let around = ends(row, rows)
+            .flat_map(|row| ends(column, columns).map(move |column| row * columns + column));
+        for cell in around.filter(|cell| self.marks.is_ghost(*cell)) {
+            let first = u32::try_from(2 * cell).expect("32 bits number the triangles");
+            visit(first);
+            visit(first + 1);
+        }
     }
 }
 
@@ -394,10 +400,14 @@ impl<N: Real> OwnSurface<N, 2> for HeightField<N, 2> {
         Some(Sidedness { is_left, is_one_sided, follows_front, keeps_internal_edges, joining })
     }
 
-    fn is_beside_ghost(&self, part: u32) -> bool {
-        let cell = part as usize;
-        let mut beside = cell.saturating_sub(1)..self.num_cells().min(cell + 2);
-        self.marks.has_ghosts() && beside.any(|cell| self.marks.is_ghost(cell))
+    fn each_ghost_beside(&self, part: u32, visit: &mut dyn FnMut(u32)) {
+        if self.marks.has_ghosts() {
+            let beside = part.saturating_sub(1)..=part + 1;
+            let is_ghost = |cell: &u32| {
+                (*cell as usize) < self.num_cells() && self.marks.is_ghost(*cell as usize)
+            };
+            beside.filter(is_ghost).for_each(visit);
+        }
     }
 }
 

@@ -132,11 +132,13 @@ impl<N: Space<D>, const D: usize> OwnSurface<N, D> for TriMesh<N, D> {
         self.is_solid()
     }
 
-    fn is_beside_ghost(&self, part: u32) -> bool {
-        let is_ghost = |other: &u32| *other as usize >= self.num_triangles();
-        let joints = &self.topology.joints;
-        self.ghosts > 0
-            && (0..3).any(|at| joints.parts(self.joint_at(part, at)).iter().any(is_ghost))
+    fn each_ghost_beside(&self, part: u32, visit: &mut dyn FnMut(u32)) {
+        if self.ghosts == 0 {
+            return;
+        }
+        let around = (0..3).flat_map(|at| self.topology.joints.parts(self.joint_at(part, at)));
+        let is_ghost = |other: &&u32| **other as usize >= self.num_triangles();
+        around.filter(is_ghost).for_each(|ghost| visit(*ghost));
     }
 
     fn has_regular_seams(&self) -> bool {
