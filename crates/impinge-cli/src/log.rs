@@ -82,12 +82,18 @@ impl Log {
         let mut replay = self.replay()?;
         let last = replay.len();
         let step = step.unwrap_or(last);
-        // `seek` would go to the last step without an error.
+        self.expect_step(step, last)?;
+        replay.seek(step).map_err(in_file(&self.path))?;
+        Ok(replay)
+    }
+
+    /// Returns an error if `step` is beyond the last step. `Replay::seek` would go to the last step
+    /// without an error.
+    pub(crate) fn expect_step(&self, step: usize, last: usize) -> Result<(), CliError> {
         if step > last {
             return Err(CliError::NoStep { path: self.path.clone(), step, last });
         }
-        replay.seek(step).map_err(in_file(&self.path))?;
-        Ok(replay)
+        Ok(())
     }
 
     /// Returns the bytes for a page: all whole records. The page accepts a recording without its

@@ -1,8 +1,9 @@
 //! The pairs of a world after an update, and the counts of a step.
 
 use core::fmt;
+use std::collections::BTreeSet;
 
-use impinge::narrow_phase::{ContactEvent, ProximityEvent};
+use impinge::narrow_phase::CollisionObjectHandle;
 use impinge::query::Proximity;
 use impinge::world::{CollisionObject, CollisionWorld};
 use impinge_record::Recordable;
@@ -12,7 +13,10 @@ use crate::log::{Label, name_of};
 use crate::number::Number;
 use crate::state::State;
 
-/// The numbers of objects, pairs, contacts and events of a world after a step.
+/// The pairs that touch, by contacts or by proximity. The object with the smaller index is first.
+pub(crate) type TouchingPairs = BTreeSet<[CollisionObjectHandle; 2]>;
+
+/// The numbers of objects, pairs and contacts of a world after a step, and of changes by the step.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct StepSummary {
     /// The number of updates made so far.
@@ -24,8 +28,11 @@ pub(crate) struct StepSummary {
     pub(crate) near: usize,
     /// The number of contact points of all pairs.
     pub(crate) contacts: usize,
-    /// The number of pairs that started touching in the last update.
+    /// The number of pairs that touch, but did not touch after the step before. A pair that starts
+    /// to have predicted contacts has not started touching.
     pub(crate) started: usize,
+    /// The number of pairs that touched after the step before, but do not touch, also because an
+    /// object was removed.
     pub(crate) stopped: usize,
 }
 
@@ -90,29 +97,32 @@ pub(crate) fn touches<N: Recordable<D>, const D: usize, T>(
     near_pairs(world).any(|(_, pair)| pair.state == State::Touch)
 }
 
-/// Returns the counts of a world after `step` updates.
+/// Returns the pairs of a world that touch.
+pub(crate) fn touching_pairs<N: Recordable<D>, const D: usize, T>(
+    world: &CollisionWorld<N, D, T>,
+) -> TouchingPairs {
+    let touching = near_pairs(world).filter(|(_, pair)| pair.state == State::Touch);
+    touching.map(|(objects, _)| objects.map(CollisionObject::handle)).collect()
+}
+
+/// Returns the counts of a world after `step` updates. `before` and `after` are the pairs that
+/// touch after the update before and after this one.
+///
+/// Events are not counted: contacts also start with predicted points, which do not touch.
 pub(crate) fn summary<N: Recordable<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     step: usize,
+    [before, after]: [&TouchingPairs; 2],
 ) -> StepSummary {
     let pairs: Vec<_> = near_pairs(world).map(|(_, pair)| pair).collect();
-    let count = |state| pairs.iter().filter(|pair| pair.state == state).count();
-    let events = world.contact_events().iter();
-    let started = events.filter(|event| matches!(event, ContactEvent::Started(..))).count();
-    // A change between near and apart is neither a start nor a stop.
-    let changes = world.proximity_events().iter();
-    let enters = |event: &&ProximityEvent| event.new_status == Proximity::Intersecting;
-    let leaves = |event: &&ProximityEvent| event.prev_status == Proximity::Intersecting;
-    let entered = changes.clone().filter(enters).count();
-    let left = changes.filter(leaves).count();
     StepSummary {
         step,
         objects: world.len(),
-        touching: count(State::Touch),
-        near: count(State::Near),
+        touching: after.len(),
+        near: pairs.iter().filter(|pair| pair.state == State::Near).count(),
         contacts: pairs.iter().map(|pair| pair.contacts).sum(),
-        started: started + entered,
-        stopped: world.contact_events().len() - started + left,
+        started: after.difference(before).count(),
+        stopped: before.difference(after).count(),
     }
 }
 

@@ -44,7 +44,8 @@ Examples:
   impinge replay balls.implog --step 20
   impinge replay balls.implog --step 20 --json
 
-Fields of --json: file, dimension, scalar, steps with step, objects, touching, near, contacts, started, stopped;
+Fields of --json: file, dimension, scalar, steps with step, objects, touching, near, contacts, started, stopped
+(the pairs that began and ceased to touch since the step before);
 with --step also positions (name, translation, rotation: cosine and sine in 2D, i, j, k, w in 3D) and pairs (first,
 second, state, contacts, depth). Exit code 1 if something touches at the last step printed.")]
 pub(crate) struct ReplayArgs {

@@ -13,7 +13,7 @@ use crate::number::{Number, tuple};
 use crate::output::{FAINT, NAME, Outcome, Report, Subject, finish};
 use crate::progress::Progress;
 use crate::space::{Stage, Task, run_in};
-use crate::summary::{PairSummary, StepSummary, pairs, summary};
+use crate::summary::{PairSummary, StepSummary, TouchingPairs, pairs, summary, touching_pairs};
 
 /// Runs the verb.
 pub(crate) fn run(args: &ReplayArgs) -> Result<Outcome, CliError> {
@@ -71,10 +71,14 @@ impl Task for PlayAll<'_> {
     fn run<N: Stage<D>, const D: usize>(self) -> Result<Vec<StepSummary>, CliError> {
         let mut replay = self.0.replay::<N, D>()?;
         let mut progress = Progress::new(replay.len(), "replaying");
+        let mut before = TouchingPairs::new();
         let steps = (1..=replay.len()).map(|step| {
             replay.seek(step)?;
             progress.step();
-            Ok(summary(replay.world(), step))
+            let after = touching_pairs(replay.world());
+            let row = summary(replay.world(), step, [&before, &after]);
+            before = after;
+            Ok(row)
         });
         steps.collect::<Result<_, _>>().map_err(in_file(&self.0.path))
     }
@@ -84,8 +88,14 @@ impl Task for PlayTo<'_> {
     type Answer = (StepSummary, StepDetail);
 
     fn run<N: Stage<D>, const D: usize>(self) -> Result<(StepSummary, StepDetail), CliError> {
-        let replay = self.log.replay_to::<N, D>(Some(self.step))?;
-        Ok((summary(replay.world(), self.step), detail(replay.world())))
+        let Self { log, step } = self;
+        let mut replay = log.replay::<N, D>()?;
+        log.expect_step(step, replay.len())?;
+        replay.seek(step.saturating_sub(1)).map_err(in_file(&log.path))?;
+        let before = touching_pairs(replay.world());
+        replay.seek(step).map_err(in_file(&log.path))?;
+        let after = touching_pairs(replay.world());
+        Ok((summary(replay.world(), step, [&before, &after]), detail(replay.world())))
     }
 }
 

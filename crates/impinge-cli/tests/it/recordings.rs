@@ -39,6 +39,47 @@ fn balls_that_meet_after_a_quarter_of_a_second() {
     assert_eq!(desk.json("replay balls.implog --step 5", 0)["steps"][0]["touching"], 0);
 }
 
+/// Returns a scene in which a ball comes from the right, with the speed 1/4, and passes a ball at
+/// the origin. Both have the radius 1/2 and the query type `query`.
+fn passing(query: &Value) -> String {
+    let ball = |name: &str, x: f64, speed: f64| {
+        json!({
+            "name": name,
+            "shape": "ball",
+            "position": {"translation": [x, 0, 0]},
+            "motion": {"velocity": [speed, 0, 0]},
+            "query": query,
+        })
+    };
+    let objects = [ball("still", 0.0, 0.0), ball("passing", 1.6, -0.25)];
+    let shapes = json!({"ball": {"ball": {"radius": 0.5}}});
+    json!({"dimension": 3, "scalar": "f64", "shapes": shapes, "objects": objects}).to_string()
+}
+
+#[test]
+fn a_predicted_contact_or_a_margin_starts_no_touch() {
+    let desk = Desk::new();
+    let predicted = json!({"contacts": {"linear": 0.25, "angular": 0.1}});
+    for query in [predicted, json!({"proximity": 0.25})] {
+        desk.write("passing.json", passing(&query));
+        desk.json("record passing.json -o passing.implog --steps 12 --dt 1 --key-frames 4", 0);
+        let steps = desk.json("replay passing.implog", 0)["steps"].clone();
+        let steps = steps.as_array().expect("a list");
+        let column = |name: &str| -> Vec<_> {
+            steps.iter().map(|step| step[name].as_u64().expect("a number")).collect()
+        };
+        // After step n the passing ball is at 1.6 - n / 4. The balls touch from -1 to 1.
+        assert_eq!(column("started"), [0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0], "{query}");
+        assert_eq!(column("stopped"), [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0], "{query}");
+        assert_eq!(column("near")[..3], [1, 1, 0], "{query}");
+        for (step, row) in (1..).zip(steps) {
+            let touches = (3..=10).contains(&step);
+            let alone = desk.json(&format!("replay passing.implog --step {step}"), touches.into());
+            assert_eq!(alone["steps"], json!([row]), "{query}");
+        }
+    }
+}
+
 #[test]
 fn a_step_has_positions_and_pairs() {
     let desk = Desk::recorded();
