@@ -277,8 +277,13 @@ def Rounded(shape: Shape, radius: float) -> Shape:
 def ConvexHull(points: ArrayLike, *, dtype: DType = "float64") -> Shape:
     """The convex hull of points (n, 3); in 2D of points (n, 2). ValueError if the hull has no volume (in 2D no area).
 
+    The points may be in any order, and inside the hull. In 2D the vertices are counter-clockwise, from the one with the
+    smallest x.
+
     >>> ConvexHull([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0.1, 0.1, 0.1]])
     <impinge.ConvexHull 3D float64>
+    >>> ConvexHull([[0, 0], [1, 1], [1, 0], [0, 1], [0.5, 0.5]]).vertices.tolist()
+    [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
     """
     rows = _rows(points, "points")
     name = "ConvexHull" if rows.shape[1] == 3 else "ConvexPolygon"

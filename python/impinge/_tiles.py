@@ -23,9 +23,9 @@ class TileRows(NamedTuple):
 class Tiles:
     """A division of space into tiles, with the clearance of the pairs; `tiles` creates it.
 
-    It consists of plain numbers, from which another process can create an equal value; it pickles. axes: (t - 1,) uint32, the
+    It consists of plain numbers, from which another process can create an equal value; it pickles. axes: (t - 1,) integers, the
     axis perpendicular to each cut. cuts: (t - 1,), its position. Each cut comes before the cuts of its two parts, and those of
-    the lower part come first.
+    the lower part come first. The attributes `axes`, of uint32, and `cuts` are read-only copies.
 
     >>> import impinge
     >>> tiles = impinge.Tiles([0, 1], [2.5, 0.0], dim=2)
@@ -36,10 +36,10 @@ class Tiles:
     def __init__(
         self, axes: ArrayLike, cuts: ArrayLike, *, clearance: float = 0.0, dim: int = 3, dtype: DType = "float64"
     ) -> None:
-        self.axes: Indices = _column(axes, np.uint32, "axes")
+        self.axes: Indices = _fixed(_axes(axes, dim))
         self.clearance, self.dim = float(clearance), dim
         self.dtype: DTypeName = dtype_name(dtype)
-        self.cuts: Floats = _column(cuts, self.dtype, "cuts")
+        self.cuts: Floats = _fixed(_column(cuts, self.dtype, "cuts"))
         # The library rejects invalid tiles.
         self._bounds = _native.tile_bounds(self)
 
@@ -125,11 +125,34 @@ def _column(given: ArrayLike, dtype: Any, name: str) -> NDArray[Any]:
     return array
 
 
+def _fixed(column: NDArray[Any]) -> NDArray[Any]:
+    """Returns a read-only copy, which does not change with an array of the caller."""
+    copied = column.copy()
+    copied.flags.writeable = False
+    return copied
+
+
+def _integers(given: ArrayLike, name: str) -> NDArray[Any]:
+    """Converts an argument to an array (n,). Its elements are integers; an empty array may have another type."""
+    array = _column(given, None, name)
+    if array.size and not np.issubdtype(array.dtype, np.integer):
+        raise ValueError(f"{name} is {array.dtype}, where integers are needed")
+    return array
+
+
+def _axes(given: ArrayLike, dim: int) -> Indices:
+    """Converts an argument with axes of cuts to an array (n,)."""
+    array = _integers(given, "axes")
+    wrong = (array < 0) | (array >= dim)
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        raise ValueError(f"axes[{row}] is {array[row]}, where 0 to {dim - 1} is needed in {dim}D")
+    return _column(array, np.uint32, "axes")
+
+
 def ids(given: ArrayLike) -> NDArray[np.uint64]:
     """Converts an argument with ids of objects to an array (n,)."""
-    array = np.asarray(given)
-    if array.size and not np.issubdtype(array.dtype, np.integer):
-        raise ValueError(f"ids is {array.dtype}, where integers are needed")
+    array = _integers(given, "ids")
     if array.size and array.min() < 0:
         row = int(np.argmax(array < 0))
         raise ValueError(f"ids[{row}] is {array[row]}, where 0 or more is needed")

@@ -6,6 +6,7 @@ Files are read by yourdfpy, meshes by trimesh. Lengths are as in the file (metre
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -49,12 +50,27 @@ class NearestBodies(NamedTuple):
     body2: NDArray[np.int64]
 
 
+class _Kept(NamedTuple):
+    """A checker, and the pairs and bodies of the robot for which it was created."""
+
+    pairs: NDArray[np.int64]
+    bodies: list[Body]
+    checker: Checker
+
+    def is_of(self, robot: Robot) -> bool:
+        """Returns whether the robot has these pairs and these very bodies."""
+        is_same_length = len(self.bodies) == len(robot.bodies)
+        are_same = is_same_length and all(map(operator.is_, self.bodies, robot.bodies))
+        return are_same and np.array_equal(self.pairs, robot.pairs)
+
+
 class Robot:
     """The links and joints of a robot, and the bodies that are fixed to the links.
 
     `joints` are the names of the columns of a configuration, `limits` (joints, 2) their minima and maxima, infinite
     for joints without limits. `pairs` (m, 2) are the bodies that must not touch: initially all pairs of bodies of
-    different links without a common joint.
+    different links without a common joint. `bodies` is a list whose elements may be replaced; a body that is appended is in
+    no pair until `pairs` has one.
     """
 
     def __init__(self, model: yourdfpy.URDF, meshes: Literal["hull", "surface"] = "hull") -> None:
@@ -67,15 +83,15 @@ class Robot:
         self._frames = [Frame()] * len(self.links)
         for joint in robot.joints:
             self._frames[numbers[joint.child]] = _frame(joint, numbers, self.joints)
-        self.bodies = [
+        self.bodies: list[Body] = [
             body
             for link in robot.links
             for number, collision in enumerate(link.collisions)
             for body in _bodies(model, numbers[link.name], f"{link.name}/{number}", collision, meshes)
         ]
         self.pairs = self._separate_pairs()
-        # The checker of `pairs`, cached with the pairs for which it was created. The checker caches convex hulls of meshes.
-        self._kept: tuple[NDArray[np.int64], Checker] | None = None
+        # The checker of `pairs`, kept between calls because it caches convex hulls of meshes.
+        self._kept: _Kept | None = None
 
     @classmethod
     def load(cls, path: str | Path, meshes: Literal["hull", "surface"] = "hull") -> Robot:
@@ -134,11 +150,11 @@ class Robot:
         return self._nearest(self._among(shapes, obstacles), configurations, len(self.bodies))
 
     def _own(self) -> Checker:
-        """Returns the cached checker of `pairs`, without obstacles. It is created again if the pairs have changed."""
+        """Returns the cached checker of `pairs`, without obstacles. It is created again if pairs or bodies have changed."""
         kept = self._kept
-        if kept is None or not np.array_equal(kept[0], self.pairs):
-            kept = self._kept = np.array(self.pairs), self.checker()
-        return kept[1]
+        if kept is None or not kept.is_of(self):
+            kept = self._kept = _Kept(np.array(self.pairs), list(self.bodies), self.checker())
+        return kept.checker
 
     def _among(self, shapes: Sequence[Shape], obstacles: PosesLike) -> Checker:
         """Returns a checker with obstacles, and without pairs of bodies."""

@@ -2,7 +2,8 @@
 
 use impinge::math::{Point, Real, Space};
 use impinge::shape::{
-    ConvexHull, ConvexPolygon, Polyline, Segment, ShapeHandle, Tetrahedron, TriMesh, Triangle,
+    ConvexHull, ConvexPolygon, Polyline, Segment, ShapeError, ShapeHandle, Tetrahedron, TriMesh,
+    Triangle,
 };
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyAttributeError;
@@ -18,6 +19,15 @@ pub(crate) trait Cornered<const D: usize>: Space<D> {
     /// shapes.
     fn own_corners(shape: &ShapeHandle<Self, D>) -> Option<Vec<Point<Self, D>>>;
 
+    /// Returns the corners of the convex hull of points in 2D, in any order: counter-clockwise, from
+    /// the corner with the smallest x. In 3D, which has no outlines, returns the points.
+    ///
+    /// `ConvexPolygon::try_new` keeps these corners to the bit, so a pickle has the same corners.
+    ///
+    /// # Errors
+    /// If the points span no area.
+    fn outline(points: &[Point<Self, D>]) -> Result<Vec<Point<Self, D>>, ShapeError>;
+
     /// Whether the shape is a tetrahedron, not a convex hull.
     fn is_tetrahedron(shape: &ShapeHandle<Self, D>) -> bool;
 }
@@ -25,6 +35,20 @@ pub(crate) trait Cornered<const D: usize>: Space<D> {
 impl<N: Real> Cornered<2> for N {
     fn own_corners(shape: &ShapeHandle<N, 2>) -> Option<Vec<Point<N, 2>>> {
         Some(shape.as_shape::<ConvexPolygon<N>>()?.polytope().vertices().to_vec())
+    }
+
+    fn outline(points: &[Point<N, 2>]) -> Result<Vec<Point<N, 2>>, ShapeError> {
+        let mut corners = points.to_vec();
+        // The hull of the corners of a dense hull may lack some of them, which lie within rounding
+        // of a side. After the first pass, each pass but the last removes at least one corner.
+        for _ in 0..points.len() {
+            let hull = ConvexPolygon::try_from_points(&corners)?.vertices().to_vec();
+            if hull == corners {
+                break;
+            }
+            corners = hull;
+        }
+        Ok(corners)
     }
 
     fn is_tetrahedron(_: &ShapeHandle<N, 2>) -> bool {
@@ -38,6 +62,10 @@ impl<N: Real> Cornered<3> for N {
             return Some(hull.polytope().vertices().to_vec());
         }
         Some(shape.as_shape::<Tetrahedron<N>>()?.corners().to_vec())
+    }
+
+    fn outline(points: &[Point<N, 3>]) -> Result<Vec<Point<N, 3>>, ShapeError> {
+        Ok(points.to_vec())
     }
 
     fn is_tetrahedron(shape: &ShapeHandle<N, 3>) -> bool {

@@ -246,7 +246,7 @@ impl Description<'_, '_> {
     fn composite<N: Numeric<D>, const D: usize>(&self) -> PyResult<ShapeData<N, D>> {
         Ok(match self.name {
             "ConvexHull" => ShapeData::Hull { points: self.vertices()?, faces: Vec::new() },
-            "ConvexPolygon" => ShapeData::Outline(self.vertices()?),
+            "ConvexPolygon" => ShapeData::Outline(self.outline()?),
             "TriMesh" => ShapeData::TriMesh(self.mesh()?),
             "Polyline" => ShapeData::Polyline(self.mesh()?),
             "HeightField" => ShapeData::HeightField(self.field()?),
@@ -282,6 +282,12 @@ impl Description<'_, '_> {
             .iter()
             .map(|row| Point::from(Vector::from_fn(|axis, _| convert(row[axis]))))
             .collect())
+    }
+
+    /// Returns the corners of the convex hull of all points, in 2D.
+    fn outline<N: Numeric<D>, const D: usize>(&self) -> PyResult<Vec<Point<N, D>>> {
+        let points = self.vertices::<N, D>()?;
+        N::outline(&points).map_err(|error| refused(&Problem::from(error)))
     }
 
     /// Returns all points, of which there must be `COUNT`.

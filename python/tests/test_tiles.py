@@ -73,11 +73,32 @@ def test_what_is_no_tile_is_refused():
         "boxes has the shape (2, 3)": lambda: impinge.tiles(np.zeros((2, 3)), 2),
         "cut 1 at 3 on axis 0": lambda: impinge.Tiles([0, 0, 0], [1, 3, 2]),
         "there are 1 axes and 2 cuts": lambda: impinge.Tiles([0], [1, 3]),
+        "axes[0] is 4294967296": lambda: impinge.Tiles(np.array([2**32]), [1.0]),
+        "axes[1] is -1": lambda: impinge.Tiles([0, -1], [1.0, 2.0]),
+        "axes[0] is 2, where 0 to 1 is needed in 2D": lambda: impinge.Tiles([2], [1.0], dim=2),
+        "axes is float64, where integers are needed": lambda: impinge.Tiles([0.7], [1.0]),
+        "axes is bool, where integers are needed": lambda: impinge.Tiles([True], [1.0]),
+        "axes has the shape (1, 2)": lambda: impinge.Tiles([[0, 4]], [1.0]),
+        "ids has the shape (1, 2)": lambda: impinge.pairs_in_tile(ball, poses, [[1, -1]], tiles, 0),
     }.items():
         with pytest.raises(ValueError, match="^" + ".*" + "".join(f"\\{c}" if c in "[]()." else c for c in message)):
             call()
     with pytest.raises(TypeError, match="tiles is 3D float64, where 2D float64 is needed"):
         impinge.pairs_in_tile(impinge.Ball(1, dim=2), None, [0], tiles, 0)
+
+
+@pytest.mark.parametrize("dtype", ["float32", "float64"])
+def test_tiles_do_not_change_with_arrays_of_the_caller(dtype):
+    axes, cuts = np.array([0, 1], dtype=np.uint32), np.array([2.5, 0.0], dtype=dtype)
+    tiles = impinge.Tiles(axes, cuts, dim=2, dtype=dtype)
+    points = [[0, 7], [3, -1], [3, 0]]
+    before = (tiles.owner(points).tolist(), hash(tiles))
+    axes[:], cuts[:] = [1, 0], [9.0, -9.0]
+    assert (tiles.owner(points).tolist(), hash(tiles)) == before == ([0, 1, 2], hash(pickle.loads(pickle.dumps(tiles))))
+    for column in (tiles.axes, tiles.cuts):
+        with pytest.raises(ValueError, match="read-only"):
+            column[0] = 0
+    assert tiles == impinge.Tiles([0, 1], [2.5, 0.0], dim=2, dtype=dtype) and len(impinge.Tiles([], [])) == 1
 
 
 def test_nothing_and_nowhere():

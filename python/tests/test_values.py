@@ -62,6 +62,51 @@ def test_vertices_and_faces_are_read_back(dtype):
             getattr(shape, what)
 
 
+@pytest.mark.parametrize("dtype", ["float32", "float64"])
+def test_a_hull_in_2d(dtype):
+    square = [[0, 0], [1, 1], [1, 0], [0, 1], [0.5, 0.5]]
+    hull = impinge.ConvexHull(square, dtype=dtype)
+    assert sorted(hull.vertices.tolist()) == [[0, 0], [0, 1], [1, 0], [1, 1]]
+    assert hull == impinge.ConvexHull(square[::-1], dtype=dtype) == pickle.loads(pickle.dumps(hull))
+    points = np.random.default_rng(5).normal(size=(20, 2)).astype(dtype).astype(float)
+    hull = impinge.ConvexHull(points, dtype=dtype)
+    assert sorted(hull.vertices.tolist()) == starts_of_sides(points)
+    assert 3 < len(hull.vertices) < 20 and impinge.contains(hull, None, points.astype(dtype) * 0.999).all()
+    assert pickle.loads(pickle.dumps(hull)).vertices.tolist() == hull.vertices.tolist()
+
+
+def starts_of_sides(points):
+    """Returns the sorted points from which some line to another point has all other points on its left."""
+
+    def is_side(one, two):
+        (x, y), ways = points[two] - points[one], np.delete(points, [one, two], axis=0) - points[one]
+        return (x * ways[:, 1] - y * ways[:, 0] > 0).all()
+
+    count = range(len(points))
+    return sorted(points[one].tolist() for one in count if any(is_side(one, two) for two in count if two != one))
+
+
+def test_a_dense_hull_in_2d_is_pickled():
+    # Points of this ellipse are within rounding of the line between their neighbours, so the hull leaves out almost half of
+    # them, and the hull of its corners leaves out some more.
+    angles = np.random.default_rng(1).uniform(0, 2 * np.pi, 5000)
+    points = np.stack([np.cos(angles) * 0.5, np.sin(angles)], axis=1)
+    hull = impinge.ConvexHull(points, dtype="float32")
+    assert 2000 < len(hull.vertices) < 3000
+    assert pickle.loads(pickle.dumps(hull)) == hull == impinge.ConvexHull(hull.vertices, dtype="float32")
+    assert np.abs(impinge.signed_distance(hull, None, points.astype(np.float32))).max() < 1e-5
+
+
+def test_points_without_an_area_have_no_hull():
+    for points, message in {
+        ((0, 0), (1, 1), (2, 2)): "the points span no solid: they lie on one line",
+        ((1, 2), (1, 2), (1, 2)): "the points span no solid: they coincide",
+        ((0, 0), (1, 1)): "2 points were given, at least 3 are needed",
+    }.items():
+        with pytest.raises(ValueError, match=message):
+            impinge.ConvexHull(points)
+
+
 @pytest.mark.parametrize("dtype", [np.float32, np.dtype("float32"), "float32"])
 def test_dtypes_of_numpy(dtype):
     ball = impinge.Ball(1, dtype=dtype)
