@@ -39,6 +39,8 @@ where
     /// The shape with the scale applied.
     scaled: Result<ShapeHandle<f32, D>, ColliderError>,
     scale: Vec_<D>,
+    /// The scale that was refused last. Avian asks for it again in each step of a moving body.
+    refused: Option<Vec_<D>>,
 }
 
 impl<const D: usize> Collider<D>
@@ -65,7 +67,8 @@ where
     }
 
     pub(crate) fn made(shape: Result<ShapeHandle<f32, D>, ColliderError>) -> Self {
-        Self { scaled: shape.clone(), shape, scale: f32::vec(&Vector::<f32, D>::repeat(1.0)) }
+        let scale = f32::vec(&Vector::<f32, D>::repeat(1.0));
+        Self { scaled: shape.clone(), shape, scale, refused: None }
     }
 
     /// Converts the result of a constructor of the library to a collider, which has the shape or
@@ -110,16 +113,21 @@ where
         self.scale
     }
 
-    /// Replaces the scale; see [`scaled`]. If the shape cannot be scaled by these factors, logs an
-    /// error and keeps the old scale. A collider with an error is unchanged.
+    /// Replaces the scale; see [`scaled`]. If the shape cannot be scaled by these factors, keeps the
+    /// old scale and logs an error, once while the same factors are asked for. A collider with an
+    /// error is unchanged.
     pub(crate) fn rescale(&mut self, scale: Vec_<D>, detail: u32) {
         let Ok(shape) = &self.shape else { return };
-        if scale == self.scale {
+        let bits = |scale| f32::vector(scale).map(f32::to_bits);
+        if scale == self.scale || self.refused.is_some_and(|refused| bits(refused) == bits(scale)) {
             return;
         }
         match scaled(shape, &f32::vector(scale), detail) {
-            Ok(shape) => (self.scaled, self.scale) = (Ok(shape), scale),
-            Err(error) => log::error!("a collider keeps its scale: {error}"),
+            Ok(shape) => (self.scaled, self.scale, self.refused) = (Ok(shape), scale, None),
+            Err(error) => {
+                self.refused = Some(scale);
+                log::error!("a collider keeps its scale: {error}");
+            }
         }
     }
 

@@ -104,11 +104,10 @@ const MATCHED: usize = 4;
 /// The feature ids of a point, and its normal and tangential impulse for warm starting.
 type Warmth = ([PackedFeatureId; 2], f32, f32);
 
-/// Returns the ids and impulses of the points of a pair with at least [`MATCHED`] manifolds: after
-/// the update it may have more, and Avian would then not match its points. Empty for other pairs.
+/// Returns the ids and impulses of the points of a pair. Avian does not match the points of a pair
+/// that has more than [`MATCHED`] manifolds after the update.
 fn warmth(manifolds: &[ContactManifold]) -> Vec<Warmth> {
-    let many = if manifolds.len() >= MATCHED { manifolds } else { &[] };
-    let points = many.iter().flat_map(|manifold| &manifold.points);
+    let points = manifolds.iter().flat_map(|manifold| &manifold.points);
     let of = |point: &ContactPoint| {
         let name = [point.feature_id1, point.feature_id2];
         (name, point.warm_start_normal_impulse, point.warm_start_tangent_impulse)

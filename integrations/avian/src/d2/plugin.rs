@@ -75,5 +75,10 @@ where
 
 fn sweep(mut pairs: ResMut<PairContacts>, graph: Res<ContactGraph>) {
     let count = graph.active_pairs().len() + graph.sleeping_pairs().len();
-    pairs.bypass_change_detection().sweep(count, |(one, other)| graph.contains(one, other));
+    // The keys of Avian's pairs are indices without generations, so a pair of a despawned entity
+    // seems to live on if a new entity has its index.
+    let lives = |entity| graph.entity_to_node(entity).is_some();
+    pairs
+        .bypass_change_detection()
+        .sweep(count, |(one, other)| lives(one) && lives(other) && graph.contains(one, other));
 }

@@ -101,11 +101,10 @@ const MATCHED: usize = 4;
 /// The feature ids of a point, and its normal and tangential impulse for warm starting.
 type Warmth = ([PackedFeatureId; 2], f32, Vec2);
 
-/// Returns the ids and impulses of the points of a pair with at least [`MATCHED`] manifolds: after
-/// the update it may have more, and Avian would then not match its points. Empty for other pairs.
+/// Returns the ids and impulses of the points of a pair. Avian does not match the points of a pair
+/// that has more than [`MATCHED`] manifolds after the update.
 fn warmth(manifolds: &[ContactManifold]) -> Vec<Warmth> {
-    let many = if manifolds.len() >= MATCHED { manifolds } else { &[] };
-    let points = many.iter().flat_map(|manifold| &manifold.points);
+    let points = manifolds.iter().flat_map(|manifold| &manifold.points);
     let of = |point: &ContactPoint| {
         let name = [point.feature_id1, point.feature_id2];
         (name, point.warm_start_normal_impulse, point.warm_start_tangent_impulse)
@@ -201,5 +200,29 @@ impl ComputeMassProperties3d for Collider {
             local_inertial_frame: principal_frame(&found),
             center_of_mass: f32::vec(&found.center_of_mass().coords),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A pair with three manifolds that gets five in one step: its old points keep their impulses,
+    /// which Avian would not copy.
+    #[test]
+    fn points_stay_warm_when_manifolds_are_added() {
+        let manifold = |name: u32| {
+            let point = ContactPoint::new(Vec3::ZERO, Vec3::ZERO, Vec3::ZERO, 0.01)
+                .with_feature_ids(PackedFeatureId(name), PackedFeatureId(name));
+            ContactManifold::new([point], Vec3::Y)
+        };
+        let mut old: Vec<_> = (1..=3).map(manifold).collect();
+        old.iter_mut().for_each(|manifold| manifold.points[0].warm_start_normal_impulse = 7.0);
+        let kept = warmth(&old);
+        let mut new: Vec<_> = (0..5).map(manifold).collect();
+        warm(&mut new, &kept);
+        let impulses: Vec<_> =
+            new.iter().map(|new| new.points[0].warm_start_normal_impulse).collect();
+        assert_eq!(impulses, [0.0, 7.0, 7.0, 7.0, 0.0]);
     }
 }

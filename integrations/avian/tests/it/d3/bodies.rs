@@ -190,6 +190,23 @@ fn pairs_are_forgotten() {
     assert!((10..100).contains(&kept.len()), "{kept:?} of 400");
 }
 
+/// Asserts that the states of despawned bodies are dropped even if new bodies have their indices:
+/// Bevy gives freed indices away again, many of them before the next step.
+#[test]
+fn pairs_of_former_indices_are_forgotten() {
+    let mut app = app::<Impinge>();
+    fixed::<Impinge>(&mut app, sheet::<Impinge>(40, 1.0, |_, _| 0.0), Vec3::ZERO);
+    for _ in 0..12 {
+        let at = |i: usize| 1.25 * Vec3::new((i % 16) as f32 - 7.5, 0.4, (i / 16) as f32 - 7.5);
+        let body = |i| dynamic::<Impinge>(&mut app, Impinge::sphere(0.5), at(i));
+        let bodies: Vec<_> = (0..256).map(body).collect();
+        steps(&mut app, 1);
+        bodies.into_iter().for_each(|body| assert!(app.world_mut().despawn(body)));
+    }
+    let kept = app.world().resource::<d3::PairContacts>();
+    assert!((256..=2 * 256 + 64).contains(&kept.len()), "{kept:?} of 3072");
+}
+
 /// Asserts that a clone of the resource has its pairs, and that bodies stay at rest if the resource
 /// is cleared or replaced.
 #[test]
