@@ -102,10 +102,11 @@ fn check_closed<F: AsRef<[u32]>>(faces: &[F]) -> Result<(), ShapeError> {
     }
 }
 
-/// Returns the mean of the corners of a face.
+/// Returns the mean of the corners of a face, which has at least one. Offsets from the first corner
+/// are added, so that a coordinate that all corners have stays exact.
 fn middle<N: Real>(points: &[Point<N, 3>], corners: &[u32]) -> Point<N, 3> {
     let count = u32::try_from(corners.len()).map_or(f64::INFINITY, f64::from);
-    let share = N::ONE / N::lit(count);
-    let sum = |sum, &corner: &u32| sum + points[corner as usize].coords * share;
-    Point::from(corners.iter().fold(Vector::<N, 3>::zeros(), sum))
+    let (share, first) = (N::ONE / N::lit(count), points[corners[0] as usize]);
+    let sum = |sum, &corner: &u32| sum + (points[corner as usize] - first) * share;
+    first + corners.iter().fold(Vector::<N, 3>::zeros(), sum)
 }

@@ -77,20 +77,21 @@ fn is_inside(vertex: &P3, neighbors: &[P3], flat: f64) -> bool {
         neighbors.iter().enumerate().flat_map(|(i, a)| neighbors[..i].iter().map(move |b| (a, b)));
     let is_amid = |normal: Vector<f64, 3>| {
         neighbors.iter().all(|p| normal.dot(&(p - vertex)).abs() <= flat)
-            && is_surrounded(vertex, neighbors, &normal)
+            && is_surrounded(vertex, neighbors, &normal, flat)
     };
     pairs.clone().any(|(a, b)| distance_from_segment(vertex, a, b) <= flat)
         || widest_normal(vertex, pairs).is_some_and(is_amid)
 }
 
 /// Returns whether, projected along `normal`, every line through the vertex and a neighbor has
-/// other neighbors strictly on both sides. False at the rim of a solid that is almost as thin as
-/// rounding errors: all neighbors lie in one plane, but on one side of the vertex.
-fn is_surrounded(vertex: &P3, neighbors: &[P3], normal: &Vector<f64, 3>) -> bool {
+/// other neighbors on both sides, farther from the line than `flat`. False at the rim of a solid
+/// that is almost as thin as rounding errors: all neighbors lie in one plane, but on one side of
+/// the vertex.
+fn is_surrounded(vertex: &P3, neighbors: &[P3], normal: &Vector<f64, 3>, flat: f64) -> bool {
     neighbors.iter().all(|to| {
         let across = normal.cross(&(to - vertex));
-        let side = |p: &P3| across.dot(&(p - vertex));
-        neighbors.iter().any(|p| side(p) < 0.0) && neighbors.iter().any(|p| side(p) > 0.0)
+        let (side, least) = (|p: &P3| across.dot(&(p - vertex)), flat * across.norm());
+        neighbors.iter().any(|p| side(p) < -least) && neighbors.iter().any(|p| side(p) > least)
     })
 }
 

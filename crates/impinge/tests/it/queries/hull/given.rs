@@ -166,3 +166,26 @@ fn of_f64() {
     hulls_are_what_their_points_span::<f64>();
     hits_that_count_are_the_first_of_them::<f64>();
 }
+
+/// Bug: the mean of the corners of a large face was added up with a bias, and so lay beside the hull.
+fn large_faces<N: Real>(sides: &[u32]) {
+    for &sides in sides {
+        let points = cast::<N>(&prism(sides));
+        let hull = convex_hull3(&points).expect("a solid");
+        let faces: Vec<Vec<u32>> = hull
+            .faces
+            .iter()
+            .map(|face| face.iter().map(|&corner| u32::try_from(corner).expect("few")).collect())
+            .collect();
+        let corners: Vec<_> = hull.vertices.iter().map(|&vertex| points[vertex]).collect();
+        assert_eq!(corners.len(), points.len(), "all points are corners");
+        let given = ConvexHull::try_new(&points, &faces);
+        assert!(given.is_ok(), "{sides} sides: {:?}", given.err());
+    }
+}
+
+#[test]
+fn prisms_of_many_sides_are_solids() {
+    large_faces::<f32>(&[541, 614, 1000]);
+    large_faces::<f64>(&[545, 642, 2000]);
+}

@@ -7,6 +7,7 @@ use impinge::transformation::convex_hull3;
 
 use super::checks::{cast, hull_of, hull_within};
 use super::points::{Numbers, P3, ball, cube, grid, octahedron, prism, slab, sphere, turned};
+use crate::support::samples::samples;
 
 fn counts<N: Real>(name: &str, points: &[P3]) -> (usize, usize) {
     let hull = hull_of::<N>(name, points);
@@ -292,4 +293,58 @@ fn time_of_large_hulls() {
             assert_eq!(solid.faces().len(), hull.faces.len(), "the same hull");
         }
     }
+}
+
+/// Bug: corners at the rim of hulls almost as thin as rounding were taken for points in the middle of
+/// a face, because the rounded height of a neighbor over the line through it was not exactly zero.
+#[test]
+fn rims_of_nearly_flat_hulls_keep_their_corners() {
+    let five = [
+        [2_742_737.5, -4_715_858.0, -566_647.312_5],
+        [4_163_171.5, -2_182_100.0, -1_735_456.875],
+        [-5_931_892.5, -7_724_595.5, 4_378_594.0],
+        [-21_663_910.0, -324_940.906_25, 11_085_468.0],
+        [1_946_969.5, 14_063_551.0, -3_465_121.5],
+    ];
+    let six = [
+        [-2_351_941.5, -1_255_162.125, 843_616.312_5],
+        [-5_935_322.5, -15_419.076_171_875, 1_966_076.875],
+        [-8_398_209.0, 4_974_390.5, 2_523_742.25],
+        [-7_055_822.5, -3_765_486.25, 2_530_855.25],
+        [-9_518_706.0, 1_224_323.625, 3_088_529.0],
+        [-10_750_150.0, 3_719_228.25, 3_367_359.5],
+    ];
+    assert_eq!(hull_of::<f32>("five", &five.map(P3::from)).vertices.len(), 5, "five points");
+    // Some of the six lie on sides of the others within rounding.
+    hull_of::<f32>("six", &six.map(P3::from));
+}
+
+/// Asserts that hulls of rotated discs, a few rounding units thick, keep their extents.
+fn thin_discs<N: Real>() {
+    let random = &mut Numbers::new(4);
+    let mut solids = 0;
+    for round in 0..samples(400) {
+        let count = 8 + round % 23;
+        let noise = (2.0 + f64::from(u8::try_from(round % 3).expect("few"))) * N::EPSILON.as_f64();
+        let flat: Vec<P3> = (0..count)
+            .map(|_| {
+                let angle = std::f64::consts::PI * random.next();
+                let radius = random.next().abs().sqrt();
+                let height = noise * (random.next() - random.next());
+                [radius * angle.cos(), radius * angle.sin(), height].into()
+            })
+            .collect();
+        let points = turned(&flat, 1.0, 0.0);
+        if convex_hull3(&cast::<N>(&points)).is_ok() {
+            hull_of::<N>("disc", &points);
+            solids += 1;
+        }
+    }
+    assert!(solids > samples(100), "{solids} discs span a solid");
+}
+
+#[test]
+fn thin_discs_keep_their_extents() {
+    thin_discs::<f64>();
+    thin_discs::<f32>();
 }
