@@ -293,9 +293,10 @@ impl<N: Space<D>, const D: usize> WholeQuestion<'_, '_, N, D> {
                 return;
             }
             let path = Path { mirrored: path.mirrored && parts[0] == parts[1], ..*path };
+            // Of an overlap the depth is along the normal of a surface, not that of the parts.
             let counts_soon = || {
                 let own = path_in_first_part(&placed, &path);
-                own.counts_soon(&placed.pair(), gap, tolerance)
+                gap < -tolerance || own.counts_soon(&placed.pair(), gap, tolerance)
             };
             if !(path.counts_at_start(&separation.normal, gap, tolerance) && counts_soon()) {
                 is_free = true;

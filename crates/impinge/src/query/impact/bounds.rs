@@ -165,11 +165,9 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     /// time. `apart` is the distance between the bounding spheres minus the target distance; if
     /// negative, the spheres give no bound.
     pub(super) fn safe_time(&self, [gap, apart]: [N; 2], opening: Option<N>, remaining: N) -> N {
-        let safe = |span: N| {
-            let to = self.time + span;
-            let opened = opening.map_or(N::INFINITY, |opening| self.time_to_open(opening, to));
-            min(self.safe_within(gap, apart, to), opened)
-        };
+        let opened = |to| opening.map_or(N::INFINITY, |opening| self.time_to_open(opening, to));
+        let within = |to| min(self.safe_within(gap, apart, to), opened(to));
+        let safe = |span: N| within(self.time + span);
         let all = safe(remaining);
         if all >= remaining || self.bodies.iter().all(|body| body.constant().is_some()) {
             return all;
@@ -221,13 +219,13 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         Moment { bodies, origin, poses, centers, time, normal }.safe_within(gap, -N::ONE, to)
     }
 
-    /// Returns an upper bound of the speed at which a point of one part and a point of the other
-    /// approach, for all points and directions, up to the time `to`.
+    /// Runs [`Self::rate_between`] for two parts.
     pub(super) fn rate_of(&self, parts: &ImpactParts<'_, N, D>, to: N) -> Rate<N> {
         self.rate_between(parts.bodies.each_ref(), to)
     }
 
-    /// Implements [`Self::rate_of`] for the points of two bodies with the motions of `self.bodies`.
+    /// Returns an upper bound of the speed at which a point of one of two bodies, or parts of
+    /// `self.bodies`, and a point of the other approach in any direction, up to the time `to`.
     fn rate_between(&self, bodies: [&MovingBody<'_, N, D>; 2], to: N) -> Rate<N> {
         let swings = [0, 1].mapped(|index| {
             product(self.bodies[index].turn_bound(self.time, to), bodies[index].arm)
@@ -238,10 +236,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     /// Returns a time in which no two points of the bodies approach or separate by more than
     /// `opening`, valid up to the time `to`; infinite if a body is unbounded.
     pub(super) fn time_to_open(&self, opening: N, to: N) -> N {
-        if self.bodies.iter().any(|body| !body.arm.is_finite_number()) {
-            return N::INFINITY;
-        }
-        self.rate_between(self.bodies, to).time_for(opening)
+        let is_bounded = self.bodies.iter().all(|body| body.arm.is_finite_number());
+        if is_bounded { self.rate_between(self.bodies, to).time_for(opening) } else { N::INFINITY }
     }
 
     /// Returns a bound of the motion of the points of body `which` during `span`, in the frame of

@@ -91,7 +91,7 @@ impl<N: Real, const D: usize> Path<N, D> {
 
 impl<N: Space<D>, const D: usize> Path<N, D> {
     /// Returns whether a contact of convex solids that counts at the start still counts after a tiny
-    /// motion, if the solids only touch; an overlap counts in any case. Where a corner meets a corner, every normal between two faces is one of the contact,
+    /// motion: whether solids that touch still approach, or an overlap has not become less. Where a corner meets a corner, every normal between two faces is one of the contact,
     /// and the separation returns any of them:
     ///
     /// ```text
@@ -105,11 +105,16 @@ impl<N: Space<D>, const D: usize> Path<N, D> {
     /// they still do a little later.
     pub(crate) fn counts_soon(&self, start: &Pair<'_, N, D>, gap: N, tolerance: N) -> bool {
         let soon = N::lit(SOON) * N::EPSILON * size(start) / max_component(&self.velocity);
-        if self.contact_at_start || gap < -tolerance || !soon.is_finite_number() {
+        if self.contact_at_start || !soon.is_finite_number() {
             return true;
         }
         let found = separation(&self.moved(start, soon), N::INFINITY);
-        found.is_none_or(|found| self.counts_at_start(&found.normal, gap, tolerance))
+        found.is_none_or(|found| {
+            if gap < -tolerance {
+                return found.distance - self.target <= gap + N::lit(8.0) * tolerance;
+            }
+            self.counts_at_start(&found.normal, gap, tolerance)
+        })
     }
 }
 

@@ -16,9 +16,8 @@ mod nonlinear;
 mod velocities;
 
 use crate::tables::entries;
-use linear::advance;
-use linear::is_hit_at_start;
 pub(crate) use linear::{Arrival, Beginning, Path, begin, size};
+use linear::{advance, is_hit_at_start};
 pub use motion::RigidMotion;
 pub use nonlinear::nonlinear_time_of_impact;
 pub(crate) use nonlinear::{Flight, impact_of_flight};

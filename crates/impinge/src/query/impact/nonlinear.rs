@@ -1,6 +1,9 @@
 //! The time of impact of two bodies that move and rotate.
 
-use super::bounds::{Moment, MovingBody, Rate, length};
+mod part_steps;
+
+use self::part_steps::PartSteps;
+use super::bounds::{Moment, MovingBody, length};
 use super::linear::SOON;
 use super::{Impact, ImpactOptions, ImpactStatus, RigidMotion, is_hit_at_start};
 use crate::tables::ByDimension;
@@ -11,17 +14,13 @@ use core::iter;
 use crate::collide::Pair;
 use crate::collide::pair::{Placed, order};
 use crate::collide::parts::{
-    Between, PairVisitor, PartSeparation, PartSweep, Wanted, nearest_between, visit_near_pairs,
+    Between, PairVisitor, PartSeparation, Wanted, nearest_between, visit_near_pairs,
 };
-use crate::collide::separation::separation;
 use crate::math::{Mapped, Pose, Space, Unit, Vector, max, max_component, min};
 use crate::shape::Shape;
 
 /// The maximum number of steps of conservative advancement.
 const MAX_STEPS: usize = 1024;
-
-/// The maximum number of separate steps of two parts before all parts are tested again.
-const MAX_PART_STEPS: usize = 64;
 
 /// The maximum number of consecutive steps with a gap below [`NEAR`], if no tolerance is given.
 const MAX_NEAR_STEPS: usize = 256;
@@ -370,6 +369,7 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
     fn counts_soon(&self, start: &Configuration<'_, 'a, N, D>) -> bool {
         let moment = &start.poses.moment;
         let soon = moment.time_to_open(N::lit(SOON) * N::EPSILON * start.size, self.end);
+        let soon = min(soon, self.end);
         let is_deep = start.gap < -start.tolerance;
         if self.contact_at_start || is_deep || !(soon > N::ZERO && soon.is_finite_number()) {
             return true;
@@ -454,74 +454,10 @@ impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
     }
 }
 
-/// The search for the largest step in which no two parts use up the excess. Each pair of parts is
-/// advanced separately, until it uses up the excess or reaches the end of the step found so far.
-struct PartSteps<'s, 'b, 'a, N: Space<D>, const D: usize> {
-    search: &'s ImpactSearch<'a, N, D>,
-    configuration: &'s Configuration<'b, 'a, N, D>,
-    mode: Mode<N>,
-    /// The distance of two parts at which the excess is used up.
-    spent: N,
-    /// An upper bound of the approach of any two parts.
-    rate: Rate<N>,
-    step: Step<N>,
-}
-
 /// A step during which the bodies certainly do not hit each other.
 #[derive(Clone, Copy, Debug)]
 struct Step<N> {
     time: N,
     /// The number of consecutive near steps at the end of the step, of the two parts that limit it.
     near_steps: usize,
-}
-
-impl<'a, N: Space<D>, const D: usize> PartSteps<'_, '_, 'a, N, D> {
-    /// Returns the distance by which two parts may still approach at the given poses, and a time
-    /// during which they certainly do not use up that distance. `None` if they cannot use it up in
-    /// the time `left`, by an upper bound of their speed in any direction.
-    fn alone(&self, poses: &BodyPoses<'_, 'a, N, D>, parts: [u32; 2], left: N) -> Option<(N, N)> {
-        let (moment, end) = (&poses.moment, self.search.end);
-        let placed = poses.between.parts(parts);
-        let parts = moment.parts(&placed, &poses.pose1);
-        let travel = min(moment.rate_of(&parts, end).travel(left), self.rate.travel(left));
-        let found = separation(&placed.pair(), self.spent + travel)?;
-        let gap = found.distance - self.spent;
-        Some((gap, moment.safe_time_of(&parts, &found.normal, gap, end)))
-    }
-}
-
-impl<N: Space<D>, const D: usize> PairVisitor<N, D> for PartSteps<'_, '_, '_, N, D> {
-    fn limit(&self) -> N {
-        self.spent
-    }
-
-    fn sweep(&self, which: usize) -> Option<PartSweep<N, D>> {
-        Some(self.configuration.poses.moment.sweep(which, &self.rate, self.step.time))
-    }
-
-    fn visit(&mut self, parts: [u32; 2]) {
-        let (start, longest) = (self.configuration.poses.moment.time, self.step.time);
-        let Some((_, mut time)) = self.alone(&self.configuration.poses, parts, longest) else {
-            return;
-        };
-        let mut near_steps = 0;
-        // Parts in contact may separate and come back, so all parts are tested after each step of
-        // two such parts.
-        let tries = if matches!(self.mode, Mode::Apart) { MAX_PART_STEPS } else { 0 };
-        for _ in 0..tries {
-            if time >= longest {
-                return;
-            }
-            let Some(poses) = self.search.poses_at(start + time) else { break };
-            let Some((gap, safe)) = self.alone(&poses, parts, longest - time) else { return };
-            near_steps = if gap <= self.configuration.near() { near_steps + 1 } else { 0 };
-            if gap <= self.configuration.tolerance || start + (time + safe) <= start + time {
-                break;
-            }
-            time += safe;
-        }
-        if time < longest {
-            self.step = Step { time, near_steps };
-        }
-    }
 }
