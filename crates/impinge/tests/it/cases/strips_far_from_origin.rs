@@ -2,7 +2,7 @@
 //! zero but no contact. The proof of overlaps by inner balls did not count the rounding errors of
 //! the centres.
 
-use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Point, Space};
+use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Point, Real, Space};
 use impinge::query::{Proximity, contact, distance, proximity};
 use impinge::shape::{ConvexHull, ConvexPolygon, Shape};
 
@@ -25,19 +25,20 @@ where
 
 #[test]
 fn strips_side_by_side() {
-    let a = [
-        [8046.660_644_531_25, 5643.538_085_937_5],
-        [8044.835_449_218_75, 5644.355_957_031_25],
-        [8044.819_335_937_5, 5644.319_824_218_75],
-        [8046.644_042_968_75, 5643.501_464_843_75],
+    let a: [[f64; 2]; 4] = [
+        [8_046.660_644_531_25, 5_643.538_085_937_5],
+        [8_044.835_449_218_75, 5_644.355_957_031_25],
+        [8_044.819_335_937_5, 5_644.319_824_218_75],
+        [8_046.644_042_968_75, 5_643.501_464_843_75],
     ];
-    let b = [
-        [8046.644_042_968_75, 5643.500_488_281_25],
-        [8044.818_847_656_25, 5644.318_847_656_25],
-        [8044.802_246_093_75, 5644.282_226_562_5],
-        [8046.627_441_406_25, 5643.463_867_187_5],
+    let b: [[f64; 2]; 4] = [
+        [8_046.644_042_968_75, 5_643.500_488_281_25],
+        [8_044.818_847_656_25, 5_644.318_847_656_25],
+        [8_044.802_246_093_75, 5_644.282_226_562_5],
+        [8_046.627_441_406_25, 5_643.463_867_187_5],
     ];
-    let [a, b] = [a, b].map(|corners| ConvexPolygon::new(&corners.map(Point::<f32, 2>::from)));
+    let point = |corner: [f64; 2]| Point::<f32, 2>::from(corner.map(f32::lit));
+    let [a, b] = [a, b].map(|corners| ConvexPolygon::new(&corners.map(point)));
     assert!(!agree(&Isometry2::identity(), [&a, &b]), "they are a millimetre apart");
 }
 

@@ -2,7 +2,7 @@
 //! touching, flush with each other, corner on corner and overlapping. The gap along each axis gives
 //! the distance, the depth and the normal of every pair.
 
-use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Point, Real, Space, Vector};
+use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Point, Space, Vector};
 use impinge::narrow_phase::GeometricQueryType;
 use impinge::query::{Proximity, contact, distance, proximity};
 use impinge::shape::{ConvexHull, ConvexPolygon, Cuboid, Polyline, ShapeHandle, TriMesh};
@@ -153,9 +153,9 @@ fn in_space<N: Space<3, Isometry = Isometry3<N>>>() {
 }
 
 /// Checks each pair of the forms of two boxes: a box, a hull, and a solid mesh or line.
-fn each_kind<N: Space<D>, R, const D: usize>(boxes: &Boxes<D>, shapes: [[ShapeHandle<N, D>; 3]; 2])
+fn each_kind<N, R, const D: usize>(boxes: &Boxes<D>, shapes: [[ShapeHandle<N, D>; 3]; 2])
 where
-    N: Real + Space<D, Isometry = Isometry<N, R, D>>,
+    N: Space<D, Isometry = Isometry<N, R, D>>,
     R: AbstractRotation<N, D> + Copy + std::fmt::Debug,
 {
     for (first, one) in shapes[0].iter().enumerate() {

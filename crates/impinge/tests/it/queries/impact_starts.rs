@@ -107,7 +107,7 @@ fn an_overlap_that_ends_and_begins_again_is_an_impact() {
     for case in 0..samples(400) {
         let (far, arm, angle) = (1.6 + 0.5 * random(), 0.1 + 0.5 * random(), TAU * random());
         let gap = |time: f64| {
-            let (sine, cosine) = (angle + time).sin_cos();
+            let (sine, cosine) = ((angle + time).sin(), (angle + time).cos());
             (far + arm * cosine).hypot(arm * sine) - 2.0
         };
         // Distances of centres are least half a turn from the greatest, at the angle 0.
