@@ -231,9 +231,7 @@ impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
             front.is_some_and(|front| front.dot(&outward) < N::lit(BEHIND))
         })
     }
-}
 
-impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
     /// Returns the front normal, of those of the two parts, along which the parts overlap less;
     /// `face` unless both have one. Both are from the first shape to the second, in the frame of
     /// the first.

@@ -1,15 +1,12 @@
 //! Proves overlaps by balls inside the solids: if the balls overlap, so do the solids.
 
+use super::shared_corner::rounding;
 use crate::collide::Pair;
-use crate::math::{Mapped, Point, Real, Vector, max, max_component, min};
-use crate::shape::{Cone, Geometry, Kind, SupportMap};
+use crate::math::{Point, Real, Vector, max, min};
+use crate::shape::{Cone, Kind, SupportMap};
 
 /// Fraction of the sum of both radii below which the distance of the centres proves an overlap.
 const SHARE: f64 = 1023.0 / 1024.0;
-
-/// Bound of the rounding errors of the centres and radii, in units of epsilon times the distances
-/// of the solids from the origins of their frames, and of these from each other.
-const ROUNDING: f64 = 64.0;
 
 /// Returns whether balls inside the two solids overlap by more than rounding. `false` proves
 /// nothing.
@@ -21,17 +18,9 @@ pub(super) fn inner_balls_meet<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -
     let between = (pair.pose12.point(&center2) - center1).norm_squared();
     let is_within = |distance: N| between < distance * distance;
     let max_distance = (radius1 + radius2) * N::lit(SHARE);
-    // The bound of rounding is needed rarely, so it is computed last.
+    // Solids far from the origins of their own frames, such as parts of a level, have errors beyond
+    // their radii. This bound is needed rarely, so it is computed last.
     is_within(max_distance) && is_within(max(max_distance - rounding(pair), N::ZERO))
-}
-
-/// Returns a bound of the rounding errors of the centres and radii of both balls. Solids far from
-/// the origins of their own frames, such as parts of a level, have errors beyond their radii.
-fn rounding<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
-    let [reach1, reach2] = [pair.first, pair.second]
-        .mapped(|kind| Geometry(kind).as_support_map().map_or(N::ZERO, SupportMap::reach));
-    let size = reach1 + reach2 + max_component(&pair.pose12.translation);
-    N::lit(ROUNDING) * N::EPSILON * size
 }
 
 /// Returns centre and radius of a ball inside a solid, in the frame of the solid. `None` for the

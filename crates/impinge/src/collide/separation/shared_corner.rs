@@ -34,7 +34,7 @@ pub(in crate::collide::separation) fn with_shared_corner<N: Real, const D: usize
 
 /// Returns the largest distance of a pair that may be a rounding error: [`ROUNDING`] in units of
 /// length.
-fn rounding<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
+pub(super) fn rounding<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
     let [reach1, reach2] = [pair.first, pair.second]
         .mapped(|kind| Geometry(kind).as_support_map().map_or(N::ZERO, SupportMap::reach));
     let size = reach1 + reach2 + max_component(&pair.pose12.translation);

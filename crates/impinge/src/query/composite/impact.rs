@@ -293,7 +293,7 @@ impl<N: Space<D>, const D: usize> WholeQuestion<'_, '_, N, D> {
                 return;
             }
             let path = Path { mirrored: path.mirrored && parts[0] == parts[1], ..*path };
-            // Of an overlap the depth is along the normal of a surface, not that of the parts.
+            // The depth of an overlap is along the normal of a surface, not along that of the parts.
             let counts_soon = || {
                 let own = path_in_first_part(&placed, &path);
                 gap < -tolerance || own.counts_soon(&placed.pair(), gap, tolerance)
