@@ -4,7 +4,7 @@
 
 use super::cull::relative_slack;
 use super::gather::{depth_in, search_box};
-use super::normal_filter::{Case, FilteredNormal, filter_normal};
+use super::normal_filter::{Case, FilteredNormal, filter_normal, least_along};
 use super::part_cache::PartCache;
 use super::part_contact::{Arena, PartContact, PartStatus};
 use super::patch::Piece;
@@ -369,9 +369,9 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
     /// the points.
     fn along(&self, normal: &Vector<N, 2>, points: &mut ChainPoints<N>) -> Option<Vector<N, 2>> {
         let inward = self.chain.inward(normal);
-        let distance = self.found.distance;
-        let least = if distance > -self.tolerance { distance } else { -N::INFINITY };
-        let along = Along { normal: inward, least, tolerance: self.tolerance };
+        let (found, tolerance) = (&self.found, self.tolerance);
+        let least = least_along(&inward, &found.normal, found.distance, tolerance);
+        let along = Along { normal: inward, least, tolerance };
         self.pair().along(&along, |point| points.push(self.chain.placed(point, &inward)))?;
         Some(self.chain.outward(&inward))
     }

@@ -13,7 +13,7 @@
 use smallvec::SmallVec;
 
 use super::gather::CulledParts;
-use super::normal_filter::{Case, FilteredNormal, faces, filter_normal};
+use super::normal_filter::{Case, FilteredNormal, faces, filter_normal, least_along};
 use super::part_cache::PartCache;
 use super::part_contact::{self, Arena, PartContact, PartStatus, overlooks};
 use super::patch::Piece;
@@ -206,18 +206,20 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
     fn clip_request(
         &self,
         contact: &FaceContact<N>,
-        distance: N,
+        gap: &TriangleGap<N>,
         tolerance: N,
     ) -> Option<ClipRequest<N>> {
         let is_own = contact.status == PartStatus::Own;
-        if is_own && distance > self.query.request.prediction {
+        if is_own && gap.distance > self.query.request.prediction {
             return None;
         }
-        // Unless the contact is [`PartStatus::Own`], no point gets a smaller distance than the
-        // parts, except if these overlap by more than rounding.
-        let least = if !is_own && distance > -tolerance { distance } else { -N::INFINITY };
+        let least = if is_own {
+            -N::INFINITY
+        } else {
+            least_along(&contact.normal, &gap.normal, gap.distance, tolerance)
+        };
         let normal = self.query.between.pair.pose12.vector(&contact.normal);
-        ClipRequest::new(self.solid, normal, is_own.then_some(distance), least)
+        ClipRequest::new(self.solid, normal, is_own.then_some(gap.distance), least)
     }
 }
 
@@ -277,8 +279,7 @@ impl<N: Real> FaceContacts<'_, '_, N> {
             SurfaceAnswer::Unclear => return None,
         };
         if contact.status != PartStatus::Left {
-            let request =
-                self.configuration.clip_request(&contact, gap.distance, triangle.tolerance)?;
+            let request = self.configuration.clip_request(&contact, gap, triangle.tolerance)?;
             self.pending.triangles.put(self.pending.requests.len(), &triangle.corners);
             self.pending.requests.push(request);
             self.pending.contacts.push((self.contacts.len(), cache_index));

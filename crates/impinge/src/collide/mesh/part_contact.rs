@@ -10,7 +10,7 @@
 use crate::tables::ByDimension;
 
 use super::Query;
-use super::normal_filter::{BEHIND, Case, FilteredNormal, faces, filter_normal};
+use super::normal_filter::{BEHIND, Case, FilteredNormal, faces, filter_normal, least_along};
 use super::patch::Piece;
 use super::scene::{PlacedPair, Scene};
 use crate::collide::manifold::{Along, build_along, build_between, build_on_face};
@@ -303,14 +303,15 @@ fn of_surfaces<N: Space<D>, const D: usize>(
             PartStatus::Own
         }
         CombinedNormal::Forced(face, status) => {
-            // If the parts are apart or overlap by no more than rounding, no point gets a smaller
-            // distance than the parts, unless the solid comes from inside a body.
+            // The solid comes from inside a body.
             let is_below = distance <= N::ZERO
                 && normal.dot(&face) < N::lit(BEHIND)
                 && scene.are_bodies(parts);
-            let face = if is_below { configuration.shallower_front(scene, &face) } else { face };
-            let touches = distance > -tolerance && !is_below;
-            let least = if touches { distance } else { -N::INFINITY };
+            let (face, least) = if is_below {
+                (configuration.shallower_front(scene, &face), -N::INFINITY)
+            } else {
+                (face, least_along(&face, &normal, distance, tolerance))
+            };
             let along = Along { normal: placed.inward(&face), least, tolerance };
             build_along(&pair, &along, request, raw);
             status

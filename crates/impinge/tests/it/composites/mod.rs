@@ -23,3 +23,4 @@ mod meshes;
 mod replaced_terrain;
 mod solid_meshes;
 mod thin_triangles;
+mod walls_on_joints;
