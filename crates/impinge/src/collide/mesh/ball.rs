@@ -271,6 +271,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
             part: centered.part,
             feature: &|| over,
             is_beside: is_beside(Some(over)),
+            is_crossed: false,
             outward: -self.turn.inverse_vector(&found.normal),
             toward: self.from - middle,
         };

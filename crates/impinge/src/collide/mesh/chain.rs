@@ -341,7 +341,8 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
         let feature = || self.pair().touched(&self.found).unwrap_or(unnamed);
         let (part, outward) = (self.parts[1], -chain.turn.inverse_vector(normal));
         let toward = chain.from - middle;
-        let case = Case { part, feature: &feature, is_beside: false, outward, toward };
+        let case =
+            Case { part, feature: &feature, is_beside: false, is_crossed: false, outward, toward };
         filter_normal(Some(SurfaceAccess::of_own(&self.known)), &case)
     }
 

@@ -184,6 +184,7 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
             part: triangle.part,
             feature: &feature,
             is_beside: false,
+            is_crossed: false,
             outward: gap.normal,
             toward: self.from.coords - middle,
         };

@@ -12,7 +12,7 @@ const ROUNDING: f64 = 4096.0;
 const ON_FACE: f64 = 1.0 / 64.0;
 /// A contact's normal whose component along the face's normal is below this belongs to the back of
 /// the face.
-pub(super) const BEHIND: f64 = -0.5;
+const BEHIND: f64 = -0.5;
 
 /// To detect a ridge, the normal of the face is moved towards the contact's normal by this fraction
 /// of their difference.
@@ -59,6 +59,9 @@ pub(super) struct Case<'a, N: Real, const D: usize> {
     /// Whether the other solid is a ball whose centre is known not to project into the part's face.
     /// `Snapped` and `Beyond` both drop such a contact, so they are not distinguished.
     pub(super) is_beside: bool,
+    /// Whether two parts of surfaces overlap. Then the centre of the other part may be inside this
+    /// shape.
+    pub(super) is_crossed: bool,
     /// Unit normal of the contact, away from the part.
     pub(super) outward: Vector<N, D>,
     /// Vector from the centre of the part to the reference point of the other solid.
@@ -94,8 +97,9 @@ pub(super) fn filter_normal<N: Space<D>, const D: usize>(
     if tilt <= N::lit(ROUNDING) * N::EPSILON {
         return FilteredNormal::Face(face);
     }
-    if case.outward.dot(&face) < N::lit(BEHIND) {
-        return FilteredNormal::Snapped(face);
+    if is_behind(&case.outward, &face) {
+        let is_free = is_touched_from_behind(surface, case, &face);
+        return if is_free { FilteredNormal::Admitted } else { FilteredNormal::Snapped(face) };
     }
     let feature = (case.feature)();
     if is_face(feature) && tilt <= N::lit(ON_FACE) {
@@ -111,6 +115,44 @@ pub(super) fn filter_normal<N: Space<D>, const D: usize>(
         (false, true) => FilteredNormal::Beyond(face),
         (false, false) => FilteredNormal::Snapped(face),
     }
+}
+
+/// Returns whether a normal, taken away from a part, belongs to the back of a face of the part.
+pub(super) fn is_behind<N: Space<D>, const D: usize>(
+    normal: &Vector<N, D>,
+    face: &Vector<N, D>,
+) -> bool {
+    normal.dot(face) < N::lit(BEHIND)
+}
+
+/// Returns whether a contact whose normal belongs to the back of the face holds, although the
+/// centre of the other solid is in front of it.
+///
+/// A solid beside a surface may touch a border from behind:
+///
+/// ```text
+///     surface       ╱       the centre · is above the plane of the surface, the normal of the
+///   ──────────────╱    ·    contact points to the right and down
+///               ╱
+/// ```
+///
+/// A border admits each normal away from its face, also the normal within the plane of the face,
+/// which blunt ridges do not admit. If two parts of surfaces overlap, the centre of the other part
+/// proves nothing, and any side or corner that admits the normal is touched.
+fn is_touched_from_behind<N: Space<D>, const D: usize>(
+    surface: SurfaceAccess<'_, N, D>,
+    case: &Case<'_, N, D>,
+    face: &Vector<N, D>,
+) -> bool {
+    let along = case.outward - face * case.outward.dot(face);
+    let Some((within, length)) = unit(&along) else { return false };
+    if length <= N::lit(ON_FACE) {
+        return false;
+    }
+    let feature = (case.feature)();
+    !is_face(feature)
+        && (case.is_crossed || surface.admits(case.part, feature, &within))
+        && surface.admits(case.part, feature, &case.outward)
 }
 
 /// Returns the unit normal of the face, tilted slightly towards the normal of the contact; `None`
@@ -146,8 +188,7 @@ pub(super) fn least_along<N: Space<D>, const D: usize>(
     distance: N,
     tolerance: N,
 ) -> N {
-    let is_behind = normal.dot(face) < N::lit(BEHIND);
-    let apart = if is_behind { -tolerance } else { tolerance };
+    let apart = if is_behind(normal, face) { -tolerance } else { tolerance };
     if distance > apart { distance } else { -N::INFINITY }
 }
 

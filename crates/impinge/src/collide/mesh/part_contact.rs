@@ -10,7 +10,7 @@
 use crate::tables::ByDimension;
 
 use super::Query;
-use super::normal_filter::{BEHIND, Case, FilteredNormal, faces, filter_normal, least_along};
+use super::normal_filter::{Case, FilteredNormal, faces, filter_normal, is_behind, least_along};
 use super::patch::Piece;
 use super::scene::{PlacedPair, Scene};
 use crate::collide::manifold::{Along, build_along, build_between, build_on_face};
@@ -188,13 +188,19 @@ impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
         let ([own1, other2], [other1, own2]) = (self.centers[0], self.centers[1]);
         let other2 = self.reference.unwrap_or(other2);
         let [surface1, surface2] = scene.surfaces;
-        let touches = |surface: Option<SurfaceAccess<'_, N, D>>, part, center| {
-            let overlaps =
-                || gap.distance <= N::ZERO && surface.is_some_and(|own| own.is_body(part));
-            faces(surface, part, center) || overlaps()
+        let normal = self.placed.outward(&gap.normal);
+        let outward = [normal, -self.placed.in_second_frame(&normal)];
+        let overlaps = gap.distance <= N::ZERO;
+        let is_crossed = overlaps && surface1.is_some() && surface2.is_some();
+        let touches = |surface: Option<SurfaceAccess<'_, N, D>>, part, center, outward| {
+            let is_before = |own: SurfaceAccess<'_, N, D>| {
+                let front = own.snapped(part, outward).filter(|_| is_crossed);
+                own.is_body(part) || front.is_some_and(|front| !is_behind(outward, &front))
+            };
+            faces(surface, part, center) || overlaps && surface.is_some_and(is_before)
         };
-        let can_touch =
-            touches(surface1, self.parts[0], &other1) && touches(surface2, self.parts[1], &other2);
+        let can_touch = touches(surface1, self.parts[0], &other1, &outward[0])
+            && touches(surface2, self.parts[1], &other2, &outward[1]);
         if !can_touch {
             return [FilteredNormal::Nothing; 2];
         }
@@ -204,12 +210,24 @@ impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
             |is_second| <N::Algorithms>::witness_feature(&pair, gap, tolerance, is_second);
         let (feature1, feature2) =
             (|| feature(is_second1), || over.unwrap_or_else(|| feature(is_second2)));
-        let normal = self.placed.outward(&gap.normal);
-        let (part, toward) = (self.parts[0], other1 - own1);
-        let case1 = Case { part, feature: &feature1, is_beside: false, outward: normal, toward };
-        let (part, toward) = (self.parts[1], other2 - own2);
-        let (outward, is_beside) = (-self.placed.in_second_frame(&normal), is_beside(over));
-        let case2 = Case { part, feature: &feature2, is_beside, outward, toward };
+        let ([part1, part2], [outward1, outward2]) = (self.parts, outward);
+        let (toward1, toward2) = (other1 - own1, other2 - own2);
+        let case1 = Case {
+            part: part1,
+            feature: &feature1,
+            is_beside: false,
+            is_crossed,
+            outward: outward1,
+            toward: toward1,
+        };
+        let case2 = Case {
+            part: part2,
+            feature: &feature2,
+            is_beside: is_beside(over),
+            is_crossed,
+            outward: outward2,
+            toward: toward2,
+        };
         [filter_normal(surface1, &case1), filter_normal(surface2, &case2)]
     }
 }
@@ -228,23 +246,25 @@ impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
         scene.surfaces.iter().zip(self.parts).zip(outward).any(|((surface, part), outward)| {
             let surface = surface.filter(|surface| surface.is_body(part));
             let front = surface.and_then(|surface| surface.snapped(part, &outward));
-            front.is_some_and(|front| front.dot(&outward) < N::lit(BEHIND))
+            front.is_some_and(|front| is_behind(&outward, &front))
         })
     }
 
     /// Returns the front normal, of those of the two parts, along which the parts overlap less;
-    /// `face` unless both have one. Both are from the first shape to the second, in the frame of
-    /// the first.
+    /// `face` unless both parts belong to bodies. Both are from the first shape to the second, in
+    /// the frame of the first.
     ///
     /// Two solid meshes that are stacked exactly above each other have sides in one plane. The side
     /// of one meets the top of the other along an edge; the top gives the depth of the stack, the
     /// front of the side the width of the mesh.
     fn shallower_front(&self, scene: &Scene<'_, N, D>, face: &Vector<N, D>) -> Vector<N, D> {
         let [[own1, other2], [other1, own2]] = self.centers;
-        let [Some(surface1), Some(surface2)] = scene.surfaces else { return *face };
-        let front1 = surface1.snapped(self.parts[0], &(other1 - own1));
-        let front2 = surface2.snapped(self.parts[1], &(other2 - own2));
-        let (Some(front1), Some(front2)) = (front1, front2) else { return *face };
+        let front = |which: usize, toward: Vector<N, D>| {
+            let (surface, part) = (scene.surfaces[which]?, self.parts[which]);
+            surface.snapped(part, &toward).filter(|_| surface.is_body(part))
+        };
+        let fronts = (front(0, other1 - own1), front(1, other2 - own2));
+        let (Some(front1), Some(front2)) = fronts else { return *face };
         let front2 = -self.placed.in_first_frame(&front2);
         let (pair, placed) = (self.placed.pair(), self.placed);
         let depth = |front| overlap_along(&pair, &placed.inward(front));
@@ -304,9 +324,8 @@ fn of_surfaces<N: Space<D>, const D: usize>(
         }
         CombinedNormal::Forced(face, status) => {
             // The solid comes from inside a body.
-            let is_below = distance <= N::ZERO
-                && normal.dot(&face) < N::lit(BEHIND)
-                && scene.are_bodies(parts);
+            let is_below =
+                distance <= N::ZERO && is_behind(&normal, &face) && scene.are_bodies(parts);
             let (face, least) = if is_below {
                 (configuration.shallower_front(scene, &face), -N::INFINITY)
             } else {
@@ -416,7 +435,10 @@ enum CombinedNormal<N: Real, const D: usize> {
 
 /// Combines the results of both surfaces for `normal`. `normal` and the result are in the frame of
 /// the first shape. If both filters force the normal of a face, the face whose normal is closer to
-/// `normal` is used.
+/// `normal` is used. If only one forces it, at a ridge, and `normal` is that of a face of the other
+/// surface, this face is used, unless it pushes the shapes into each other: where a side of a crate
+/// that is slightly tilted meets a floor, the ridge below the side ends just before the floor's
+/// normal.
 fn combined_normal<N: Space<D>, const D: usize>(
     placed: &PlacedPair<'_, N, D>,
     filtered: &[FilteredNormal<N, D>; 2],
@@ -435,6 +457,12 @@ fn combined_normal<N: Space<D>, const D: usize>(
             let face2 = of_second(face2);
             let is_first_nearer = face1.dot(normal) > face2.dot(normal);
             CombinedNormal::Forced(if is_first_nearer { *face1 } else { face2 }, status)
+        }
+        [Face(own), Beyond(face)] if !is_behind(own, &of_second(face)) => {
+            CombinedNormal::Found(*own)
+        }
+        [Beyond(face), Face(own)] if !is_behind(&of_second(own), face) => {
+            CombinedNormal::Found(of_second(own))
         }
         [_, Snapped(face) | Beyond(face)] => CombinedNormal::Forced(of_second(face), status),
         [Snapped(face) | Beyond(face), _] => CombinedNormal::Forced(*face, status),

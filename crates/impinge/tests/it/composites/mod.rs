@@ -1,5 +1,6 @@
 //! Tests of compounds, meshes, polylines and height fields.
 
+mod beside_borders;
 mod boxes_on_a_grid;
 mod cast_out_of_floors;
 mod closed_meshes;
@@ -20,6 +21,7 @@ mod internal_edges;
 mod internal_edges_of_lines;
 mod large_hulls;
 mod meshes;
+mod meshes_on_surfaces;
 mod replaced_terrain;
 mod solid_meshes;
 mod thin_triangles;
