@@ -9,6 +9,7 @@ use crate::collide::each_contact_within;
 use crate::collide::parts::between::{Between, PartPair, by_number};
 use crate::collide::parts::bounds::loosened;
 use crate::collide::parts::{Wanted, find_exits, held_pieces, nearest_between};
+use crate::collide::separation::separation as separation_of;
 use crate::convex::Separation;
 use crate::math::{Real, Space, Vector};
 use crate::query::impact::{Arrival, Beginning, Path, begin, size};
@@ -293,10 +294,12 @@ impl<N: Space<D>, const D: usize> WholeQuestion<'_, '_, N, D> {
                 return;
             }
             let path = Path { mirrored: path.mirrored && parts[0] == parts[1], ..*path };
+            let slack = tolerance + path.rounding;
             // The depth of an overlap is along the normal of a surface, not along that of the parts.
             let counts_soon = || {
-                let own = path_in_first_part(&placed, &path);
-                gap < -tolerance || own.counts_soon(&placed.pair(), gap, tolerance)
+                let (own, pair) = (path_in_first_part(&placed, &path), placed.pair());
+                let counts = |found| own.counts_soon(&pair, &found, tolerance);
+                gap < -slack || separation_of(&pair, N::INFINITY).is_none_or(counts)
             };
             if !(path.counts_at_start(&separation.normal, gap, tolerance) && counts_soon()) {
                 is_free = true;
@@ -306,7 +309,7 @@ impl<N: Space<D>, const D: usize> WholeQuestion<'_, '_, N, D> {
             let is_deeper =
                 |than: PartArrival<N, D>| separation.distance < than.arrival.separation.distance;
             if deepest.is_none_or(is_deeper) {
-                let arrival = Arrival::in_contact(self.along, separation, gap, tolerance);
+                let arrival = Arrival::in_contact(self.along, separation, gap, slack);
                 deepest = Some(PartArrival { arrival, parts, is_of_whole: true });
             }
         });

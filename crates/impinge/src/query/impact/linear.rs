@@ -9,15 +9,20 @@ use super::ImpactStatus;
 use crate::collide::Pair;
 use crate::collide::separation::separation;
 use crate::convex::Separation;
-use crate::math::{Point, Pose, Real, Space, Vector, max, max_component};
+use crate::math::{Point, Pose, Real, Space, Vector, max, max_component, min};
 use crate::shape::{FeatureId, Geometry, Kind};
 use crate::tables::ByDimension;
 
 /// The maximum number of steps of conservative advancement.
 const MAX_STEPS: usize = 128;
 
-/// A contact at the start is tested again after a motion of this length, in epsilon times [`size`].
-pub(super) const SOON: f64 = 512.0;
+/// Returns the length of the motion after which a contact at the start is tested again, for solids
+/// whose distance has the rounding error `rounding`. A ball that rolls over another ball, or past a
+/// corner, is within this error of the target distance over half this length at most, since no
+/// radius is larger than `size`, the result of [`size()`].
+pub(super) fn soon<N: Real>(size: N, rounding: N) -> N {
+    (N::TWO * size * rounding).sqrt()
+}
 
 /// The motion of the second solid of a pair in the frame of the first.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +34,8 @@ pub(crate) struct Path<N: Real, const D: usize> {
     pub(crate) end: N,
     /// The distance at which the solids are treated as touching; zero or more.
     pub(crate) target: N,
+    /// A bound of the rounding errors of the positions of both solids in the world.
+    pub(crate) rounding: N,
     /// Whether a contact at the start is an impact for all velocities.
     pub(crate) contact_at_start: bool,
     /// Whether both solids are equal and at the same pose. Every normal is then equivalent to its
@@ -84,15 +91,17 @@ impl<N: Real, const D: usize> Path<N, D> {
     /// Returns whether a contact at the start is an impact: always with `contact_at_start`, else by
     /// the rule of [`impact`](super::impact).
     pub(crate) fn counts_at_start(&self, normal: &Vector<N, D>, gap: N, tolerance: N) -> bool {
-        self.contact_at_start
-            || is_hit_at_start(gap, self.closing(normal), tolerance, self.rounding_error())
+        let (slack, closing) = (tolerance + self.rounding, self.closing(normal));
+        self.contact_at_start || is_hit_at_start(gap, closing, slack, self.rounding_error())
     }
 }
 
 impl<N: Space<D>, const D: usize> Path<N, D> {
-    /// Returns whether a contact of convex solids that counts at the start still counts after a tiny
-    /// motion: whether solids that touch still approach, or an overlap has not become less. Where a corner meets a corner, every normal between two faces is one of the contact,
-    /// and the separation returns any of them:
+    /// Returns whether a contact of convex solids that counts at the start, with the separation
+    /// `found`, still counts after a tiny motion: whether solids that touch still approach, an
+    /// overlap has not become less, or the solids get deeper in between. Where a corner meets a
+    /// corner, every normal between two faces is one of the contact, and the separation returns any
+    /// of them:
     ///
     /// ```text
     ///         ┌───┐  -> slides on the floor, and does not hit the tile on its right:
@@ -101,20 +110,28 @@ impl<N: Space<D>, const D: usize> Path<N, D> {
     ///     │   │   │
     /// ```
     ///
-    /// The signed distance is a convex function of time, so the solids get nearer at the start if
-    /// they still do a little later.
-    pub(crate) fn counts_soon(&self, start: &Pair<'_, N, D>, gap: N, tolerance: N) -> bool {
-        let soon = N::lit(SOON) * N::EPSILON * size(start) / max_component(&self.velocity);
+    /// If the box is at the target distance above the floor, it approaches the corner of the next
+    /// tile just before it is above this tile, by less than the rounding error.
+    pub(crate) fn counts_soon(
+        &self,
+        start: &Pair<'_, N, D>,
+        found: &Separation<N, D>,
+        tolerance: N,
+    ) -> bool {
+        let slack = tolerance + self.rounding;
+        let soon = soon(size(start), slack) / max_component(&self.velocity);
         if self.contact_at_start || !soon.is_finite_number() {
             return true;
         }
-        let found = separation(&self.moved(start, soon), N::INFINITY);
-        found.is_none_or(|found| {
-            if gap < -tolerance {
-                return found.distance - self.target <= gap + N::lit(8.0) * tolerance;
-            }
-            self.counts_at_start(&found.normal, gap, tolerance)
-        })
+        let Some(later) = separation(&self.moved(start, soon), N::INFINITY) else { return true };
+        let gaps = [found.distance - self.target, later.distance - self.target];
+        let closing = [self.closing(&found.normal), self.closing(&later.normal)];
+        let is_held = if gaps[0] < -slack {
+            gaps[1] <= gaps[0] + N::lit(8.0) * slack
+        } else {
+            closing[1] > self.rounding_error()
+        };
+        is_held || least_gap(gaps, closing, soon) < min(gaps[0], N::ZERO) - N::TWO * slack
     }
 }
 
@@ -136,6 +153,17 @@ impl<N: Space<D>, const D: usize> Arrival<N, D> {
     pub(crate) fn features(&self, start: &Pair<'_, N, D>, path: &Path<N, D>) -> [FeatureId; 2] {
         <N::Algorithms>::witness_features(&path.moved(start, self.along), &self.separation)
     }
+}
+
+/// Returns a lower bound of a convex function of time between zero and `end`, at both of which
+/// `gaps` and `closing` are its values and its speeds of decrease: the height at which the tangents
+/// meet.
+fn least_gap<N: Real>(gaps: [N; 2], closing: [N; 2], end: N) -> N {
+    let bend = closing[0] - closing[1];
+    let meeting = (gaps[0] - gaps[1] - closing[1] * end) / bend;
+    // Without a bend the function is a line.
+    let is_between = meeting > N::ZERO && meeting < end;
+    if is_between { gaps[0] - closing[0] * meeting } else { min(gaps[0], gaps[1]) }
 }
 
 /// Returns whether a contact at the start is an impact without
@@ -197,9 +225,9 @@ pub(crate) fn begin<N: Space<D>, const D: usize>(
     let Some(found) = found else { return Beginning::Apart(None) };
     let gap = found.distance - path.target;
     if !is_apart && gap <= tolerance {
-        let arrival = Arrival::in_contact(N::ZERO, found, gap, tolerance);
+        let arrival = Arrival::in_contact(N::ZERO, found, gap, tolerance + path.rounding);
         let counts = path.counts_at_start(&found.normal, gap, tolerance)
-            && path.counts_soon(start, gap, tolerance);
+            && path.counts_soon(start, &found, tolerance);
         return Beginning::InContact { arrival, counts };
     }
     if gap > tolerance
@@ -365,6 +393,7 @@ mod tests {
                     velocity,
                     end: N::INFINITY,
                     target,
+                    rounding: N::ZERO,
                     contact_at_start: false,
                     mirrored: false,
                 },

@@ -263,17 +263,15 @@ impl<N: Real, const D: usize> Impact<N, D> {
 /// Returns the first impact of two solids that move with constant velocities and do not rotate.
 ///
 /// Returns `None` if the solids never come within the target distance up to the latest time, and if
-/// a pose, a velocity or the difference of the velocities is not finite. Swapping the solids gives
-/// a bitwise equal result. The velocities define the unit of time.
+/// a pose, a velocity or their difference is not finite. Swapping the solids gives a bitwise equal
+/// result. The velocities define the unit of time.
 ///
 /// At the returned time the solids are at the target distance, up to the rounding error of their
 /// sizes and of their initial distance. Before that time they were not nearer by more than that
-/// error. So the time is never late, but solids that pass each other within that error may be
-/// reported as touching.
+/// error. So the time is never late; solids that pass within that error may be reported to touch.
 ///
 /// The impact of composites is the first impact of two of their parts; of several at the same time,
-/// the one with the lowest part indices. So a shape that slides along some parts still hits others,
-/// and a surface is hit from both sides.
+/// the one with the lowest part indices. A surface is hit from both sides.
 ///
 /// # Starts in contact
 ///
@@ -295,12 +293,12 @@ impl<N: Real, const D: usize> Impact<N, D> {
 /// With [`ImpactOptions::contact_at_start`] every entry of the table is an impact at zero, as in
 /// ncollide and, by default, parry. [`Impact::status`] distinguishes the rows of the table.
 ///
-/// Convex solids that do not approach each other never will, so `None` is final for them. A box
-/// that slides along the floor under it does not hit the floor; a box that has sunk into the floor
-/// does, until it is moved out. A closing speed below 8 epsilon times the relative speed is treated
-/// as zero. Where a corner touches a corner, the solids approach if all normals between the two faces
-/// say so: a box leaves and slides along the edge of another. Half-spaces that overlap without bound never separate: the impact is at zero, and its
-/// points are their origins.
+/// Convex solids that do not approach each other never will. A box that slides along the floor does
+/// not hit it; a box that has sunk into the floor does, until it is moved out. Closing speeds below
+/// 8 epsilon times the relative speed are treated as zero. At corner on corner, the solids approach
+/// if all normals between the faces say so. Solids at the target distance that only pass each other
+/// within rounding, also that of positions far from the origin, do not hit. Half-spaces that
+/// overlap without bound hit at zero; the points are their origins.
 ///
 /// # Cost
 ///
@@ -422,10 +420,12 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
             return None;
         }
         let scale = max_component(&velocity).power_of_two_below();
+        let magnitude = |of: &Moving<'_, N, D>| max_component(&of.placed.pose.translation);
         let path = Path {
             velocity: first.placed.pose.inverse_vector(&(velocity / scale)),
             end: options.max_time * scale,
             target: max(options.target_distance, N::ZERO),
+            rounding: N::EPSILON * (magnitude(first) + magnitude(second)),
             contact_at_start: options.contact_at_start,
             mirrored,
         };

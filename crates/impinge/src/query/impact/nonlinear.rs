@@ -4,7 +4,7 @@ mod part_steps;
 
 use self::part_steps::PartSteps;
 use super::bounds::{Moment, MovingBody, length};
-use super::linear::SOON;
+use super::linear::soon;
 use super::{Impact, ImpactOptions, ImpactStatus, RigidMotion, is_hit_at_start};
 use crate::tables::ByDimension;
 use crate::tables::entries;
@@ -234,7 +234,7 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
         if configuration.gap <= configuration.tolerance {
             let counts = self.counts_at_start(&configuration, configuration.gap);
             if counts && self.counts_soon(&configuration) {
-                let status = ImpactStatus::at_start(configuration.gap, configuration.tolerance);
+                let status = ImpactStatus::at_start(configuration.gap, self.slack(&configuration));
                 return Some(self.impact(&configuration, status));
             }
             mode = Mode::Contact(configuration.gap);
@@ -353,6 +353,12 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
         })
     }
 
+    /// Returns the largest depth at the start that counts as touching: the tolerance, and the
+    /// rounding errors of the positions in the world.
+    fn slack(&self, configuration: &Configuration<'_, '_, N, D>) -> N {
+        configuration.tolerance + N::TWO * N::EPSILON * max_component(&self.origin)
+    }
+
     /// Returns whether a contact with the `gap` at the start is an impact: always with
     /// `contact_at_start`, else by the rule of [`impact`](super::impact) for the motion of
     /// `configuration`.
@@ -361,16 +367,17 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
             configuration.poses.moment.closing(&configuration.points, configuration.size);
         let closing = if self.mirrored { -closing.abs() } else { closing };
         self.contact_at_start
-            || is_hit_at_start(gap, closing, configuration.tolerance, rounding_error)
+            || is_hit_at_start(gap, closing, self.slack(configuration), rounding_error)
     }
 
     /// Returns whether a contact that counts at the start still counts after a tiny motion, as in
     /// [`Path::counts_soon`](super::linear::Path::counts_soon).
     fn counts_soon(&self, start: &Configuration<'_, 'a, N, D>) -> bool {
         let moment = &start.poses.moment;
-        let soon = moment.time_to_open(N::lit(SOON) * N::EPSILON * start.size, self.end);
+        let length = soon(start.size, N::lit(8.0) * N::EPSILON * start.size);
+        let soon = moment.time_to_open(length, self.end);
         let soon = min(soon, self.end);
-        let is_deep = start.gap < -start.tolerance;
+        let is_deep = start.gap < -self.slack(start);
         if self.contact_at_start || is_deep || !(soon > N::ZERO && soon.is_finite_number()) {
             return true;
         }

@@ -7,6 +7,7 @@ mod hull;
 mod impact;
 mod impact_corners;
 mod impact_laws;
+mod impact_sliding;
 mod impact_starts;
 mod impact_turning;
 mod mass;
