@@ -11,8 +11,8 @@ use crate::collide::parts::bounds::loosened;
 use crate::collide::parts::{Wanted, find_exits, held_pieces, nearest_between};
 use crate::collide::separation::separation as separation_of;
 use crate::convex::Separation;
-use crate::math::{Real, Space, Vector};
-use crate::query::impact::{Arrival, Beginning, Path, begin, size};
+use crate::math::{Real, Space, Vector, max_component};
+use crate::query::impact::{Arrival, Beginning, Path, begin, size, soon};
 use crate::shape::{CompositeShape, FeatureId};
 
 /// The impact of two parts, with their indices.
@@ -219,9 +219,10 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
     }
 
     /// Checks an impact of two parts after a start in contact that is not an impact. Returns `None`
-    /// if the whole shapes have contacts at that time, but none is an impact. Returns the impact of
-    /// the whole shapes if one of their contacts is an impact, but none with the normal of the
-    /// parts.
+    /// if the whole shapes have contacts at that time, but none is an impact, and a little later
+    /// neither: where a solid slides from one part to the next, only the former may have a contact.
+    /// Returns the impact of the whole shapes if one of their contacts is an impact, but none with
+    /// the normal of the parts.
     fn confirmed(
         &self,
         found: PartArrival<N, D>,
@@ -231,14 +232,21 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         if self.start != WholeContact::Free || *along <= N::ZERO {
             return Some(found);
         }
-        let pair = path.moved(&self.between.pair, *along);
-        let whole = WholeQuestion { between: Between::of_pair(&pair), path, along: *along };
         let (own, mut is_same) = (placed.in_first(separation).normal, false);
-        let (contact, hit) = whole.contacts_within(rounding(placed), &mut |normal| {
-            is_same |= (normal - own).norm() <= N::lit(SAME);
-        });
+        let mut at = |along: N| {
+            let pair = path.moved(&self.between.pair, along);
+            let whole = WholeQuestion { between: Between::of_pair(&pair), path, along };
+            whole.contacts_within(rounding(placed), &mut |normal| {
+                is_same |= (normal - own).norm() <= N::lit(SAME);
+            })
+        };
+        let (contact, hit) = at(*along);
         match contact {
-            WholeContact::Free => None,
+            WholeContact::Free => {
+                let length = soon(size(&placed.pair()), rounding(placed));
+                let later = *along + length / max_component(&path.velocity);
+                Some(found).filter(|_| at(later).0 == WholeContact::Hit)
+            }
             WholeContact::Hit if !is_same => hit,
             _ => Some(found),
         }

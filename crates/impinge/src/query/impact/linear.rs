@@ -20,7 +20,7 @@ const MAX_STEPS: usize = 128;
 /// whose distance has the rounding error `rounding`. A ball that rolls over another ball, or past a
 /// corner, is within this error of the target distance over half this length at most, since no
 /// radius is larger than `size`, the result of [`size()`].
-pub(super) fn soon<N: Real>(size: N, rounding: N) -> N {
+pub(crate) fn soon<N: Real>(size: N, rounding: N) -> N {
     (N::TWO * size * rounding).sqrt()
 }
 

@@ -16,7 +16,7 @@ mod nonlinear;
 mod velocities;
 
 use crate::tables::entries;
-pub(crate) use linear::{Arrival, Beginning, Path, begin, size};
+pub(crate) use linear::{Arrival, Beginning, Path, begin, size, soon};
 use linear::{advance, is_hit_at_start};
 pub use motion::RigidMotion;
 pub use nonlinear::nonlinear_time_of_impact;

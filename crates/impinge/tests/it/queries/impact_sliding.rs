@@ -2,9 +2,9 @@
 //! the origin, and over the borders of flush tiles. They never stop for longer than one query.
 
 use impinge::math::na::{UnitComplex, UnitQuaternion};
-use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Space, Vector};
+use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Point, Space, Vector};
 use impinge::query::{ImpactOptions, Moving, impact};
-use impinge::shape::{Ball, Capsule, Compound, Cuboid, Shape, ShapeHandle};
+use impinge::shape::{Ball, Capsule, Compound, ConvexHull, Cuboid, Polyline, Shape, ShapeHandle};
 
 fn placed<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     at: Vector<N, D>,
@@ -182,4 +182,27 @@ fn a_ball_that_cuts_a_corner_hits_it() {
             time_to::<f64, UnitComplex<f64>, 2>((&tile, corner), (&ball, place), [1.0, 0.0], 0.0);
         assert_eq!(found, Some(0.0), "cuts by {cut}");
     }
+}
+
+#[test]
+fn a_hull_slides_from_one_segment_into_the_next() {
+    let point = Point::<f64, 3>::from;
+    let line = [[-2.0, 0.0, 1.0], [-2.0, -2.0, 1.0], [2.0, -2.0, -1.0], [2.0, -1.0, -1.0]];
+    let line = Polyline::open(line.map(point).to_vec());
+    let corners = [
+        [0.0, 0.0, -1.0],
+        [-2.0, -1.0, 2.0],
+        [-1.0, 1.0, 1.0],
+        [2.0, 1.0, -2.0],
+        [1.0, 2.0, 0.0],
+        [1.0, 2.0, 1.0],
+        [1.0, 1.0, 1.0],
+        [-2.0, -1.0, 0.0],
+    ];
+    let hull = ConvexHull::try_from_points(&corners.map(point)).expect("a solid");
+    let (here, at) = (Vector::zeros(), Vector::<f64, 3>::from([0.0, -0.5, 1.0]));
+    // The hull touches the first segment at the start, and its next one at half a unit of time.
+    let velocity = [0.0, -1.0, -1.0];
+    let found = time_to::<f64, UnitQuaternion<f64>, 3>((&line, here), (&hull, at), velocity, 0.0);
+    assert!(found.is_some_and(|toi| (toi - 0.5).abs() < 1e-12), "{found:?}");
 }
