@@ -93,7 +93,8 @@ pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
     }
 }
 
-/// Collects the faces in contact, and the ids of their corners.
+/// Collects the faces in contact, and the ids of their corners. Leaves out faces of bodies: their
+/// fronts are known, and a solid that is inside a body touches faces from behind.
 fn faces_of<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contacts: &[PartContact<N, D>],
@@ -106,6 +107,9 @@ fn faces_of<N: Space<D>, const D: usize>(
         let (Some(normal), Some(part)) = (*face, scene.second_part(piece.parts[1])) else {
             continue;
         };
+        if scene.are_bodies(piece.parts) {
+            continue;
+        }
         // Parts without corners, as user-defined surfaces may have, hide nothing.
         let Some((corners, _)) = corners_of(&part) else { continue };
         let corners = corners.mapped(|corner| part.pose.point(&corner));

@@ -42,6 +42,11 @@ pub(super) enum FilteredNormal<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> FilteredNormal<N, D> {
+    /// Returns whether the normal of a face replaces the contact's normal.
+    pub(super) const fn is_forced(&self) -> bool {
+        matches!(self, Self::Snapped(_) | Self::Beyond(_))
+    }
+
     /// Returns the normal of the face in contact; `None` if there is none.
     pub(super) const fn face(&self) -> Option<Vector<N, D>> {
         match self {

@@ -50,7 +50,8 @@ pub(crate) struct PartContact<N: Real, const D: usize> {
     /// the contact, nor while [`Self::is_owing`] returns `true`: [`nearest_points`] computes these
     /// points later.
     pub(super) piece: Piece<N, D>,
-    /// Smallest distance of the points in `piece`; infinite without points.
+    /// Smallest distance of the points in `piece`, or minus the overlap of the parts along the front
+    /// of a body that is touched from inside; infinite without points.
     pub(super) lowest: N,
     pub(super) status: PartStatus,
     /// Normal of the face of the second shape's part in contact, in the frame of the second shape;
@@ -228,7 +229,12 @@ impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
             outward: outward2,
             toward: toward2,
         };
-        [filter_normal(surface1, &case1), filter_normal(surface2, &case2)]
+        let filtered = [filter_normal(surface1, &case1), filter_normal(surface2, &case2)];
+        // A side of a crate that is nearest to a flat edge of a floor does not touch this edge: the
+        // parts beside both have the contacts.
+        let are_forced = filtered.iter().all(FilteredNormal::is_forced);
+        let is_apart = gap.distance > tolerance;
+        if is_apart && are_forced { [FilteredNormal::Refused; 2] } else { filtered }
     }
 }
 
@@ -252,23 +258,24 @@ impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
 
     /// Returns the front normal, of those of the two parts, along which the parts overlap less;
     /// `face` unless both parts belong to bodies. Both are from the first shape to the second, in
-    /// the frame of the first.
+    /// the frame of the first. Also returns the overlap.
     ///
     /// Two solid meshes that are stacked exactly above each other have sides in one plane. The side
     /// of one meets the top of the other along an edge; the top gives the depth of the stack, the
     /// front of the side the width of the mesh.
-    fn shallower_front(&self, scene: &Scene<'_, N, D>, face: &Vector<N, D>) -> Vector<N, D> {
+    fn shallower_front(&self, scene: &Scene<'_, N, D>, face: &Vector<N, D>) -> (Vector<N, D>, N) {
         let [[own1, other2], [other1, own2]] = self.centers;
         let front = |which: usize, toward: Vector<N, D>| {
             let (surface, part) = (scene.surfaces[which]?, self.parts[which]);
             surface.snapped(part, &toward).filter(|_| surface.is_body(part))
         };
-        let fronts = (front(0, other1 - own1), front(1, other2 - own2));
-        let (Some(front1), Some(front2)) = fronts else { return *face };
-        let front2 = -self.placed.in_first_frame(&front2);
         let (pair, placed) = (self.placed.pair(), self.placed);
         let depth = |front| overlap_along(&pair, &placed.inward(front));
-        if depth(&front1) < depth(&front2) { front1 } else { front2 }
+        let fronts = (front(0, other1 - own1), front(1, other2 - own2));
+        let (Some(front1), Some(front2)) = fronts else { return (*face, depth(face)) };
+        let front2 = -placed.in_first_frame(&front2);
+        let depths = [depth(&front1), depth(&front2)];
+        if depths[0] < depths[1] { (front1, depths[0]) } else { (front2, depths[1]) }
     }
 }
 
@@ -307,6 +314,9 @@ fn of_surfaces<N: Space<D>, const D: usize>(
     let filtered = configuration.filtered_normals(scene, gap, tolerance, over);
     let normal = placed.outward(&gap.normal);
     let raw = arena.blank();
+    // How far the parts overlap along the front of a body, if the solid comes from inside; the
+    // points, which the part bounds, may be less deep.
+    let mut width = -N::INFINITY;
     let mut status = match combined_normal(placed, &filtered, &normal) {
         CombinedNormal::Nothing => return None,
         CombinedNormal::Refused => PartStatus::Left,
@@ -327,7 +337,9 @@ fn of_surfaces<N: Space<D>, const D: usize>(
             let is_below =
                 distance <= N::ZERO && is_behind(&normal, &face) && scene.are_bodies(parts);
             let (face, least) = if is_below {
-                (configuration.shallower_front(scene, &face), -N::INFINITY)
+                let (front, overlap) = configuration.shallower_front(scene, &face);
+                width = overlap;
+                (front, -N::INFINITY)
             } else {
                 (face, least_along(&face, &normal, distance, tolerance))
             };
@@ -341,6 +353,7 @@ fn of_surfaces<N: Space<D>, const D: usize>(
         raw.points.clear();
     }
     let (piece, lowest) = appended(placed, parts, arena);
+    let lowest = if piece.points.is_empty() { lowest } else { min(lowest, -width) };
     let face = filtered[1].face().filter(|_| status != PartStatus::Left);
     Some(PartContact { distance, normal, piece, lowest, status, face, tolerance })
 }

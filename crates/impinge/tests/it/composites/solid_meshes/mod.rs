@@ -1,5 +1,6 @@
 //! Tests of closed meshes and lines made solid by `solid`.
 
+mod concave;
 mod contacts;
 mod convex_twins;
 mod flush;
