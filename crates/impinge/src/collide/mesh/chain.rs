@@ -3,8 +3,9 @@
 //! share are computed once, and segments beyond the prediction are skipped.
 
 use super::cull::relative_slack;
+use super::forced::{least_along, overlooks};
 use super::gather::{depth_in, search_box};
-use super::normal_filter::{Case, FilteredNormal, filter_normal, least_along};
+use super::normal_filter::{Case, FilteredNormal, filter_normal};
 use super::part_cache::PartCache;
 use super::part_contact::{Arena, PartContact, PartStatus};
 use super::patch::Piece;
@@ -311,10 +312,7 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
         };
         let Self { found: Separation { distance, .. }, tolerance, parts, .. } = *self;
         let mut lowest = points[start..].iter().fold(N::INFINITY, |low, p| min(low, p.distance));
-        // There may be no points along the face's normal, or all may be apart although the parts
-        // overlap. The contact is dropped then.
-        let highest = if distance <= N::ZERO { tolerance } else { N::INFINITY };
-        if !points[start..].iter().any(|point| point.distance <= highest) {
+        if overlooks(&points[start..], distance, tolerance) {
             points.truncate(start);
             (status, lowest) = (PartStatus::Left, N::INFINITY);
         }

@@ -12,10 +12,11 @@
 
 use smallvec::SmallVec;
 
+use super::forced::{least_along, overlooks};
 use super::gather::CulledParts;
-use super::normal_filter::{Case, FilteredNormal, faces, filter_normal, least_along};
+use super::normal_filter::{Case, FilteredNormal, faces, filter_normal};
 use super::part_cache::PartCache;
-use super::part_contact::{self, Arena, PartContact, PartStatus, overlooks};
+use super::part_contact::{self, Arena, PartContact, PartStatus};
 use super::patch::Piece;
 use super::scene::{PlacedPair, Scene};
 use super::{PartContacts, Query};

@@ -5,7 +5,7 @@
 //!    ([`cull`]). The cache is refilled when the solid leaves its box.
 //! 2. [`part_contact`] computes the contact of each pair of parts. If a surface does not admit its
 //!    normal at a seam (an edge or corner where parts meet), [`normal_filter`] takes the normal of
-//!    the face, or drops the contact.
+//!    the face ([`forced`] finds its points), or drops the contact.
 //! 3. [`hidden`] drops contacts with faces that a neighbour hides; [`resolve`] drops contacts whose
 //!    overlap ends if another contact is resolved. Solids that overlap keep at least one contact,
 //!    except beside a ghost (a part that stands for a part of a neighbouring shape).
@@ -29,6 +29,7 @@ mod chain;
 mod chain_tests;
 mod cull;
 mod faces;
+mod forced;
 mod gather;
 mod hidden;
 mod inside;

@@ -171,32 +171,6 @@ fn tilted<N: Space<D>, const D: usize>(
     unit(&tilted).map(|(tilted, _)| tilted)
 }
 
-/// Returns the smallest distance that points along the normal of a face may have, if the seam does
-/// not admit `normal`, the normal of the two parts, whose distance is `distance`. Both normals have
-/// the same frame and sign; `tolerance` bounds rounding errors.
-///
-/// Points of parts that are apart are no nearer than the parts. Parts that overlap may be deeper
-/// along the face's normal. So may parts that only touch, since each of two neighbouring parts may
-/// end where the solid crosses their surface:
-///
-/// ```text
-///            │ wall of a box           left, wall: touch       right, wall: touch
-///      left  │  right                  surface, wall: overlap by the part below the surface
-///   ─────────┼─────────
-///            │
-/// ```
-///
-/// But parts that touch at the back of the face do not overlap: the solid is beside the surface.
-pub(super) fn least_along<N: Space<D>, const D: usize>(
-    face: &Vector<N, D>,
-    normal: &Vector<N, D>,
-    distance: N,
-    tolerance: N,
-) -> N {
-    let apart = if is_behind(normal, face) { -tolerance } else { tolerance };
-    if distance > apart { distance } else { -N::INFINITY }
-}
-
 /// Returns whether a feature is a flat face. A segment of a surface in 2D has the feature `Edge`,
 /// for which the result is `false`.
 fn is_face(feature: FeatureId) -> bool {

@@ -10,14 +10,15 @@
 use crate::tables::ByDimension;
 
 use super::Query;
-use super::normal_filter::{Case, FilteredNormal, faces, filter_normal, is_behind, least_along};
+use super::forced::overlooks;
+use super::normal_filter::{Case, FilteredNormal, faces, filter_normal, is_behind};
 use super::patch::Piece;
 use super::scene::{PlacedPair, Scene};
-use crate::collide::manifold::{Along, build_along, build_between, build_on_face};
+use crate::collide::manifold::{build_between, build_on_face};
 use crate::collide::{ManifoldRequest, Pair, RawManifold, RawPoint, RawPoints};
 use crate::convex::Separation;
-use crate::math::{Mapped, Point, Real, Space, Vector, min};
-use crate::shape::{FeatureId, Geometry, Kind, SurfaceAccess};
+use crate::math::{Point, Real, Space, Vector, min};
+use crate::shape::{FeatureId, Kind, SurfaceAccess};
 
 /// Whether a contact of two parts is a contact of the shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -164,12 +165,12 @@ pub(super) fn contact_of_solids<N: Space<D>, const D: usize>(
 }
 
 /// Two parts, at least one of which belongs to a surface.
-struct PartConfiguration<'a, N: Real, const D: usize> {
-    placed: &'a PlacedPair<'a, N, D>,
-    parts: [u32; 2],
+pub(super) struct PartConfiguration<'a, N: Real, const D: usize> {
+    pub(super) placed: &'a PlacedPair<'a, N, D>,
+    pub(super) parts: [u32; 2],
     /// Centre of part `i` in the frame of shape `j`, as `centers[i][j]`. If the first shape has no
     /// surface, all are in the frame of the second.
-    centers: [[Point<N, D>; 2]; 2],
+    pub(super) centers: [[Point<N, D>; 2]; 2],
     /// Replaces the centre of the first part in the frame of the second shape, if it is `Some`.
     reference: &'a Reference<N, D>,
 }
@@ -255,38 +256,6 @@ impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
             front.is_some_and(|front| is_behind(&outward, &front))
         })
     }
-
-    /// Returns the front normal, of those of the two parts, along which the parts overlap less;
-    /// `face` unless both parts belong to bodies. Both are from the first shape to the second, in
-    /// the frame of the first. Also returns the overlap.
-    ///
-    /// Two solid meshes that are stacked exactly above each other have sides in one plane. The side
-    /// of one meets the top of the other along an edge; the top gives the depth of the stack, the
-    /// front of the side the width of the mesh.
-    fn shallower_front(&self, scene: &Scene<'_, N, D>, face: &Vector<N, D>) -> (Vector<N, D>, N) {
-        let [[own1, other2], [other1, own2]] = self.centers;
-        let front = |which: usize, toward: Vector<N, D>| {
-            let (surface, part) = (scene.surfaces[which]?, self.parts[which]);
-            surface.snapped(part, &toward).filter(|_| surface.is_body(part))
-        };
-        let (pair, placed) = (self.placed.pair(), self.placed);
-        let depth = |front| overlap_along(&pair, &placed.inward(front));
-        let fronts = (front(0, other1 - own1), front(1, other2 - own2));
-        let (Some(front1), Some(front2)) = fronts else { return (*face, depth(face)) };
-        let front2 = -placed.in_first_frame(&front2);
-        let depths = [depth(&front1), depth(&front2)];
-        if depths[0] < depths[1] { (front1, depths[0]) } else { (front2, depths[1]) }
-    }
-}
-
-/// Returns the length by which two solids overlap along `normal`, a unit vector from the first to
-/// the second in the frame of the first; infinite for half-spaces.
-fn overlap_along<N: Real, const D: usize>(pair: &Pair<'_, N, D>, normal: &Vector<N, D>) -> N {
-    let maps = [pair.first, pair.second].mapped(|kind| Geometry(kind).as_support_map());
-    let [Some(first), Some(second)] = maps else { return N::INFINITY };
-    let toward = -pair.pose12.inverse_vector(normal);
-    let near = pair.pose12.point(&second.support_point(&toward));
-    normal.dot(&(first.support_point(normal) - near))
 }
 
 /// Returns whether `over` is a side or corner of a triangle: then the ball's centre does not
@@ -314,9 +283,7 @@ fn of_surfaces<N: Space<D>, const D: usize>(
     let filtered = configuration.filtered_normals(scene, gap, tolerance, over);
     let normal = placed.outward(&gap.normal);
     let raw = arena.blank();
-    // How far the parts overlap along the front of a body, if the solid comes from inside; the
-    // points, which the part bounds, may be less deep.
-    let mut width = -N::INFINITY;
+    let mut overlap = -N::INFINITY;
     let mut status = match combined_normal(placed, &filtered, &normal) {
         CombinedNormal::Nothing => return None,
         CombinedNormal::Refused => PartStatus::Left,
@@ -333,18 +300,7 @@ fn of_surfaces<N: Space<D>, const D: usize>(
             PartStatus::Own
         }
         CombinedNormal::Forced(face, status) => {
-            // The solid comes from inside a body.
-            let is_below =
-                distance <= N::ZERO && is_behind(&normal, &face) && scene.are_bodies(parts);
-            let (face, least) = if is_below {
-                let (front, overlap) = configuration.shallower_front(scene, &face);
-                width = overlap;
-                (front, -N::INFINITY)
-            } else {
-                (face, least_along(&face, &normal, distance, tolerance))
-            };
-            let along = Along { normal: placed.inward(&face), least, tolerance };
-            build_along(&pair, &along, request, raw);
+            overlap = configuration.build_forced(scene, gap, face, request, raw);
             status
         }
     };
@@ -353,7 +309,7 @@ fn of_surfaces<N: Space<D>, const D: usize>(
         raw.points.clear();
     }
     let (piece, lowest) = appended(placed, parts, arena);
-    let lowest = if piece.points.is_empty() { lowest } else { min(lowest, -width) };
+    let lowest = if piece.points.is_empty() { lowest } else { min(lowest, -overlap) };
     let face = filtered[1].face().filter(|_| status != PartStatus::Left);
     Some(PartContact { distance, normal, piece, lowest, status, face, tolerance })
 }
@@ -421,18 +377,6 @@ pub(super) fn nearest_points<N: Space<D>, const D: usize>(
         build_between(&pair, &found, request, raw);
     }
     appended(&placed, parts, arena)
-}
-
-/// Returns whether the points along the normal of a face miss the contact: there are none, or the
-/// parts overlap and all points are apart. The face, clipped to the region below the other part,
-/// may end beside the overlap.
-pub(super) fn overlooks<N: Real, const D: usize>(
-    points: &[RawPoint<N, D>],
-    distance: N,
-    tolerance: N,
-) -> bool {
-    let highest = if distance <= N::ZERO { tolerance } else { N::INFINITY };
-    !points.iter().any(|point| point.distance <= highest)
 }
 
 /// Combined result of the normal filters of both surfaces. Normals are from the first shape to the
