@@ -5,7 +5,7 @@
 use impinge::math::na::{Translation, UnitComplex, UnitQuaternion};
 use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Point, Space, Vector};
 use impinge::narrow_phase::{ContactPrediction, contact_manifolds};
-use impinge::query::contact;
+use impinge::query::{ContactManifold, contact};
 use impinge::shape::{Cone, Cuboid, HeightField, Polyline, Shape, TriMesh};
 
 /// The depths of the overlaps.
@@ -31,7 +31,7 @@ fn is_at_the_border<N: Space<D>, R, const D: usize>(
     assert!(is_right(found.depth) && is_along, "{depth}: {found:?} of {plate:?} and {solid:?}");
     let prediction = ContactPrediction::new(N::ZERO, N::ZERO, N::ZERO);
     let manifolds = contact_manifolds(&here, plate, pose, solid, &prediction, None);
-    let all = || manifolds.iter().flat_map(|manifold| manifold.contacts());
+    let all = || manifolds.iter().flat_map(ContactManifold::contacts);
     let deepest = all().fold(-N::ONE, |best, next| next.contact.depth.max(best));
     assert!(is_right(deepest), "{depth}: {manifolds:?} of {plate:?} and {solid:?}");
     for tracked in all() {

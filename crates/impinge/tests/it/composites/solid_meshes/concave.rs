@@ -6,7 +6,7 @@ use super::{P3, V3, at, cuboid, solid};
 use impinge::math::na::UnitQuaternion;
 use impinge::math::{Isometry3, Point, Space, Unit, Vector};
 use impinge::narrow_phase::{ContactPrediction, contact_manifolds};
-use impinge::query::contact;
+use impinge::query::{ContactManifold, contact};
 use impinge::shape::{Cuboid, HeightField, Shape, TriMesh};
 
 /// The contacts of two shapes, the first one at the origin, by normal and depth.
@@ -18,7 +18,7 @@ fn contacts<N: Space<3, Isometry = Isometry3<N>>>(
 ) -> Vec<(Vector<N, 3>, N, Point<N, 3>)> {
     let prediction = ContactPrediction::new(N::lit(prediction), N::ZERO, N::ZERO);
     let found = contact_manifolds(&Isometry3::identity(), lower, pose, upper, &prediction, None);
-    let all = found.iter().flat_map(|manifold| manifold.contacts());
+    let all = found.iter().flat_map(ContactManifold::contacts);
     all.map(|tracked| &tracked.contact)
         .map(|contact| (contact.normal.into_inner(), contact.depth, contact.world2))
         .collect()
