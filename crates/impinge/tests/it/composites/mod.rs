@@ -1,7 +1,5 @@
 //! Tests of compounds, meshes, polylines and height fields.
 
-mod beside_borders;
-mod boxes_on_a_grid;
 mod cast_out_of_floors;
 mod closed_meshes;
 mod composite_contacts;
@@ -21,8 +19,7 @@ mod internal_edges;
 mod internal_edges_of_lines;
 mod large_hulls;
 mod meshes;
-mod meshes_on_surfaces;
 mod replaced_terrain;
+mod resting;
 mod solid_meshes;
 mod thin_triangles;
-mod walls_on_joints;
