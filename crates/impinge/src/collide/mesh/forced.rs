@@ -12,19 +12,20 @@ use crate::shape::Geometry;
 
 impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
     /// Builds the manifold of the parts along the normal of a face, from the first shape to the
-    /// second in the frame of the first. Returns the length by which the parts overlap along the
-    /// normal if the points are less deep: at the front of a body that is touched from inside, since
-    /// the part bounds the points. Else returns minus infinity.
+    /// second in the frame of the first; `tolerance` bounds rounding errors. Returns the length by
+    /// which the parts overlap along the normal if the points are less deep: at the front of a body
+    /// that is touched from inside, since the part bounds the points. Else returns minus infinity.
     pub(super) fn build_forced(
         &self,
         scene: &Scene<'_, N, D>,
         gap: &Separation<N, D>,
         face: Vector<N, D>,
+        tolerance: N,
         request: &ManifoldRequest<N>,
         raw: &mut RawManifold<N, D>,
     ) -> N {
         let (placed, pair, distance) = (self.placed, self.placed.pair(), gap.distance);
-        let (normal, tolerance) = (placed.outward(&gap.normal), placed.tolerance());
+        let normal = placed.outward(&gap.normal);
         // The solid comes from inside a body.
         let is_below =
             distance <= N::ZERO && is_behind(&normal, &face) && scene.are_bodies(self.parts);

@@ -300,7 +300,7 @@ fn of_surfaces<N: Space<D>, const D: usize>(
             PartStatus::Own
         }
         CombinedNormal::Forced(face, status) => {
-            overlap = configuration.build_forced(scene, gap, face, request, raw);
+            overlap = configuration.build_forced(scene, gap, face, tolerance, request, raw);
             status
         }
     };

@@ -302,7 +302,7 @@ impl<N: Space<D>, const D: usize> WholeQuestion<'_, '_, N, D> {
                 return;
             }
             let path = Path { mirrored: path.mirrored && parts[0] == parts[1], ..*path };
-            let slack = tolerance + path.rounding;
+            let slack = path.slack(tolerance);
             // The depth of an overlap is along the normal of a surface, not along that of the parts.
             let counts_soon = || {
                 let (own, pair) = (path_in_first_part(&placed, &path), placed.pair());

@@ -88,10 +88,16 @@ impl<N: Real, const D: usize> Path<N, D> {
         N::lit(8.0) * N::EPSILON * max_component(&self.velocity)
     }
 
+    /// Returns the largest depth at the start that counts as touching: the tolerance of distances,
+    /// and the rounding errors of the positions.
+    pub(crate) fn slack(&self, tolerance: N) -> N {
+        tolerance + self.rounding
+    }
+
     /// Returns whether a contact at the start is an impact: always with `contact_at_start`, else by
     /// the rule of [`impact`](super::impact).
     pub(crate) fn counts_at_start(&self, normal: &Vector<N, D>, gap: N, tolerance: N) -> bool {
-        let (slack, closing) = (tolerance + self.rounding, self.closing(normal));
+        let (slack, closing) = (self.slack(tolerance), self.closing(normal));
         self.contact_at_start || is_hit_at_start(gap, closing, slack, self.rounding_error())
     }
 }
@@ -118,7 +124,7 @@ impl<N: Space<D>, const D: usize> Path<N, D> {
         found: &Separation<N, D>,
         tolerance: N,
     ) -> bool {
-        let slack = tolerance + self.rounding;
+        let slack = self.slack(tolerance);
         let soon = soon(size(start), slack) / max_component(&self.velocity);
         if self.contact_at_start || !soon.is_finite_number() {
             return true;
@@ -225,7 +231,7 @@ pub(crate) fn begin<N: Space<D>, const D: usize>(
     let Some(found) = found else { return Beginning::Apart(None) };
     let gap = found.distance - path.target;
     if !is_apart && gap <= tolerance {
-        let arrival = Arrival::in_contact(N::ZERO, found, gap, tolerance + path.rounding);
+        let arrival = Arrival::in_contact(N::ZERO, found, gap, path.slack(tolerance));
         let counts = path.counts_at_start(&found.normal, gap, tolerance)
             && path.counts_soon(start, &found, tolerance);
         return Beginning::InContact { arrival, counts };

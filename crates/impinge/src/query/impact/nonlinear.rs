@@ -234,7 +234,8 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
         if configuration.gap <= configuration.tolerance {
             let counts = self.counts_at_start(&configuration, configuration.gap);
             if counts && self.counts_soon(&configuration) {
-                let status = ImpactStatus::at_start(configuration.gap, self.slack(&configuration));
+                let status =
+                    ImpactStatus::at_start(configuration.gap, self.start_slack(&configuration));
                 return Some(self.impact(&configuration, status));
             }
             mode = Mode::Contact(configuration.gap);
@@ -355,7 +356,7 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
 
     /// Returns the largest depth at the start that counts as touching: the tolerance, and the
     /// rounding errors of the positions in the world.
-    fn slack(&self, configuration: &Configuration<'_, '_, N, D>) -> N {
+    fn start_slack(&self, configuration: &Configuration<'_, '_, N, D>) -> N {
         configuration.tolerance + N::TWO * N::EPSILON * max_component(&self.origin)
     }
 
@@ -367,7 +368,7 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
             configuration.poses.moment.closing(&configuration.points, configuration.size);
         let closing = if self.mirrored { -closing.abs() } else { closing };
         self.contact_at_start
-            || is_hit_at_start(gap, closing, self.slack(configuration), rounding_error)
+            || is_hit_at_start(gap, closing, self.start_slack(configuration), rounding_error)
     }
 
     /// Returns whether a contact that counts at the start still counts after a tiny motion, as in
@@ -377,7 +378,7 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
         let length = soon(start.size, N::lit(8.0) * N::EPSILON * start.size);
         let soon = moment.time_to_open(length, self.end);
         let soon = min(soon, self.end);
-        let is_deep = start.gap < -self.slack(start);
+        let is_deep = start.gap < -self.start_slack(start);
         if self.contact_at_start || is_deep || !(soon > N::ZERO && soon.is_finite_number()) {
             return true;
         }
