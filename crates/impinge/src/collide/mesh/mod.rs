@@ -21,6 +21,7 @@
 //! A query for the contact with a composite returns the deepest of the contacts that a world would
 //! have. For a half-space and a composite, the query returns the contact of the nearest part.
 
+mod at_side;
 mod ball;
 #[cfg(test)]
 mod ball_tests;
@@ -380,7 +381,7 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
         found: &mut [PartContact<N, D>],
         arena: &mut Arena<N, D>,
     ) {
-        resolve::resolve(scene, found, arena);
+        resolve::resolve(scene, self.request, found, arena);
         for contact in found.iter_mut().filter(|contact| contact.is_owing()) {
             let (piece, lowest) =
                 part_contact::nearest_points(scene, contact.parts(), self.request, arena);

@@ -103,7 +103,7 @@ impl<N: Real, const D: usize> PartContact<N, D> {
 
 /// Appends the points of the arena's manifold to the arena's points. Returns the piece and the
 /// smallest distance of its points, infinite without points.
-fn appended<N: Space<D>, const D: usize>(
+pub(super) fn appended<N: Space<D>, const D: usize>(
     placed: &PlacedPair<'_, N, D>,
     parts: [u32; 2],
     arena: &mut Arena<N, D>,

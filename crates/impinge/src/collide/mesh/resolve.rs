@@ -2,10 +2,13 @@
 
 use smallvec::SmallVec;
 
+use super::at_side::move_to_side;
 use super::part_contact::{Arena, PartContact, PartStatus};
 use super::scene::Scene;
+use crate::collide::ManifoldRequest;
 use crate::math::order::{order_of, sort_keyed};
-use crate::math::{Real, Space, Vector, max};
+use crate::math::{Point, Real, Space, Vector, max, min};
+use crate::shape::Kind;
 use crate::tables::ByDimension;
 
 /// Smallest cosine of the angle between two normals that count as one direction.
@@ -13,6 +16,10 @@ const ALIKE: f64 = 0.99;
 
 /// Largest number of escapes kept at a time; no two of them have about the same direction.
 const MAX_ESCAPES: usize = 32;
+
+/// Largest number of parts whose sides are tested if no contact holds; most corners of surfaces have
+/// six parts.
+const MAX_TESTED: usize = 8;
 
 /// A translation that resolves the overlap, according to one contact: the second shape moves by
 /// `depth` along the unit vector `normal`, which is in the frame of the first shape.
@@ -38,6 +45,7 @@ struct Escapes<N: Real, const D: usize>(SmallVec<[Escape<N, D>; MAX_ESCAPES]>);
 /// for a part of a neighbouring shape): there, the neighbouring shape has the contact.
 pub(super) fn resolve<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
+    request: &ManifoldRequest<N>,
     contacts: &mut [PartContact<N, D>],
     arena: &mut Arena<N, D>,
 ) {
@@ -49,8 +57,11 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
     };
     if contacts.iter().any(has_other_normal) {
         leave_explained(scene, contacts, arena);
+        if move_to_sides(scene, request, contacts, arena) {
+            leave_explained(scene, contacts, arena);
+        }
     }
-    keep_one(scene, contacts, arena);
+    keep_one(scene, request, contacts, arena);
 }
 
 /// Drops each contact that another contact explains: the escape of the other contact separates the
@@ -79,6 +90,34 @@ fn leave_explained<N: Space<D>, const D: usize>(
             }
         }
     }
+}
+
+/// Replaces contacts with faces that are deeper than their parts by contacts with sides of these
+/// parts ([`move_to_side`]), unless a contact with the parts' own normal is about as deep along
+/// this normal. Returns whether any was replaced.
+fn move_to_sides<N: Space<D>, const D: usize>(
+    scene: &Scene<'_, N, D>,
+    request: &ManifoldRequest<N>,
+    contacts: &mut [PartContact<N, D>],
+    arena: &mut Arena<N, D>,
+) -> bool {
+    let (mut own, mut is_changed) = (Escapes(SmallVec::new()), false);
+    for (_, index) in shallowest_first(contacts, |status| status == PartStatus::Own) {
+        own.add(&contacts[index as usize]);
+    }
+    let is_forced = |status| matches!(status, PartStatus::Snapped | PartStatus::Beyond);
+    for contact in contacts.iter_mut().filter(|contact| is_forced(contact.status)) {
+        let (deepest, tolerance) = (depth(contact), contact.tolerance);
+        let is_confirmed = |escape: &Escape<N, D>| {
+            escape.depth >= deepest - tolerance
+                && escape.normal.dot(&contact.piece.normal) >= N::lit(ALIKE)
+        };
+        let is_deeper = deepest > tolerance - contact.distance;
+        if is_deeper && !own.0.iter().any(is_confirmed) {
+            is_changed |= move_to_side(scene, request, contact, deepest - tolerance, arena);
+        }
+    }
+    is_changed
 }
 
 /// Returns the depth of a contact's deepest point; negative if this point is apart.
@@ -163,7 +202,7 @@ fn is_explained<N: Space<D>, const D: usize>(
         let shift = escape.normal * escape.depth;
         let is_held = points.iter().any(|point| {
             let moved = point.point1 + normal * point.distance + shift;
-            scene.is_within(&moved, N::TWO * contact.tolerance)
+            is_within(scene.between.pair.first, &moved, N::TWO * contact.tolerance)
         });
         if !is_held {
             shifts.push(shift);
@@ -172,12 +211,40 @@ fn is_explained<N: Space<D>, const D: usize>(
     !shifts.is_empty() && scene.pair(contact.parts()).is_parted_by_one(&shifts, contact.tolerance)
 }
 
+/// Returns whether a point, in the frame of the solid, lies in it deeper than `depth`. Then a
+/// translation of length up to `depth` does not move the point out of the solid. `false` for
+/// composites and half-spaces.
+fn is_within<N: Space<D>, const D: usize>(
+    solid: Kind<'_, N, D>,
+    point: &Point<N, D>,
+    depth: N,
+) -> bool {
+    match solid {
+        Kind::Composite(_) | Kind::Plane(_) => false,
+        Kind::Cuboid(cuboid) => (0..D).all(|axis| {
+            let half = cuboid.half_extents()[axis];
+            min(half - point[axis], point[axis] + half) > depth
+        }),
+        // A hull without faces is a segment or a point.
+        Kind::Polytope(hull) => {
+            let mut faces = hull.faces().iter();
+            !hull.faces().is_empty()
+                && faces.all(|face| face.offset - face.normal.dot(&point.coords) > depth)
+        }
+        first => {
+            let found = <N::Algorithms>::surface_point(first, point);
+            found.is_inside && (found.point - point).norm() > depth
+        }
+    }
+}
+
 /// Restores the contact of the nearest two parts if all contacts that hold are farther. If the
 /// nearest contact that holds is farther only by rounding, the distances of its points are
 /// corrected instead. Changes nothing if a ghost is nearer: the neighbouring shape that the ghost
 /// represents has the contact.
 fn keep_one<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
+    request: &ManifoldRequest<N>,
     contacts: &mut [PartContact<N, D>],
     arena: &mut Arena<N, D>,
 ) {
@@ -197,6 +264,7 @@ fn keep_one<N: Space<D>, const D: usize>(
             contacts[index].lowest = least;
         }
         _ if is_of_neighbour(scene, &contacts[nearest]) => {}
+        _ if least <= N::ZERO && move_one_to_side(scene, request, contacts, arena) => {}
         _ => {
             // The points of this contact, if it has any, are along the normal of a face and
             // farther. So they are computed again.
@@ -204,6 +272,28 @@ fn keep_one<N: Space<D>, const D: usize>(
             contacts[nearest].piece.points = 0..0;
         }
     }
+}
+
+/// Replaces the contact of the parts that overlap most by that with one of their sides
+/// ([`move_to_side`]); if no edge there admits a normal, one of the next parts. Returns whether any
+/// was replaced. Tests at most [`MAX_TESTED`] parts.
+fn move_one_to_side<N: Space<D>, const D: usize>(
+    scene: &Scene<'_, N, D>,
+    request: &ManifoldRequest<N>,
+    contacts: &mut [PartContact<N, D>],
+    arena: &mut Arena<N, D>,
+) -> bool {
+    let mut order = SmallVec::<[(u64, u32); 16]>::new();
+    for (contact, index) in contacts.iter().zip(0..) {
+        if contact.distance <= N::ZERO {
+            order.push((order_of(contact.distance), index));
+        }
+    }
+    sort_keyed(&mut order);
+    let mut nearest = order.iter().take(MAX_TESTED);
+    nearest.any(|&(_, index)| {
+        move_to_side(scene, request, &mut contacts[index as usize], N::INFINITY, arena)
+    })
 }
 
 /// Returns whether a ghost beside the parts of a contact is nearer than these. At equal distances a

@@ -9,13 +9,14 @@ use crate::collide::parts::between::{Between, anchor, recentred};
 use crate::collide::parts::slabs::corners;
 use crate::collide::parts::{PairMasks, PartPairs};
 use crate::collide::{Pair, RawManifold, RawPoints};
-use crate::math::{Mapped, Point, Pose, Real, Space, Vector, min};
+use crate::convex::Separation;
+use crate::math::{Mapped, Point, Pose, Real, Space, Vector};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Plane, SurfaceAccess};
 use crate::tables::ByDimension;
 
 /// Two shapes, at least one of them a composite, whose parts can be placed in pairs.
 pub(crate) struct Scene<'a, N: Real, const D: usize> {
-    between: &'a Between<'a, N, D>,
+    pub(super) between: &'a Between<'a, N, D>,
     /// The surface of each shape, if it has one.
     pub(super) surfaces: [Option<SurfaceAccess<'a, N, D>>; 2],
     /// The cached parts of the second shape.
@@ -158,29 +159,6 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
     pub(super) fn are_bodies(&self, parts: [u32; 2]) -> bool {
         let mut both = self.surfaces.iter().zip(parts);
         both.any(|(surface, part)| surface.is_some_and(|surface| surface.is_body(part)))
-    }
-
-    /// Returns whether a point, in the frame of the first shape, lies in that shape deeper than
-    /// `depth`. Then a translation of length up to `depth` does not move the point out of the
-    /// shape. `false` for composites and half-spaces.
-    pub(super) fn is_within(&self, point: &Point<N, D>, depth: N) -> bool {
-        match self.between.pair.first {
-            Kind::Composite(_) | Kind::Plane(_) => false,
-            Kind::Cuboid(cuboid) => (0..D).all(|axis| {
-                let half = cuboid.half_extents()[axis];
-                min(half - point[axis], point[axis] + half) > depth
-            }),
-            // A hull without faces is a segment or a point.
-            Kind::Polytope(hull) => {
-                let mut faces = hull.faces().iter();
-                !hull.faces().is_empty()
-                    && faces.all(|face| face.offset - face.normal.dot(&point.coords) > depth)
-            }
-            first => {
-                let found = <N::Algorithms>::surface_point(first, point);
-                found.is_inside && (found.point - point).norm() > depth
-            }
-        }
     }
 
     /// Returns a part of the second shape; `None` if the second shape is not a composite.
@@ -438,6 +416,15 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
     pub(super) fn inward(&self, normal: &Vector<N, D>) -> Vector<N, D> {
         let normal = self.relative.frame.inverse_vector(normal);
         if self.relative.is_swapped { -normal } else { normal }
+    }
+
+    /// Converts a separation of the two shapes, in the frame of the first shape, to one of
+    /// [`Self::pair`].
+    pub(super) fn of_kinds(&self, found: &Separation<N, D>) -> Separation<N, D> {
+        let origin = self.origins[0].coords;
+        let local = |point: &Point<N, D>| self.relative.frame.inverse_point(&(point - origin));
+        let [point1, point2] = self.swapped([local(&found.point1), local(&found.point2)]);
+        Separation { normal: self.inward(&found.normal), point1, point2, ..*found }
     }
 
     /// Returns whether one of `translations` of the second shape, in the frame of the first,

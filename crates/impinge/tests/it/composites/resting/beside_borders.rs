@@ -99,6 +99,33 @@ fn in_plane<N: Space<2, Isometry = Isometry2<N>>>() {
     }
 }
 
+/// Turned crates that press their vertical edges into the border of a plate, also at the corners of
+/// triangles, where the crate overlaps each triangle least along its own sides.
+fn crates_press_a_border<N: Space<3, Isometry = Isometry3<N>>>() {
+    let scale = Vector::<N, 3>::from([8.0, 1.0, 8.0].map(N::lit));
+    let field = HeightField::<N, 3>::new(5, 5, vec![N::ZERO; 25], scale);
+    let crate_ = Cuboid::new(Vector::<N, 3>::from([0.5, 0.5, 0.75].map(N::lit)));
+    for (number, depth) in (0..480).zip(DEPTHS.into_iter().cycle()) {
+        let angle = 0.1 + f64::from(number) * 0.7;
+        let turn = UnitQuaternion::from_axis_angle(&Vector::<N, 3>::y_axis(), N::lit(angle));
+        let reach = 0.5 * angle.cos().abs() + 0.75 * angle.sin().abs();
+        // The foremost edge of the crate lies beside its centre.
+        let aside = [1.0, -1.0].map(|s| 0.5 * s * angle.sin() + 0.75 * angle.cos());
+        let foremost = if angle.sin() * angle.cos() > 0.0 { aside[1] } else { aside[0] };
+        let along = [0.0, 2.0, 0.3, -1.99][number as usize / 4 % 4];
+        let height = [0.125, -0.125, 0.0][number as usize % 3];
+        let at = [4.0 + reach - depth, height, along + foremost].map(N::lit);
+        let pose = Isometry3::from_parts(Translation::from(Vector::<N, 3>::from(at)), turn);
+        is_at_the_border::<N, _, 3>(&field, &crate_, &pose, [1.0, 0.0, 0.0], depth);
+    }
+}
+
+#[test]
+fn crates_beside_corners_of_a_border() {
+    crates_press_a_border::<f64>();
+    crates_press_a_border::<f32>();
+}
+
 #[test]
 fn solids_beside_a_border_in_space() {
     in_space::<f64>();
