@@ -296,7 +296,7 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
         let filtered = self.filtered_normal(&normal);
         let start = points.len();
         let normal_in_first = |face: &Vector<N, 2>| -self.chain.turn.vector(face);
-        let (of_piece, mut status) = match &filtered {
+        let (of_piece, status) = match &filtered {
             FilteredNormal::Nothing => return Some(()),
             FilteredNormal::Refused => (normal, PartStatus::Left),
             FilteredNormal::Admitted => (self.between(&normal, points)?, PartStatus::Own),
@@ -311,22 +311,15 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
             }
         };
         let Self { found: Separation { distance, .. }, tolerance, parts, .. } = *self;
-        let mut lowest = points[start..].iter().fold(N::INFINITY, |low, p| min(low, p.distance));
-        if overlooks(&points[start..], distance, tolerance) {
-            points.truncate(start);
-            (status, lowest) = (PartStatus::Left, N::INFINITY);
-        }
+        let lowest = points[start..].iter().fold(N::INFINITY, |low, p| min(low, p.distance));
         let piece = Piece { normal: of_piece, parts, points: start..points.len() };
         let face = filtered.face().filter(|_| status != PartStatus::Left);
-        part_contacts.push(PartContact {
-            distance,
-            normal,
-            piece,
-            lowest,
-            status,
-            face,
-            tolerance,
-        });
+        let mut contact = PartContact { distance, normal, piece, lowest, status, face, tolerance };
+        if status != PartStatus::Left && overlooks(&points[start..], distance, tolerance) {
+            points.truncate(start);
+            contact.miss();
+        }
+        part_contacts.push(contact);
         Some(())
     }
 

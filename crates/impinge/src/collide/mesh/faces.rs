@@ -332,7 +332,7 @@ impl<N: Real> FaceContacts<'_, '_, N> {
                 Some(lowest) => {
                     let range = core::mem::replace(&mut start, points.len())..points.len();
                     if overlooks(&points[range.clone()], contact.distance, contact.tolerance) {
-                        (contact.status, contact.face) = (PartStatus::Left, None);
+                        contact.miss();
                     } else {
                         (contact.piece.points, contact.lowest) = (range, lowest);
                     }

@@ -2,13 +2,14 @@
 //! the parts: the points, and how deep they are.
 
 use super::normal_filter::is_behind;
-use super::part_contact::PartConfiguration;
+use super::part_contact::{Arena, PartConfiguration, PartContact, PartStatus, appended};
 use super::scene::Scene;
-use crate::collide::manifold::{Along, build_along};
+use crate::collide::manifold::{Along, build_along, build_between};
 use crate::collide::{ManifoldRequest, Pair, RawManifold, RawPoint};
 use crate::convex::Separation;
 use crate::math::{Mapped, Real, Space, Vector};
-use crate::shape::Geometry;
+use crate::shape::{Geometry, Kind};
+use crate::tables::ByDimension;
 
 impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
     /// Builds the manifold of the parts along the normal of a face, from the first shape to the
@@ -36,6 +37,7 @@ impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
             (face, least_along(&face, &normal, distance, tolerance), -N::INFINITY)
         };
         let along = Along { normal: placed.inward(&face), least, tolerance };
+        raw.normal = along.normal;
         build_along(&pair, &along, request, raw);
         overlap
     }
@@ -61,6 +63,77 @@ impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
         let depths = [depth(&front1), depth(&front2)];
         if depths[0] < depths[1] { (front1, depths[0]) } else { (front2, depths[1]) }
     }
+}
+
+/// Largest number of steps of [`reach`].
+const MAX_STEPS: usize = 16;
+/// The smallest closing speed along a normal at which [`reach`] continues.
+const SLOWEST: f64 = 1.0 / 64.0;
+
+/// Computes a contact that the points along the normal of the face missed
+/// ([`PartStatus::Missed`]): the part of the solid above the face has another deepest point. The
+/// result has the status [`PartStatus::Snapped`], or [`PartStatus::Left`] if there is none.
+///
+/// ```text
+///            │                    the corner of the wedge is below the foot of the wall;
+///      ╱╲    │ wall               moved out to the left, then towards the wall, the wedge
+///     ╱  ╲   │                    touches the wall first with its inclined side at the foot ·
+///    ╱    ╲  │
+///   ╱──────╲─·────  floor
+/// ```
+///
+/// The motion is Newton's method on the distance, a convex function of time, as for impacts
+/// (Mirtich, "Impulse-based dynamic simulation", 1996).
+pub(super) fn reach<N: Space<D>, const D: usize>(
+    scene: &Scene<'_, N, D>,
+    request: &ManifoldRequest<N>,
+    contact: &mut PartContact<N, D>,
+    arena: &mut Arena<N, D>,
+) {
+    let (parts, face) = (contact.parts(), contact.piece.normal);
+    let placed = scene.pair(parts);
+    let is_from_body = scene.are_bodies(parts) && is_behind(&contact.normal, &face);
+    (contact.status, contact.lowest) = (PartStatus::Left, N::INFINITY);
+    if is_from_body || matches!(placed.pair().first, Kind::Ball(_)) {
+        return;
+    }
+    let inward = placed.inward(&face);
+    let found = first_touch(&placed.pair(), &inward, contact.tolerance);
+    let Some((pair, found, depth)) = found else { return };
+    let raw = arena.blank();
+    build_between(&pair, &Separation { distance: N::ZERO, ..found }, request, raw);
+    raw.points.retain(|point| point.distance <= contact.tolerance);
+    for point in &mut raw.points {
+        point.distance = -depth;
+    }
+    raw.normal = inward;
+    let (piece, lowest) = appended(&placed, parts, arena);
+    contact.set_piece(piece, lowest);
+    contact.status = PartStatus::Snapped;
+}
+
+/// Moves the second solid of an overlapping pair out along `normal`, a unit vector from the first
+/// to the second in the frame of the first, and back until both touch. Returns the pair there, its
+/// separation, and the length of the whole motion; `None` if the solids do not come to touch.
+fn first_touch<'a, N: Space<D>, const D: usize>(
+    start: &Pair<'a, N, D>,
+    normal: &Vector<N, D>,
+    tolerance: N,
+) -> Option<(Pair<'a, N, D>, Separation<N, D>, N)> {
+    let (mut pair, mut out) = (*start, overlap_along(start, normal));
+    for _ in 0..MAX_STEPS {
+        pair.pose12.translation = start.pose12.translation + normal * out;
+        let found = <N::Algorithms>::separation(&pair, N::INFINITY)?;
+        if found.distance <= tolerance {
+            return Some((pair, found, out)).filter(|_| out > tolerance);
+        }
+        let closing = found.normal.dot(normal);
+        if closing < N::lit(SLOWEST) {
+            return None;
+        }
+        out -= found.distance / closing;
+    }
+    None
 }
 
 /// Returns the length by which two solids overlap along `normal`, a unit vector from the first to

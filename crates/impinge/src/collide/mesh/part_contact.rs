@@ -33,6 +33,10 @@ pub(crate) enum PartStatus {
     /// lies beyond the ridge. It is dropped if another contact explains the overlap, even one along
     /// the same normal.
     Beyond,
+    /// The parts overlap, but no point of the solid that is deepest along the normal of the face is
+    /// above the face. [`resolve`](super::resolve) computes the contact with the rest of the solid
+    /// if no other contact explains the overlap.
+    Missed,
     /// The contact is dropped, unless its parts are the nearest and no remaining contact is as
     /// near.
     Left,
@@ -52,7 +56,8 @@ pub(crate) struct PartContact<N: Real, const D: usize> {
     /// points later.
     pub(super) piece: Piece<N, D>,
     /// Smallest distance of the points in `piece`, or minus the overlap of the parts along the front
-    /// of a body that is touched from inside; infinite without points.
+    /// of a body that is touched from inside; infinite without points. `distance` for a contact with
+    /// [`PartStatus::Missed`].
     pub(super) lowest: N,
     pub(super) status: PartStatus,
     /// Normal of the face of the second shape's part in contact, in the frame of the second shape;
@@ -93,6 +98,17 @@ impl<N: Real, const D: usize> PartContact<N, D> {
     /// restored it as the contact of the nearest parts.
     pub(super) fn is_owing(&self) -> bool {
         self.status != PartStatus::Left && self.piece.points.is_empty()
+    }
+
+    /// Removes the points of a contact along the normal of a face, which miss the contact
+    /// ([`overlooks`]).
+    pub(super) fn miss(&mut self) {
+        self.piece.points = 0..0;
+        if self.distance < -self.tolerance {
+            (self.status, self.lowest) = (PartStatus::Missed, self.distance);
+        } else {
+            (self.status, self.lowest, self.face) = (PartStatus::Left, N::INFINITY, None);
+        }
     }
 
     /// Replaces the manifold, and sets `lowest` to the smallest distance of its points.
@@ -284,7 +300,7 @@ fn of_surfaces<N: Space<D>, const D: usize>(
     let normal = placed.outward(&gap.normal);
     let raw = arena.blank();
     let mut overlap = -N::INFINITY;
-    let mut status = match combined_normal(placed, &filtered, &normal) {
+    let status = match combined_normal(placed, &filtered, &normal) {
         CombinedNormal::Nothing => return None,
         CombinedNormal::Refused => PartStatus::Left,
         CombinedNormal::Found(normal) | CombinedNormal::Forced(normal, _)
@@ -304,14 +320,18 @@ fn of_surfaces<N: Space<D>, const D: usize>(
             status
         }
     };
-    if overlooks(&raw.points, distance, tolerance) {
-        status = PartStatus::Left;
+    let is_missed = status != PartStatus::Left && overlooks(&raw.points, distance, tolerance);
+    if is_missed {
         raw.points.clear();
     }
     let (piece, lowest) = appended(placed, parts, arena);
     let lowest = if piece.points.is_empty() { lowest } else { min(lowest, -overlap) };
     let face = filtered[1].face().filter(|_| status != PartStatus::Left);
-    Some(PartContact { distance, normal, piece, lowest, status, face, tolerance })
+    let mut contact = PartContact { distance, normal, piece, lowest, status, face, tolerance };
+    if is_missed {
+        contact.miss();
+    }
+    Some(contact)
 }
 
 /// Builds the manifold of two parts at their nearest points, along a normal that the surface

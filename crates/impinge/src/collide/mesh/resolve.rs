@@ -3,6 +3,7 @@
 use smallvec::SmallVec;
 
 use super::at_side::move_to_side;
+use super::forced::reach;
 use super::part_contact::{Arena, PartContact, PartStatus};
 use super::scene::Scene;
 use crate::collide::ManifoldRequest;
@@ -16,10 +17,6 @@ const ALIKE: f64 = 0.99;
 
 /// Largest number of escapes kept at a time; no two of them have about the same direction.
 const MAX_ESCAPES: usize = 32;
-
-/// Largest number of parts whose sides are tested if no contact holds; most corners of surfaces have
-/// six parts.
-const MAX_TESTED: usize = 8;
 
 /// A translation that resolves the overlap, according to one contact: the second shape moves by
 /// `depth` along the unit vector `normal`, which is in the frame of the first shape.
@@ -53,15 +50,16 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
         super::hidden::drop_hidden(scene, contacts);
     }
     let has_other_normal = |contact: &PartContact<N, D>| {
-        matches!(contact.status, PartStatus::Snapped | PartStatus::Beyond)
+        matches!(contact.status, PartStatus::Snapped | PartStatus::Beyond | PartStatus::Missed)
     };
     if contacts.iter().any(has_other_normal) {
         leave_explained(scene, contacts, arena);
-        if move_to_sides(scene, request, contacts, arena) {
+        let are_reached = reach_missed(scene, request, contacts, arena);
+        if move_to_sides(scene, request, contacts, arena) || are_reached {
             leave_explained(scene, contacts, arena);
         }
     }
-    keep_one(scene, request, contacts, arena);
+    keep_one(scene, contacts, arena);
 }
 
 /// Drops each contact that another contact explains: the escape of the other contact separates the
@@ -90,6 +88,33 @@ fn leave_explained<N: Space<D>, const D: usize>(
             }
         }
     }
+}
+
+/// Computes the missed contacts that no other contact explains ([`reach`]), and drops the others.
+/// Returns whether any was computed.
+fn reach_missed<N: Space<D>, const D: usize>(
+    scene: &Scene<'_, N, D>,
+    request: &ManifoldRequest<N>,
+    contacts: &mut [PartContact<N, D>],
+    arena: &mut Arena<N, D>,
+) -> bool {
+    use PartStatus::{Left, Missed};
+    if contacts.iter().all(|contact| contact.status != Missed) {
+        return false;
+    }
+    let (mut held, mut is_any) = (Escapes(SmallVec::new()), false);
+    for (_, index) in shallowest_first(contacts, |status| !matches!(status, Left | Missed)) {
+        held.add(&contacts[index as usize]);
+    }
+    for contact in contacts.iter_mut().filter(|contact| contact.status == Missed) {
+        if is_explained(scene, contact, &held, arena) {
+            contact.status = Left;
+        } else {
+            reach(scene, request, contact, arena);
+            is_any |= contact.status != Left;
+        }
+    }
+    is_any
 }
 
 /// Replaces contacts with faces that are deeper than their parts by contacts with sides of these
@@ -162,8 +187,8 @@ impl<N: Real, const D: usize> Escapes<N, D> {
     }
 }
 
-/// Returns whether one of the escapes separates the two parts of a contact. Only a `Beyond` contact
-/// may be explained by an escape along its own normal. `false` for a contact without overlap beyond
+/// Returns whether one of the escapes separates the two parts of a contact. A `Snapped` contact is
+/// not explained by an escape along its own normal. `false` for a contact without overlap beyond
 /// rounding.
 fn is_explained<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
@@ -175,7 +200,7 @@ fn is_explained<N: Space<D>, const D: usize>(
     if depth(contact) <= contact.tolerance {
         return false;
     }
-    let is_beyond = contact.status == PartStatus::Beyond;
+    let is_beyond = contact.status != PartStatus::Snapped;
     // An escape that is shorter than the depth of the parts does not separate the parts.
     let least = -contact.distance - contact.tolerance;
     let is_relevant = |escape: &&Escape<N, D>| {
@@ -244,7 +269,6 @@ fn is_within<N: Space<D>, const D: usize>(
 /// represents has the contact.
 fn keep_one<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
-    request: &ManifoldRequest<N>,
     contacts: &mut [PartContact<N, D>],
     arena: &mut Arena<N, D>,
 ) {
@@ -264,7 +288,6 @@ fn keep_one<N: Space<D>, const D: usize>(
             contacts[index].lowest = least;
         }
         _ if is_of_neighbour(scene, &contacts[nearest]) => {}
-        _ if least <= N::ZERO && move_one_to_side(scene, request, contacts, arena) => {}
         _ => {
             // The points of this contact, if it has any, are along the normal of a face and
             // farther. So they are computed again.
@@ -272,28 +295,6 @@ fn keep_one<N: Space<D>, const D: usize>(
             contacts[nearest].piece.points = 0..0;
         }
     }
-}
-
-/// Replaces the contact of the parts that overlap most by that with one of their sides
-/// ([`move_to_side`]); if no edge there admits a normal, one of the next parts. Returns whether any
-/// was replaced. Tests at most [`MAX_TESTED`] parts.
-fn move_one_to_side<N: Space<D>, const D: usize>(
-    scene: &Scene<'_, N, D>,
-    request: &ManifoldRequest<N>,
-    contacts: &mut [PartContact<N, D>],
-    arena: &mut Arena<N, D>,
-) -> bool {
-    let mut order = SmallVec::<[(u64, u32); 16]>::new();
-    for (contact, index) in contacts.iter().zip(0..) {
-        if contact.distance <= N::ZERO {
-            order.push((order_of(contact.distance), index));
-        }
-    }
-    sort_keyed(&mut order);
-    let mut nearest = order.iter().take(MAX_TESTED);
-    nearest.any(|&(_, index)| {
-        move_to_side(scene, request, &mut contacts[index as usize], N::INFINITY, arena)
-    })
 }
 
 /// Returns whether a ghost beside the parts of a contact is nearer than these. At equal distances a

@@ -4,4 +4,5 @@
 mod beside_borders;
 mod boxes_on_a_grid;
 mod meshes_on_surfaces;
+mod valleys;
 mod walls_on_joints;
