@@ -18,7 +18,7 @@ use super::scene::Scene;
 use crate::collide::manifold::build_between;
 use crate::collide::{ManifoldRequest, Pair};
 use crate::convex::Separation;
-use crate::math::{Point, Pose, Space, max, min, unit};
+use crate::math::{Point, Pose, Space, unit};
 use crate::shape::{FeatureId, Geometry, Kind, PartSolid, Segment};
 use crate::tables::ByDimension;
 
@@ -78,8 +78,10 @@ fn least_at_sides<N: Space<D>, const D: usize>(
             continue;
         }
         let at = along.dot(&(found.point1.coords - a));
-        let shift = along * (max(min(at, length), N::ZERO) - at);
-        let [point1, point2] = [found.point2 + shift, found.point1 + shift];
+        if at < -contact.tolerance || at > length + contact.tolerance {
+            continue;
+        }
+        let [point1, point2] = [found.point2, found.point1];
         least = Some(Separation { normal: -found.normal, point1, point2, ..found });
     }
     least
