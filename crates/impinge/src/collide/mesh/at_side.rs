@@ -63,6 +63,13 @@ fn least_at_sides<N: Space<D>, const D: usize>(
     for side in [0_u32, 1, 2] {
         let [a, b] = [corners[side as usize], corners[(side as usize + 1) % 3]];
         let Some((along, length)) = unit(&(b - a)) else { continue };
+        // Unless the edge admits the part of the parts' normal across it, the normal of the line
+        // is rarely admitted either.
+        let across = contact.normal - along * contact.normal.dot(&along);
+        let Some((across, _)) = unit(&across) else { continue };
+        if !surface.admits(part, FeatureId::Edge(side), &-turn.inverse_vector(&across)) {
+            continue;
+        }
         // The line ends outside the solid.
         let past = along * (N::TWO * reach + a.norm());
         let line = Segment::of_finite(Point::from(a - past), Point::from(b + past));

@@ -25,6 +25,20 @@ struct Escape<N: Real, const D: usize> {
     depth: N,
 }
 
+impl<N: Real, const D: usize> Escape<N, D> {
+    /// A contact that only touches has an escape without length.
+    fn of(contact: &PartContact<N, D>) -> Self {
+        Self { normal: contact.piece.normal, depth: max(depth(contact), N::ZERO) }
+    }
+
+    /// Returns whether the parts of a contact are apart along their own normal after the motion,
+    /// which proves that the escape separates them.
+    fn certainly_parts(&self, contact: &PartContact<N, D>) -> bool {
+        let rest = contact.distance + contact.normal.dot(&self.normal) * self.depth;
+        rest > -contact.tolerance
+    }
+}
+
 /// Escapes in the order of their depths, the shallowest first. Only the deepest of several escapes
 /// with about the same direction is kept.
 struct Escapes<N: Real, const D: usize>(SmallVec<[Escape<N, D>; MAX_ESCAPES]>);
@@ -99,11 +113,21 @@ fn reach_missed<N: Space<D>, const D: usize>(
     arena: &mut Arena<N, D>,
 ) -> bool {
     use PartStatus::{Left, Missed};
-    if contacts.iter().all(|contact| contact.status != Missed) {
+    let is_held = |status| !matches!(status, Left | Missed);
+    // The deepest contact alone explains most missed contacts.
+    let held = least_of(contacts, |contact| is_held(contact.status).then_some(contact.lowest));
+    let deepest = held.map(|index| Escape::of(&contacts[index]));
+    let (mut are_left, mut is_any) = (false, false);
+    for contact in contacts.iter_mut().filter(|contact| contact.status == Missed) {
+        let is_parted = deepest.as_ref().is_some_and(|deepest| deepest.certainly_parts(contact));
+        contact.status = if is_parted { Left } else { Missed };
+        are_left |= !is_parted;
+    }
+    if !are_left {
         return false;
     }
-    let (mut held, mut is_any) = (Escapes(SmallVec::new()), false);
-    for (_, index) in shallowest_first(contacts, |status| !matches!(status, Left | Missed)) {
+    let mut held = Escapes(SmallVec::new());
+    for (_, index) in shallowest_first(contacts, is_held) {
         held.add(&contacts[index as usize]);
     }
     for contact in contacts.iter_mut().filter(|contact| contact.status == Missed) {
@@ -137,7 +161,7 @@ fn move_to_sides<N: Space<D>, const D: usize>(
             escape.depth >= deepest - tolerance
                 && escape.normal.dot(&contact.piece.normal) >= N::lit(ALIKE)
         };
-        let is_deeper = deepest > tolerance - contact.distance;
+        let is_deeper = deepest > tolerance - N::TWO * contact.distance;
         if is_deeper && !own.0.iter().any(is_confirmed) {
             is_changed |= move_to_side(scene, request, contact, deepest - tolerance, arena);
         }
@@ -169,21 +193,20 @@ fn shallowest_first<N: Real, const D: usize>(
 impl<N: Real, const D: usize> Escapes<N, D> {
     /// Adds the escape of a contact that is at least as deep as all contacts added before. The new
     /// escape replaces the escape with about the same normal or, if there are [`MAX_ESCAPES`], the
-    /// shallowest. A contact that only touches has an escape without length: the sides of a box
-    /// flush with the wall of a block are explained by the contact with the top of the block.
+    /// shallowest. Contacts that only touch count: the sides of a box flush with the wall of a block
+    /// are explained by the contact with the top of the block.
     fn add(&mut self, contact: &PartContact<N, D>) {
-        let (normal, depth) = (contact.piece.normal, depth(contact));
-        if depth < -contact.tolerance {
+        if depth(contact) < -contact.tolerance {
             return;
         }
-        let depth = max(depth, N::ZERO);
-        let is_alike = |escape: &Escape<N, D>| escape.normal.dot(&normal) >= N::lit(ALIKE);
+        let added = Escape::of(contact);
+        let is_alike = |escape: &Escape<N, D>| escape.normal.dot(&added.normal) >= N::lit(ALIKE);
         if let Some(old) = self.0.iter().position(is_alike) {
             self.0.remove(old);
         } else if self.0.len() == MAX_ESCAPES {
             self.0.remove(0);
         }
-        self.0.push(Escape { normal, depth });
+        self.0.push(added);
     }
 }
 
@@ -206,15 +229,9 @@ fn is_explained<N: Space<D>, const D: usize>(
     let is_relevant = |escape: &&Escape<N, D>| {
         escape.depth >= least && (is_beyond || escape.normal.dot(&normal) < N::lit(ALIKE))
     };
-    // The parts may be apart along their own normal after the motion, which proves that the escape
-    // separates them.
-    let rest = |escape: &Escape<N, D>| {
-        contact.distance + contact.normal.dot(&escape.normal) * escape.depth
-    };
-    let (mut relevant, limit): (SmallVec<[&Escape<N, D>; 16]>, N) =
-        (SmallVec::new(), -contact.tolerance);
+    let mut relevant = SmallVec::<[&Escape<N, D>; 16]>::new();
     for escape in escapes.0.iter().filter(is_relevant) {
-        if rest(escape) > limit {
+        if escape.certainly_parts(contact) {
             return true;
         }
         relevant.push(escape);
