@@ -15,10 +15,11 @@
 use super::hidden::are_alike;
 use super::part_contact::{Arena, PartContact, PartStatus, appended};
 use super::scene::Scene;
+use super::size;
 use crate::collide::manifold::build_between;
 use crate::collide::{ManifoldRequest, Pair};
 use crate::convex::Separation;
-use crate::math::{Point, Pose, Space, unit};
+use crate::math::{Point, Pose, Space, Vector, unit};
 use crate::shape::{FeatureId, Geometry, Kind, PartSolid, Segment};
 use crate::tables::ByDimension;
 
@@ -41,10 +42,10 @@ pub(super) fn move_to_side<N: Space<D>, const D: usize>(
     true
 }
 
-/// Returns the separation of a solid, which is the first shape, and the line of a side of a
-/// triangle, along which they overlap least and less than `deepest`, in the frame of the solid. Its
-/// normal is one that the edge at the side admits, and its points are on the side. `None` if there
-/// is none, and for other shapes and parts.
+/// Returns the least overlap, below `deepest`, of a solid, which is the first shape, with the line
+/// of a side of a triangle: the separation of the solid and the line, in the frame of the solid,
+/// with the points on the side and a normal that the edge there admits. `None` if there is none,
+/// and for other shapes and parts.
 fn least_at_sides<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contact: &PartContact<N, D>,
@@ -52,44 +53,50 @@ fn least_at_sides<N: Space<D>, const D: usize>(
 ) -> Option<Separation<N, D>> {
     let solid = scene.between.pair.first;
     let surface = scene.surfaces[1].filter(|_| !matches!(solid, Kind::Ball(_)))?;
-    let reach = Geometry(solid).as_support_map()?.reach();
-    let [_, part] = contact.parts();
-    let own = scene.second_part(part)?;
+    let own = scene.second_part(contact.parts()[1])?;
     let PartSolid::Triangle(triangle) = &own.solid else { return None };
     let (turn, origin) = (&scene.between.pair.pose12, scene.between.pose21.translation);
     let in_solid = |corner: &Point<N, D>| turn.vector(&(own.pose.point(corner).coords - origin));
-    let corners = triangle.corners().each_ref().map(in_solid);
+    let [a, b, c] = triangle.corners().each_ref().map(in_solid);
     let mut least: Option<Separation<N, D>> = None;
-    for side in [0_u32, 1, 2] {
-        let [a, b] = [corners[side as usize], corners[(side as usize + 1) % 3]];
-        let Some((along, length)) = unit(&(b - a)) else { continue };
-        // Unless the edge admits the part of the parts' normal across it, the normal of the line
-        // is rarely admitted either.
+    for (side, ends) in (0_u32..).zip([[a, b], [b, c], [c, a]]) {
+        let admits = |toward: &Vector<N, D>| {
+            let outward = -turn.inverse_vector(toward);
+            let own = surface.snapped(contact.parts()[1], &outward);
+            let is_of_face = own.is_some_and(|own| are_alike(&own, &outward));
+            // The back of the face is on the wrong side of the surface.
+            let is_back = is_of_face && contact.piece.normal.dot(toward) < N::ZERO;
+            !is_back && surface.admits(contact.parts()[1], FeatureId::Edge(side), &outward)
+        };
+        let Some((along, length)) = unit(&(ends[1] - ends[0])) else { continue };
+        // Unless the edge admits the normal of the parts, without its component along the edge, it
+        // rarely admits the normal of the line.
         let across = contact.normal - along * contact.normal.dot(&along);
-        let Some((across, _)) = unit(&across) else { continue };
-        if !surface.admits(part, FeatureId::Edge(side), &-turn.inverse_vector(&across)) {
+        if !unit(&across).is_some_and(|(across, _)| admits(&across)) {
             continue;
         }
-        // The line ends outside the solid.
-        let past = along * (N::TWO * reach + a.norm());
-        let line = Segment::of_finite(Point::from(a - past), Point::from(b + past));
-        let pair = Pair { first: Kind::Segment(&line), second: solid, pose12: Pose::identity() };
         let most = least.map_or(deepest, |least| -least.distance);
-        let found = <N::Algorithms>::separation(&pair, N::ZERO);
-        let Some(found) = found.filter(|found| -found.distance < most) else { continue };
-        let outward = turn.inverse_vector(&found.normal);
-        let is_of_face =
-            surface.snapped(part, &outward).is_some_and(|own| are_alike(&own, &outward));
-        let is_back = is_of_face && contact.piece.normal.dot(&found.normal) > N::ZERO;
-        if is_back || !surface.admits(part, FeatureId::Edge(side), &outward) {
-            continue;
+        let Some(found) = on_line(solid, &ends, &along) else { continue };
+        let at = along.dot(&(found.point2.coords - ends[0]));
+        let is_on_side = at >= -contact.tolerance && at <= length + contact.tolerance;
+        if is_on_side && -found.distance < most && admits(&found.normal) {
+            least = Some(found);
         }
-        let at = along.dot(&(found.point1.coords - a));
-        if at < -contact.tolerance || at > length + contact.tolerance {
-            continue;
-        }
-        let [point1, point2] = [found.point2, found.point1];
-        least = Some(Separation { normal: -found.normal, point1, point2, ..found });
     }
     least
+}
+
+/// Returns the separation of a solid and the line through two points, the direction of which is
+/// `along`; `None` unless they overlap.
+fn on_line<N: Space<D>, const D: usize>(
+    solid: Kind<'_, N, D>,
+    [a, b]: &[Vector<N, D>; 2],
+    along: &Vector<N, D>,
+) -> Option<Separation<N, D>> {
+    // The segment ends outside the solid.
+    let past = along * (N::TWO * size(Geometry(solid).as_support_map()?) + a.norm());
+    let line = Segment::of_finite(Point::from(a - past), Point::from(b + past));
+    let pair = Pair { first: Kind::Segment(&line), second: solid, pose12: Pose::identity() };
+    let found = <N::Algorithms>::separation(&pair, N::ZERO)?;
+    Some(found.flipped(&Pose::identity()))
 }

@@ -110,6 +110,7 @@ pub(super) fn reach<N: Space<D>, const D: usize>(
     let (piece, lowest) = appended(&placed, parts, arena);
     contact.set_piece(piece, lowest);
     contact.status = PartStatus::Snapped;
+    contact.face = scene.first_is_convex().then(|| -placed.in_second_frame(&face));
 }
 
 /// Moves the second solid of an overlapping pair out along `normal`, a unit vector from the first

@@ -46,8 +46,6 @@ enum PlaneSide {
 struct TouchedFace<N: Real, const D: usize> {
     /// Index of the face's contact.
     contact: usize,
-    /// Whether the contact has the status [`PartStatus::Missed`]. Then the face hides no other.
-    is_missed: bool,
     /// Signed distance of the face's part from the solid.
     distance: N,
     /// Unit normal on the touched side, in the frame of the composite.
@@ -105,8 +103,7 @@ fn faces_of<N: Space<D>, const D: usize>(
     faces.reserve(contacts.len());
     shared.reserve(3 * contacts.len());
     let mut next_face = 0;
-    for (contact, PartContact { distance, face, piece, status, .. }) in contacts.iter().enumerate()
-    {
+    for (contact, PartContact { distance, face, piece, .. }) in contacts.iter().enumerate() {
         let (Some(normal), Some(part)) = (*face, scene.second_part(piece.parts[1])) else {
             continue;
         };
@@ -118,8 +115,7 @@ fn faces_of<N: Space<D>, const D: usize>(
         let corners = corners.mapped(|corner| part.pose.point(&corner));
         scene.each_corner(piece.parts[1], |corner| shared.push((corner, next_face)));
         next_face += 1;
-        let is_missed = *status == PartStatus::Missed;
-        faces.push(TouchedFace { contact, is_missed, distance: *distance, normal, corners });
+        faces.push(TouchedFace { contact, distance: *distance, normal, corners });
     }
     sort_keyed(&mut shared);
     (faces, shared)
@@ -147,8 +143,7 @@ fn hidden_of<N: Real, const D: usize>(
         _ => return None,
     };
     // A farther face hides nothing, so a larger prediction never removes the contact of an overlap.
-    let is_near = front.distance <= max(back.distance, N::ZERO);
-    (is_near && !front.is_missed).then_some(back.contact)
+    (front.distance <= max(back.distance, N::ZERO)).then_some(back.contact)
 }
 
 /// Returns the side of the plane of the face `plane` on which the face `part` lies, up to rounding

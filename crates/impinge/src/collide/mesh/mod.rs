@@ -7,8 +7,10 @@
 //!    normal at a seam (an edge or corner where parts meet), [`normal_filter`] takes the normal of
 //!    the face ([`forced`] finds its points), or drops the contact.
 //! 3. [`hidden`] drops contacts with faces that a neighbour hides; [`resolve`] drops contacts whose
-//!    overlap ends if another contact is resolved. Solids that overlap keep at least one contact,
-//!    except beside a ghost (a part that stands for a part of a neighbouring shape).
+//!    overlap ends if another contact is resolved, and finds those of solids that are wide below a
+//!    face ([`forced`]) or that a border or ridge holds at its corner ([`at_side`]). Solids that
+//!    overlap keep at least one contact, except beside a ghost (a part that stands for a part of a
+//!    neighbouring shape).
 //! 4. [`inside`] adds contacts of pieces wholly inside a body (a solid with a closed surface).
 //! 5. [`patch`] merges the remaining contacts into flat patches.
 //!

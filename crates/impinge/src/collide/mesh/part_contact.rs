@@ -101,13 +101,13 @@ impl<N: Real, const D: usize> PartContact<N, D> {
     }
 
     /// Removes the points of a contact along the normal of a face, which miss the contact
-    /// ([`overlooks`]).
+    /// ([`overlooks`]), and the face.
     pub(super) fn miss(&mut self) {
-        self.piece.points = 0..0;
+        (self.piece.points, self.face) = (0..0, None);
         if self.distance < -self.tolerance {
             (self.status, self.lowest) = (PartStatus::Missed, self.distance);
         } else {
-            (self.status, self.lowest, self.face) = (PartStatus::Left, N::INFINITY, None);
+            (self.status, self.lowest) = (PartStatus::Left, N::INFINITY);
         }
     }
 

@@ -60,20 +60,28 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
     contacts: &mut [PartContact<N, D>],
     arena: &mut Arena<N, D>,
 ) {
-    if !arena.are_fronts {
-        super::hidden::drop_hidden(scene, contacts);
-    }
-    let has_other_normal = |contact: &PartContact<N, D>| {
-        matches!(contact.status, PartStatus::Snapped | PartStatus::Beyond | PartStatus::Missed)
-    };
-    if contacts.iter().any(has_other_normal) {
-        leave_explained(scene, contacts, arena);
-        let are_reached = reach_missed(scene, request, contacts, arena);
-        if move_to_sides(scene, request, contacts, arena) || are_reached {
-            leave_explained(scene, contacts, arena);
+    let drop_hidden = |contacts: &mut [PartContact<N, D>], arena: &Arena<N, D>| {
+        if !arena.are_fronts {
+            super::hidden::drop_hidden(scene, contacts);
         }
+    };
+    drop_hidden(contacts, arena);
+    if contacts.iter().any(is_forced) {
+        leave_explained(scene, contacts, arena);
+    }
+    let are_reached = reach_missed(scene, request, contacts, arena);
+    if are_reached {
+        drop_hidden(contacts, arena);
+    }
+    if move_to_sides(scene, request, contacts, arena) || are_reached {
+        leave_explained(scene, contacts, arena);
     }
     keep_one(scene, contacts, arena);
+}
+
+/// Returns whether a contact is along the normal of a face that the seam forced on it.
+fn is_forced<N: Real, const D: usize>(contact: &PartContact<N, D>) -> bool {
+    matches!(contact.status, PartStatus::Snapped | PartStatus::Beyond)
 }
 
 /// Drops each contact that another contact explains: the escape of the other contact separates the
@@ -113,10 +121,13 @@ fn reach_missed<N: Space<D>, const D: usize>(
     arena: &mut Arena<N, D>,
 ) -> bool {
     use PartStatus::{Left, Missed};
+    if contacts.iter().all(|contact| contact.status != Missed) {
+        return false;
+    }
     let is_held = |status| !matches!(status, Left | Missed);
     // The deepest contact alone explains most missed contacts.
-    let held = least_of(contacts, |contact| is_held(contact.status).then_some(contact.lowest));
-    let deepest = held.map(|index| Escape::of(&contacts[index]));
+    let deepest = least_of(contacts, |contact| is_held(contact.status).then_some(contact.lowest));
+    let deepest = deepest.map(|index| Escape::of(&contacts[index]));
     let (mut are_left, mut is_any) = (false, false);
     for contact in contacts.iter_mut().filter(|contact| contact.status == Missed) {
         let is_parted = deepest.as_ref().is_some_and(|deepest| deepest.certainly_parts(contact));
@@ -141,29 +152,32 @@ fn reach_missed<N: Space<D>, const D: usize>(
     is_any
 }
 
-/// Replaces contacts with faces that are deeper than their parts by contacts with sides of these
-/// parts ([`move_to_side`]), unless a contact with the parts' own normal is about as deep along
-/// this normal. Returns whether any was replaced.
+/// Replaces contacts with faces that are more than twice as deep as their parts by contacts with
+/// sides of these parts ([`move_to_side`]), unless a contact with its parts' own normal is about as
+/// deep along the same normal. Returns whether any was replaced.
 fn move_to_sides<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     request: &ManifoldRequest<N>,
     contacts: &mut [PartContact<N, D>],
     arena: &mut Arena<N, D>,
 ) -> bool {
+    let is_deeper = |contact: &PartContact<N, D>| {
+        is_forced(contact) && depth(contact) > contact.tolerance - N::TWO * contact.distance
+    };
+    if !contacts.iter().any(is_deeper) {
+        return false;
+    }
     let (mut own, mut is_changed) = (Escapes(SmallVec::new()), false);
     for (_, index) in shallowest_first(contacts, |status| status == PartStatus::Own) {
         own.add(&contacts[index as usize]);
     }
-    let is_forced = |status| matches!(status, PartStatus::Snapped | PartStatus::Beyond);
-    for contact in contacts.iter_mut().filter(|contact| is_forced(contact.status)) {
-        let (deepest, tolerance) = (depth(contact), contact.tolerance);
+    for contact in contacts.iter_mut().filter(|contact| is_deeper(contact)) {
+        let (normal, deepest) = (contact.piece.normal, depth(contact) - contact.tolerance);
         let is_confirmed = |escape: &Escape<N, D>| {
-            escape.depth >= deepest - tolerance
-                && escape.normal.dot(&contact.piece.normal) >= N::lit(ALIKE)
+            escape.depth >= deepest && escape.normal.dot(&normal) >= N::lit(ALIKE)
         };
-        let is_deeper = deepest > tolerance - N::TWO * contact.distance;
-        if is_deeper && !own.0.iter().any(is_confirmed) {
-            is_changed |= move_to_side(scene, request, contact, deepest - tolerance, arena);
+        if !own.0.iter().any(is_confirmed) {
+            is_changed |= move_to_side(scene, request, contact, deepest, arena);
         }
     }
     is_changed

@@ -3,7 +3,11 @@
 
 use impinge::math::na::{Translation, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry2, Isometry3, Point, Space, Vector};
-use impinge::narrow_phase::{ContactPrediction, contact_manifolds};
+use impinge::narrow_phase::{
+    ContactManifoldGenerator, ContactPrediction, DefaultContactDispatcher, IdAllocator,
+    PairManifoldGenerator, contact_manifolds,
+};
+use impinge::query::ContactId;
 use impinge::shape::{Cone, ConvexHull, ConvexPolygon, Cuboid, Polyline, Shape, TriMesh};
 
 /// Returns a floor in the plane y = 0 left of a wall in the plane x = 0.
@@ -53,7 +57,8 @@ fn touches_both<N: Space<3, Isometry = Isometry3<N>>>(
     }
 }
 
-fn at_a_wall<N: Space<3, Isometry = Isometry3<N>>>() {
+/// Returns a pyramid with a base of 1 by 1 and a height of 1.
+fn pyramid<N: Space<3>>() -> ConvexHull<N> {
     let corners = [
         [-0.5, -0.5, -0.5],
         [-0.5, -0.5, 0.5],
@@ -61,8 +66,12 @@ fn at_a_wall<N: Space<3, Isometry = Isometry3<N>>>() {
         [0.5, -0.5, 0.5],
         [0.0, 0.5, 0.0],
     ];
-    let pyramid = ConvexHull::try_from_points(&corners.map(|at| Point::from(at.map(N::lit))));
-    let (pyramid, cone) = (pyramid.expect("a solid"), Cone::new(N::lit(0.5), N::HALF));
+    let corners = corners.map(|at| Point::from(at.map(N::lit)));
+    ConvexHull::try_from_points(&corners).expect("a solid")
+}
+
+fn at_a_wall<N: Space<3, Isometry = Isometry3<N>>>() {
+    let (pyramid, cone) = (pyramid::<N>(), Cone::new(N::lit(0.5), N::HALF));
     for sunk in [1e-3, 1e-2] {
         for beyond in [0.05, 0.1, 0.25] {
             for yaw in [0.1_f64, 0.3, 0.6, core::f64::consts::FRAC_PI_4] {
@@ -78,6 +87,50 @@ fn at_a_wall<N: Space<3, Isometry = Isometry3<N>>>() {
 fn wide_bases_touch_a_wall_at_its_foot() {
     at_a_wall::<f64>();
     at_a_wall::<f32>();
+}
+
+/// A pyramid and a cone that are pushed into a wall in small steps keep their contact with the wall:
+/// it is there in each step, gets deeper by the step, and keeps an id.
+fn pushed_into_a_wall<N: Space<3, Isometry = Isometry3<N>>>() {
+    let (here, surface) = (Isometry3::identity(), floor_and_wall::<N>());
+    let (pyramid, cone) = (pyramid::<N>(), Cone::new(N::HALF, N::HALF));
+    let solids: [(&dyn Shape<N, 3>, f64); 4] =
+        [(&pyramid, 0.0), (&pyramid, 0.1), (&pyramid, 0.7), (&cone, 0.0)];
+    for (solid, yaw) in solids {
+        let reach = if yaw > 0.0 { 0.5 * (yaw.cos() + yaw.sin()) } else { 0.5 };
+        let (mut generator, mut ids) =
+            (PairManifoldGenerator::<N, 3>::default(), IdAllocator::new());
+        let dispatcher = DefaultContactDispatcher::<3>::new();
+        let prediction = ContactPrediction::new(N::lit(0.002), N::ZERO, N::ZERO);
+        let mut before: Option<(N, Vec<ContactId>)> = None;
+        for step in 0..40 {
+            let beyond = 0.02 + 0.005 * f64::from(step);
+            let at = Vector::<N, 3>::from([beyond - reach, 0.499, 0.1].map(N::lit));
+            let turn = UnitQuaternion::from_axis_angle(&Vector::<N, 3>::y_axis(), N::lit(yaw));
+            let pose = Isometry3::from_parts(Translation::from(at), turn);
+            generator.update(&dispatcher, &here, &surface, &pose, solid, &prediction, &mut ids);
+            let mut found = Vec::new();
+            generator.contacts(&mut found);
+            let wall = found.iter().flat_map(|manifold| manifold.contacts());
+            let wall = wall.filter(|one| one.contact.normal.x < N::lit(-0.99));
+            let wall: Vec<_> = wall.collect();
+            let depth = wall.iter().fold(-N::ONE, |best, one| one.contact.depth.max(best));
+            let ids: Vec<_> = wall.iter().map(|one| one.id).collect();
+            if let Some((last, old)) = before {
+                let is_deeper = (depth - last - N::lit(0.005)).abs() < N::lit(1e-5);
+                assert!(is_deeper, "{solid:?} turned {yaw}, step {step}: {last} {found:?}");
+                let is_kept = ids.iter().any(|id| old.contains(id));
+                assert!(is_kept, "{solid:?} turned {yaw}, step {step}: {old:?} {found:?}");
+            }
+            before = Some((depth, ids));
+        }
+    }
+}
+
+#[test]
+fn wide_bases_keep_their_contact_with_a_wall() {
+    pushed_into_a_wall::<f64>();
+    pushed_into_a_wall::<f32>();
 }
 
 fn in_plane<N: Space<2, Isometry = Isometry2<N>>>() {
@@ -117,8 +170,9 @@ fn in_plane<N: Space<2, Isometry = Isometry2<N>>>() {
             for contact in all {
                 let is_slope = (contact.normal.y - N::lit(slope.cos())).abs() < N::lit(1e-5);
                 assert!(is_slope, "{degrees} at {x}: {found:?}");
-                let least = 0.01 * slope.cos() - x * slope.sin();
-                let is_right = (contact.depth - N::lit(least)).abs() <= N::lit(2.0 * x + 1e-6);
+                // At most the height of the plane of the slope above the corner.
+                let most = 0.01 * slope.cos() + x * slope.sin() + 1e-6;
+                let is_right = contact.depth > N::lit(0.005) && contact.depth <= N::lit(most);
                 assert!(is_right, "{degrees} at {x}: {found:?}");
             }
         }
