@@ -105,7 +105,7 @@ fn crates_press_a_border<N: Space<3, Isometry = Isometry3<N>>>() {
     let scale = Vector::<N, 3>::from([8.0, 1.0, 8.0].map(N::lit));
     let field = HeightField::<N, 3>::new(5, 5, vec![N::ZERO; 25], scale);
     let crate_ = Cuboid::new(Vector::<N, 3>::from([0.5, 0.5, 0.75].map(N::lit)));
-    for (number, depth) in (0..480).zip(DEPTHS.into_iter().cycle()) {
+    for (number, depth) in (0..480_u32).zip(DEPTHS.into_iter().cycle()) {
         let angle = 0.1 + f64::from(number) * 0.7;
         let turn = UnitQuaternion::from_axis_angle(&Vector::<N, 3>::y_axis(), N::lit(angle));
         let reach = 0.5 * angle.cos().abs() + 0.75 * angle.sin().abs();

@@ -7,7 +7,7 @@ use impinge::narrow_phase::{
     ContactManifoldGenerator, ContactPrediction, DefaultContactDispatcher, IdAllocator,
     PairManifoldGenerator, contact_manifolds,
 };
-use impinge::query::ContactId;
+use impinge::query::{ContactId, ContactManifold};
 use impinge::shape::{Cone, ConvexHull, ConvexPolygon, Cuboid, Polyline, Shape, TriMesh};
 
 /// Returns a floor in the plane y = 0 left of a wall in the plane x = 0.
@@ -39,7 +39,7 @@ fn touches_both<N: Space<3, Isometry = Isometry3<N>>>(
     for surface in [floor_and_wall::<N>(), floor_and_wall().one_sided()] {
         let here = Isometry3::identity();
         let found = contact_manifolds(&here, &surface, &pose, solid, &prediction, None);
-        let all = || found.iter().flat_map(|manifold| manifold.contacts()).map(|one| &one.contact);
+        let all = || found.iter().flat_map(ContactManifold::contacts).map(|one| &one.contact);
         let name = || format!("{solid:?} turned {yaw}, sunk {sunk}, beyond {beyond}: {found:?}");
         let deepest = |axis: usize, sign: f64| {
             let along = all().filter(|found| found.normal[axis] * N::lit(sign) > N::lit(0.99));
@@ -145,7 +145,7 @@ fn in_plane<N: Space<2, Isometry = Isometry2<N>>>() {
             let at = Vector::<N, 2>::from([beyond - half, 0.5 - sunk].map(N::lit));
             let pose = Isometry2::from_parts(Translation::from(at), UnitComplex::identity());
             let found = contact_manifolds(&here, &corner, &pose, &wedge, &prediction, None);
-            let mut all = found.iter().flat_map(|manifold| manifold.contacts());
+            let mut all = found.iter().flat_map(ContactManifold::contacts);
             let is_wall = |found: &impinge::query::Contact<N, 2>| {
                 let is_deep = found.depth > N::lit(0.15 * beyond);
                 found.normal.x < N::lit(-0.99) && is_deep && found.depth <= N::lit(beyond)
@@ -164,7 +164,7 @@ fn in_plane<N: Space<2, Isometry = Isometry2<N>>>() {
             let turn = UnitComplex::new(N::lit(core::f64::consts::FRAC_PI_4));
             let pose = Isometry2::from_parts(Translation::from(at), turn);
             let found = contact_manifolds(&here, &valley, &pose, &tip, &prediction, None);
-            let all = found.iter().flat_map(|manifold| manifold.contacts());
+            let all = found.iter().flat_map(ContactManifold::contacts);
             let all: Vec<_> = all.map(|one| &one.contact).collect();
             assert!(!all.is_empty(), "{degrees} at {x}");
             for contact in all {
