@@ -45,14 +45,17 @@ pub(super) fn move_to_side<N: Space<D>, const D: usize>(
 /// Returns the least overlap, below `deepest`, of a solid, which is the first shape, with the line
 /// of a side of a triangle: the separation of the solid and the line, in the frame of the solid,
 /// with the points on the side and a normal that the edge there admits. `None` if there is none,
-/// and for other shapes and parts.
+/// for balls, and for parts other than triangles.
 fn least_at_sides<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contact: &PartContact<N, D>,
     deepest: N,
 ) -> Option<Separation<N, D>> {
-    let solid = scene.between.pair.first;
-    let surface = scene.surfaces[1].filter(|_| !matches!(solid, Kind::Ball(_)))?;
+    let (solid, surface) = (scene.between.pair.first, scene.surfaces[1]?);
+    // The nearest point of a triangle to the centre of a ball decides its normal exactly.
+    if matches!(solid, Kind::Ball(_)) {
+        return None;
+    }
     let own = scene.second_part(contact.parts()[1])?;
     let PartSolid::Triangle(triangle) = &own.solid else { return None };
     let (turn, origin) = (&scene.between.pair.pose12, scene.between.pose21.translation);

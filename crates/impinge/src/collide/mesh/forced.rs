@@ -70,7 +70,7 @@ const MAX_STEPS: usize = 16;
 /// The smallest closing speed along a normal at which [`reach`] continues.
 const SLOWEST: f64 = 1.0 / 64.0;
 
-/// Computes a contact that the points along the normal of the face missed
+/// Computes a contact of a convex solid that the points along the normal of the face missed
 /// ([`PartStatus::Missed`]): the part of the solid above the face has another deepest point. The
 /// result has the status [`PartStatus::Snapped`], or [`PartStatus::Left`] if there is none.
 ///
@@ -110,7 +110,7 @@ pub(super) fn reach<N: Space<D>, const D: usize>(
     let (piece, lowest) = appended(&placed, parts, arena);
     contact.set_piece(piece, lowest);
     contact.status = PartStatus::Snapped;
-    contact.face = scene.first_is_convex().then(|| -placed.in_second_frame(&face));
+    contact.face = Some(-placed.in_second_frame(&face));
 }
 
 /// Moves the second solid of an overlapping pair out along `normal`, a unit vector from the first

@@ -112,8 +112,8 @@ fn leave_explained<N: Space<D>, const D: usize>(
     }
 }
 
-/// Computes the missed contacts that no other contact explains ([`reach`]), and drops the others.
-/// Returns whether any was computed.
+/// Computes the missed contacts of a convex solid that no other contact explains ([`reach`]), and
+/// drops the others. Returns whether any was computed.
 fn reach_missed<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     request: &ManifoldRequest<N>,
@@ -125,14 +125,17 @@ fn reach_missed<N: Space<D>, const D: usize>(
         return false;
     }
     let is_held = |status| !matches!(status, Left | Missed);
-    // The deepest contact alone explains most missed contacts.
+    // Two composites have many missed contacts, which are not worth their cost there. For a convex
+    // solid, the deepest contact alone explains most of them.
+    let is_convex = scene.first_is_convex();
     let deepest = least_of(contacts, |contact| is_held(contact.status).then_some(contact.lowest));
     let deepest = deepest.map(|index| Escape::of(&contacts[index]));
     let (mut are_left, mut is_any) = (false, false);
     for contact in contacts.iter_mut().filter(|contact| contact.status == Missed) {
         let is_parted = deepest.as_ref().is_some_and(|deepest| deepest.certainly_parts(contact));
-        contact.status = if is_parted { Left } else { Missed };
-        are_left |= !is_parted;
+        let is_left = is_convex && !is_parted;
+        contact.status = if is_left { Missed } else { Left };
+        are_left |= is_left;
     }
     if !are_left {
         return false;
@@ -164,7 +167,7 @@ fn move_to_sides<N: Space<D>, const D: usize>(
     let is_deeper = |contact: &PartContact<N, D>| {
         is_forced(contact) && depth(contact) > contact.tolerance - N::TWO * contact.distance
     };
-    if !contacts.iter().any(is_deeper) {
+    if !(scene.first_is_convex() && contacts.iter().any(is_deeper)) {
         return false;
     }
     let (mut own, mut is_changed) = (Escapes(SmallVec::new()), false);
