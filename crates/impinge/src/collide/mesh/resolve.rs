@@ -130,20 +130,17 @@ fn reach_missed<N: Space<D>, const D: usize>(
     let is_convex = scene.first_is_convex();
     let deepest = least_of(contacts, |contact| is_held(contact.status).then_some(contact.lowest));
     let deepest = deepest.map(|index| Escape::of(&contacts[index]));
-    let (mut are_left, mut is_any) = (false, false);
+    let (mut are_open, mut is_any) = (false, false);
     for contact in contacts.iter_mut().filter(|contact| contact.status == Missed) {
         let is_parted = deepest.as_ref().is_some_and(|deepest| deepest.certainly_parts(contact));
-        let is_left = is_convex && !is_parted;
-        contact.status = if is_left { Missed } else { Left };
-        are_left |= is_left;
+        let is_open = is_convex && !is_parted;
+        contact.status = if is_open { Missed } else { Left };
+        are_open |= is_open;
     }
-    if !are_left {
+    if !are_open {
         return false;
     }
-    let mut held = Escapes(SmallVec::new());
-    for (_, index) in shallowest_first(contacts, is_held) {
-        held.add(&contacts[index as usize]);
-    }
+    let held = Escapes::of(contacts, is_held);
     for contact in contacts.iter_mut().filter(|contact| contact.status == Missed) {
         if is_explained(scene, contact, &held, arena) {
             contact.status = Left;
@@ -170,10 +167,8 @@ fn move_to_sides<N: Space<D>, const D: usize>(
     if !(scene.first_is_convex() && contacts.iter().any(is_deeper)) {
         return false;
     }
-    let (mut own, mut is_changed) = (Escapes(SmallVec::new()), false);
-    for (_, index) in shallowest_first(contacts, |status| status == PartStatus::Own) {
-        own.add(&contacts[index as usize]);
-    }
+    let own = Escapes::of(contacts, |status| status == PartStatus::Own);
+    let mut is_changed = false;
     for contact in contacts.iter_mut().filter(|contact| is_deeper(contact)) {
         let (normal, deepest) = (contact.piece.normal, depth(contact) - contact.tolerance);
         let is_confirmed = |escape: &Escape<N, D>| {
@@ -208,6 +203,15 @@ fn shallowest_first<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> Escapes<N, D> {
+    /// Returns the escapes of the contacts whose status satisfies `is_meant`.
+    fn of(contacts: &[PartContact<N, D>], is_meant: impl Fn(PartStatus) -> bool) -> Self {
+        let mut escapes = Self(SmallVec::new());
+        for (_, index) in shallowest_first(contacts, is_meant) {
+            escapes.add(&contacts[index as usize]);
+        }
+        escapes
+    }
+
     /// Adds the escape of a contact that is at least as deep as all contacts added before. The new
     /// escape replaces the escape with about the same normal or, if there are [`MAX_ESCAPES`], the
     /// shallowest. Contacts that only touch count: the sides of a box flush with the wall of a block
@@ -240,11 +244,11 @@ fn is_explained<N: Space<D>, const D: usize>(
     if depth(contact) <= contact.tolerance {
         return false;
     }
-    let is_beyond = contact.status != PartStatus::Snapped;
+    let is_any_normal = contact.status != PartStatus::Snapped;
     // An escape that is shorter than the depth of the parts does not separate the parts.
     let least = -contact.distance - contact.tolerance;
     let is_relevant = |escape: &&Escape<N, D>| {
-        escape.depth >= least && (is_beyond || escape.normal.dot(&normal) < N::lit(ALIKE))
+        escape.depth >= least && (is_any_normal || escape.normal.dot(&normal) < N::lit(ALIKE))
     };
     let mut relevant = SmallVec::<[&Escape<N, D>; 16]>::new();
     for escape in escapes.0.iter().filter(is_relevant) {
